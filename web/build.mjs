@@ -1,6 +1,6 @@
 // Bundles the report's program: node build.mjs [FOLDER]
 //
-// What the crate of the report embeds is committed, since whoever installs it by cargo has no Node.
+// The bundle, which the crate of the report embeds, is committed: an installation by cargo needs no Node.
 import { build } from "esbuild";
 import { writeFileSync } from "node:fs";
 import { deflateSync } from "node:zlib";
@@ -20,5 +20,5 @@ const { outputFiles } = await build({
   write: false,
 });
 writeFileSync(`${folder}/moving.js.zz`, deflateSync(outputFiles[0].contents, { level: 9 }));
-writeFileSync(`${folder}/moving.licences.txt`, licences());
+writeFileSync(`${folder}/moving.licences.txt`, licences(["three", "uplot"]));
 console.log(`moving.js: ${outputFiles[0].contents.length} bytes`);

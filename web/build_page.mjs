@@ -1,6 +1,6 @@
 // Bundles the page: node build_page.mjs WASM FOLDER
 //
-// The folder is then a static site: what it needs, each file also as brotli and gzip make it smaller.
+// The folder is then a static site, with each file also compressed by brotli and gzip.
 import { build } from "esbuild";
 import { createHash } from "node:crypto";
 import { mkdirSync, readFileSync, rmSync, writeFileSync } from "node:fs";
@@ -30,7 +30,7 @@ const files = {
   "page.js": await bundled("page"),
   "worker.js": await bundled("worker"),
   "condyle-web.wasm": readFileSync(wasm),
-  "licences.txt": Buffer.from(licences()),
+  "licences.txt": Buffer.from(licences(["three", "uplot", "@bjorn3/browser_wasi_shim"])),
 };
 const hash = createHash("sha256");
 for (const bytes of Object.values(files)) hash.update(bytes);

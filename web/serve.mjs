@@ -1,4 +1,4 @@
-// Serves a folder that build_page.mjs made, on this machine alone: node serve.mjs FOLDER [PORT]
+// Serves a folder that build_page.mjs made, to this machine only: node serve.mjs FOLDER [PORT]
 import { createServer } from "node:http";
 import { existsSync, readFileSync } from "node:fs";
 import { basename, extname, join } from "node:path";
@@ -12,11 +12,11 @@ const PACKED = [
 
 const server = createServer((request, response) => {
   const { pathname } = new URL(request.url, "http://localhost");
-  // All files stand side by side: what leads elsewhere leads nowhere.
+  // All files are in one folder: paths into others are refused.
   const name = pathname === "/" ? "index.html" : basename(pathname);
   const type = TYPES[extname(name)];
   const file = join(folder, name);
-  if (pathname !== "/" && pathname !== `/${name}` || !type || !existsSync(file)) {
+  if ((pathname !== "/" && pathname !== `/${name}`) || !type || !existsSync(file)) {
     response.writeHead(404).end();
     return;
   }

@@ -110,14 +110,16 @@ async function linked(page) {
   assert(off < 12, `the mark is ${off} px from where was clicked`);
 }
 
-// Curves are drawn as they come into sight; a still picture is saved as it is seen.
+// Curves are drawn as they come into sight, each once; a still picture is saved as it is shown.
 async function curves(page) {
-  await page.locator(".gait").scrollIntoViewIfNeeded();
-  for (const box of await page.locator(".gait .curves").all()) {
+  const stills = page.locator("svg.fig[data-chart]");
+  for (const still of await stills.all()) assert(!(await still.isVisible()), "a curve is shown twice");
+  for (const box of await page.locator(".panels .curves").all()) {
     await box.scrollIntoViewIfNeeded();
     await box.locator("canvas").waitFor();
   }
-  assert((await page.locator(".curves canvas").count()) > 8, "curves are missing");
+  const drawn = await page.locator(".curves canvas").count();
+  assert(drawn >= (await stills.count()), `only ${drawn} curves are drawn`);
   for (const [kind, begins] of [["SVG", "<svg"], ["PNG", "\u0089PNG"]]) {
     const box = page.locator(".figure-box").first();
     await box.hover();
@@ -183,7 +185,9 @@ async function main() {
     await gait(page);
     assert.deepStrictEqual(heard, [], "the page asks for other files or reports errors");
     await page.emulateMedia({ media: "print" });
-    assert(!(await page.locator("#moving").isVisible()), "what moves is printed");
+    assert(!(await page.locator("#moving").isVisible()), "the 3-D view is printed");
+    assert(!(await page.locator(".curves").first().isVisible()), "an interactive curve is printed");
+    for (const still of await page.locator("svg.fig[data-chart]").all()) assert(await still.isVisible(), "a curve is not printed");
     await page.close();
     const frames = await played(browser);
     console.log(`ready after ${ready_ms} ms, ${frames} frames a second, ${fs.statSync(path.join(results, "report.html")).size} bytes`);

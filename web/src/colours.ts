@@ -1,4 +1,4 @@
-// Colour maps whose lightness rises evenly, so that colour-blind people and grey printers can read them.
+// Colour maps with evenly rising lightness, readable by colour-blind people and in grey.
 
 export type MapName = "viridis" | "cividis";
 
@@ -14,8 +14,8 @@ function parts(colour: number): [number, number, number] {
   return [(colour >> 16) & 255, (colour >> 8) & 255, colour & 255];
 }
 
-// Lights are added up in proportion to their strength, which the numbers of a colour are not (IEC 61966-2-1).
-function strength(part: number): number {
+// Converts a part of an sRGB colour to linear light (IEC 61966-2-1).
+function linear(part: number): number {
   const share = part / 255;
   return share <= 0.04045 ? share / 12.92 : ((share + 0.055) / 1.055) ** 2.4;
 }
@@ -28,7 +28,7 @@ function table(name: MapName): Float32Array {
     const below = Math.min(Math.floor(place), stops.length - 2);
     const [from, to] = [parts(stops[below]!), parts(stops[below + 1]!)];
     for (let part = 0; part < 3; part++) {
-      colours[3 * level + part] = strength(from[part]! + (to[part]! - from[part]!) * (place - below));
+      colours[3 * level + part] = linear(from[part]! + (to[part]! - from[part]!) * (place - below));
     }
   }
   return colours;
@@ -36,7 +36,7 @@ function table(name: MapName): Float32Array {
 
 const TABLES: Record<MapName, Float32Array> = { viridis: table("viridis"), cividis: table("cividis") };
 
-// Colours of values between two ends, as strengths of red, green and blue.
+// Colours values between two ends, in linear red, green and blue.
 export function paint(values: ArrayLike<number>, [low, high]: [number, number], map: MapName, into: Float32Array): void {
   const colours = TABLES[map];
   const scale = (LEVELS - 1) / (high > low ? high - low : 1);

@@ -2,11 +2,7 @@
 
 type Attributes = Record<string, string | number | boolean | EventListener>;
 
-export function element<K extends keyof HTMLElementTagNameMap>(
-  tag: K,
-  attributes: Attributes = {},
-  ...children: (Node | string)[]
-): HTMLElementTagNameMap[K] {
+export function element<K extends keyof HTMLElementTagNameMap>(tag: K, attributes: Attributes = {}, ...children: (Node | string)[]): HTMLElementTagNameMap[K] {
   const made = document.createElement(tag);
   for (const [name, value] of Object.entries(attributes)) {
     if (typeof value === "function") made.addEventListener(name, value);
@@ -17,7 +13,7 @@ export function element<K extends keyof HTMLElementTagNameMap>(
   return made;
 }
 
-// A control with its words around it, so that a screen reader says them.
+// A control inside of its label, which screen readers announce.
 export function labelled(words: string, control: HTMLElement): HTMLLabelElement {
   return element("label", {}, element("span", {}, words), control);
 }

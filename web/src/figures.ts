@@ -1,19 +1,23 @@
-// Saves the still pictures of the page: as SVG on white, as PNG.
+// Saves the still pictures of the page as SVG on white and as PNG.
 
 import { button, element } from "./dom";
 import { save } from "./save";
 
-// Dots of a PNG to a point of the picture.
+// Pixels of a PNG for each point of the picture.
 const DOTS = 2;
 
-// Puts two buttons below every picture of a section.
+// Puts two buttons below every still picture that is on the screen.
 export function offerPictures(root: ParentNode): void {
-  for (const svg of root.querySelectorAll<SVGSVGElement>("svg.fig")) {
-    const name = svg.querySelector("title")?.textContent?.toLowerCase().replaceAll(/[^a-z0-9]+/g, "_") || "picture";
+  for (const svg of root.querySelectorAll<SVGSVGElement>("svg.fig:not(.still)")) {
+    const name =
+      svg
+        .querySelector("title")
+        ?.textContent?.toLowerCase()
+        .replaceAll(/[^a-z0-9]+/g, "_") || "picture";
     const saves = element(
       "span",
       { class: "saves" },
-      button("SVG", () => save(`${name}.svg`, new Blob([alone(svg)], { type: "image/svg+xml" }))),
+      button("SVG", () => save(`${name}.svg`, new Blob([standalone(svg)], { type: "image/svg+xml" }))),
       button("PNG", () => void savePng(`${name}.png`, svg)),
     );
     const box = element("span", { class: "figure-box" });
@@ -22,8 +26,8 @@ export function offerPictures(root: ParentNode): void {
   }
 }
 
-// The picture as a file that needs no page: its style inside, on white.
-function alone(svg: SVGSVGElement): string {
+// The picture as a file of its own: on white, with its style inside.
+export function standalone(svg: SVGSVGElement): string {
   const copy = svg.cloneNode(true) as SVGSVGElement;
   const { width, height } = svg.viewBox.baseVal;
   copy.setAttribute("xmlns", "http://www.w3.org/2000/svg");
@@ -37,7 +41,7 @@ function alone(svg: SVGSVGElement): string {
   return new XMLSerializer().serializeToString(copy);
 }
 
-// The rules of the page that are of pictures, and its colours on white.
+// The rules of the page for pictures, and its colours on white.
 function pictureRules(): string {
   const rules = [...document.styleSheets].flatMap((sheet) => [...sheet.cssRules]);
   const kept = rules.filter((rule) => rule instanceof CSSStyleRule && /^:root$|\.fig\b/.test(rule.selectorText));
@@ -47,7 +51,7 @@ function pictureRules(): string {
 async function savePng(name: string, svg: SVGSVGElement): Promise<void> {
   const image = new Image();
   const { width, height } = svg.viewBox.baseVal;
-  image.src = `data:image/svg+xml;charset=utf-8,${encodeURIComponent(alone(svg))}`;
+  image.src = `data:image/svg+xml;charset=utf-8,${encodeURIComponent(standalone(svg))}`;
   await image.decode();
   const canvas = element("canvas", { width: DOTS * width, height: DOTS * height });
   canvas.getContext("2d")!.drawImage(image, 0, 0, canvas.width, canvas.height);

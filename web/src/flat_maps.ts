@@ -1,8 +1,8 @@
-// The flat maps of the page, linked with the bodies: a place picked on one is marked on all.
+// The flat maps of the page, linked with the bodies: a point picked on one is marked on all.
 
 interface FlatMap {
   svg: SVGSVGElement;
-  // What the picture says of itself: x at its top and z at its left, mm; their place in it and its scale.
+  // From the picture itself: x at its top and z at its left, mm; their positions in it, px; its scale.
   place: { xHigh: number; zLow: number; left: number; top: number; perMm: number };
   ring?: SVGCircleElement;
 }

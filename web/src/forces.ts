@@ -4,7 +4,7 @@ import { Vector3 } from "three";
 import type { Pressed } from "./scene";
 import type { Force } from "./stage";
 
-// Share of the surface of every node, mm²: a quarter of each face around it.
+// The share of each node of the surface, mm²: a quarter of each face around it.
 export function shares(places: Float32Array, quads: ArrayLike<number>): Float32Array {
   const share = new Float32Array(places.length / 3);
   const at = (node: number) => new Vector3().fromArray(places, 3 * node);
@@ -17,7 +17,7 @@ export function shares(places: Float32Array, quads: ArrayLike<number>): Float32A
   return share;
 }
 
-// One at the centre of pressure of each side, left (z below 0) and right; MPa times mm² is N.
+// The force of each side at its centre of pressure, left (z below 0) and right; MPa times mm² is N.
 export function forces({ nodes, pressures }: Pressed, places: Float32Array, share: Float32Array): Force[] {
   const sides = [new Side(), new Side()];
   nodes.forEach((node, index) => {

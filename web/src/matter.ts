@@ -1,20 +1,20 @@
-// What bodies are made of, to be drawn: lit at their corners, which a processor does thirty times a second.
+// The material of the bodies, lit at their vertices, which a processor can do thirty times a second.
 
 import { Color, GLSL3, RawShaderMaterial, Vector3, type Side } from "three";
 
 export interface Look {
-  // Of every corner by itself if not given.
+  // Each vertex has its own colour if not given.
   colour?: number;
-  // Not lit: of the same colour all over.
+  // Without lighting: one colour everywhere.
   isFlat?: boolean;
   isGlass?: boolean;
   side: Side;
 }
 
-// Beyond every body, mm: nothing is cut away.
+// Beyond every body, mm: no section.
 const FAR_MM = 1e6;
 
-// Light from above and from the ground, and a lamp beside the eye; colours are added up by their strengths.
+// Light from above and from the ground, and a lamp next to the eye; colours are added in linear light.
 const CORNERS = `
 precision highp float;
 uniform mat4 modelMatrix, viewMatrix, modelViewMatrix, projectionMatrix;
@@ -85,12 +85,12 @@ export class Matter extends RawShaderMaterial {
       },
       side,
       transparent: isGlass ?? false,
-      // What is behind shows through as well as what is in front.
+      // Faces behind show through as well as faces in front.
       forceSinglePass: true,
     });
   }
 
-  // Takes away what lies beyond x or z, mm.
+  // Removes everything beyond x or z, mm.
   cutAt(x = FAR_MM, z = FAR_MM): void {
     (this.uniforms["cut"]!.value as Vector3).set(x, FAR_MM, z);
     const isCut = x < FAR_MM || z < FAR_MM;

@@ -1,36 +1,25 @@
-// Curves with hover, zoom and a linked cursor; their data as CSV, their pictures as PNG and SVG.
+// Charts with hover, zoom and a linked cursor; their data as CSV, their pictures as PNG and SVG.
 
 import uPlot from "uplot";
+import { chartSvg } from "./chart_svg";
 import { button, element } from "./dom";
-import { inDigits, withUnit, type Quantity } from "./quantities";
+import { inDigits } from "./quantities";
 import { savePicture, saveText } from "./save";
-import { curvesSvg } from "./curves_svg";
-
-export interface Curve {
-  name: string;
-  values: (number | null)[];
-  colour: string;
-  // Dots without a line between them.
-  isDotted?: boolean;
-}
-
-export interface Curves {
-  title: string;
-  across: Quantity;
-  up: Quantity;
-  at: number[];
-  curves: Curve[];
-}
+import type { Chart } from "./scene";
 
 // Height of a line of values below a plot.
 const LEGEND_PX = 26;
+// Widths of lines as in the still pictures; other styles have 1.
+const WIDTHS: Record<string, number> = { first: 4.5, last: 1.7 };
+// Measured values have the colour of soft text; the other styles have colours of their own names.
+const COLOURS: Record<string, string> = { specimen: "--soft" };
 
 export interface PlotOptions {
-  // Plots of the same key share their cursor.
-  linked?: string;
-  // What a click on an instant does.
-  chosen?: (index: number) => void;
+  // Called with the horizontal value of a click.
+  chosen?: (x: number) => void;
   height?: number;
+  // The picture that is saved as SVG.
+  svg?: () => string;
 }
 
 export class Plot {
@@ -43,34 +32,34 @@ export class Plot {
   private pointed: number | undefined;
 
   constructor(
-    private readonly curves: Curves,
+    readonly chart: Chart,
     private readonly options: PlotOptions = {},
   ) {
     this.height = options.height ?? 190;
-    this.box = element("figure", { class: "curves" }, element("figcaption", {}, curves.title), this.shown, saves(curves, () => this.drawn()));
-    // The height that it will have, so that nothing moves when it is drawn.
-    const lines = curves.curves.length > 1 ? curves.curves.length + 1 : 1;
+    const heading = element("figcaption", {}, withUnit(chart));
+    this.box = element("figure", { class: "curves" }, heading, this.shown, this.saves());
+    // The final height, so that nothing moves when the plot is drawn.
+    const lines = chart.curves.length > 1 ? chart.curves.length + 1 : 1;
     this.shown.style.minHeight = `${this.height + LEGEND_PX * lines}px`;
-    const seen = ([entry]: IntersectionObserverEntry[]) => this.see(entry!.isIntersecting);
-    this.observers = [new IntersectionObserver(seen, { rootMargin: "200px" }), new ResizeObserver(([entry]) => this.fit(entry!.contentRect.width))];
+    const seen = (entries: IntersectionObserverEntry[]) => this.see(entries.some((entry) => entry.isIntersecting));
+    const resized = (entries: ResizeObserverEntry[]) => entries.forEach((entry) => this.fit(entry.contentRect.width));
+    this.observers = [new IntersectionObserver(seen, { rootMargin: "200px" }), new ResizeObserver(resized)];
     for (const observer of this.observers) observer.observe(this.shown);
   }
 
-  // Lets go of what plots of the same key share.
+  // Releases the resources that plots of the same group share.
   dispose(): void {
     for (const observer of this.observers) observer.disconnect();
     this.plot?.destroy();
   }
 
-  // Puts the cursor on an instant.
-  point(index: number): void {
-    this.pointed = index;
-    const across = this.curves.at[index];
-    if (!this.plot || !this.isSeen || across === undefined) return;
-    this.plot.setCursor({ left: this.plot.valToPos(across, "x"), top: -1 }, false);
+  // Puts the cursor on a horizontal value.
+  point(x: number): void {
+    this.pointed = x;
+    if (this.plot && this.isSeen) this.plot.setCursor({ left: this.plot.valToPos(x, "x"), top: -1 }, false);
   }
 
-  // A curve is drawn once it comes into sight.
+  // A plot is drawn when it first comes into sight.
   private see(isSeen: boolean): void {
     this.isSeen = isSeen;
     if (!isSeen) return;
@@ -81,61 +70,85 @@ export class Plot {
   private drawn(): uPlot {
     if (this.plot) return this.plot;
     const size = { width: this.shown.clientWidth || 320, height: this.height };
-    const plot = new uPlot({ ...size, ...settings(this.curves, this.options) }, data(this.curves), this.shown);
+    const plot = new uPlot({ ...size, ...settings(this.chart) }, aligned(this.chart), this.shown);
     const { chosen } = this.options;
-    if (chosen) plot.over.addEventListener("click", () => plot.cursor.idx != null && chosen(plot.cursor.idx));
+    const choose = () => {
+      const x = plot.cursor.idx == null ? undefined : plot.data[0][plot.cursor.idx];
+      if (x !== undefined) chosen?.(x);
+    };
+    if (chosen) plot.over.addEventListener("click", choose);
     return (this.plot = plot);
   }
 
   private fit(width: number): void {
     if (this.plot && width > 0 && Math.abs(width - this.plot.width) > 1) this.plot.setSize({ width, height: this.height });
   }
+
+  private saves(): HTMLElement {
+    const { chart } = this;
+    const name = slug(chart.title);
+    const svg = this.options.svg ?? (() => chartSvg(chart));
+    return element(
+      "div",
+      { class: "saves" },
+      button("CSV", () => saveText(`${name}.csv`, csv(chart), "text/csv")),
+      button("PNG", () => savePicture(`${name}.png`, this.drawn().ctx.canvas)),
+      button("SVG", () => saveText(`${name}.svg`, svg(), "image/svg+xml")),
+    );
+  }
 }
 
-function data({ at, curves }: Curves): uPlot.AlignedData {
-  return [at, ...curves.map((curve) => curve.values)];
+export function withUnit({ title, unit }: Chart): string {
+  return unit ? `${title}, ${unit}` : title;
 }
 
-function settings({ across, up, curves }: Curves, { linked }: PlotOptions): Omit<uPlot.Options, "width" | "height"> {
-  const ink = "currentColor";
-  const axis = { stroke: () => getComputedStyle(document.body).color, font: "11px sans-serif", labelFont: "11px sans-serif", labelSize: 16, grid: { stroke: "#8884", width: 1 }, ticks: { stroke: "#8884", width: 1 } };
+export function acrossTitle({ x_title }: Chart): string {
+  return x_title || "percent of the cycle";
+}
+
+export function slug(words: string): string {
+  return words.toLowerCase().replaceAll(/[^a-z0-9]+/g, "_");
+}
+
+// All curves at the union of their horizontal values; a missing value is null where the curve breaks.
+export function aligned({ curves }: Chart): uPlot.AlignedData {
+  const column = ({ x, y }: Chart["curves"][number]): uPlot.AlignedData => [Array.from(x), Array.from(y, (value) => (Number.isFinite(value) ? value : null))];
+  return uPlot.join(curves.map(column));
+}
+
+function settings(chart: Chart): Omit<uPlot.Options, "width" | "height"> {
+  const style = (name: string) => () => getComputedStyle(document.body).getPropertyValue(name).trim();
+  const font = "11px sans-serif";
+  const lines = { stroke: "#8884", width: 1 };
+  const axis = { stroke: () => getComputedStyle(document.body).color, font, labelFont: font, labelSize: 16, grid: lines, ticks: lines };
   const values = (_: uPlot, all: number[]) => all.map(inDigits);
+  const known = (unit: string) => (_: uPlot, value: number | null) => (value === null ? "–" : `${inDigits(value)} ${unit}`.trim());
   return {
     scales: { x: { time: false } },
     axes: [
-      { ...axis, label: withUnit(across), size: 26, values },
-      { ...axis, label: withUnit(up), size: 48, values },
+      { ...axis, label: acrossTitle(chart), size: 26, values },
+      { ...axis, size: 48, values },
     ],
-    cursor: { drag: { x: true, y: false }, ...(linked ? { sync: { key: linked, scales: ["x", null] as [string, null] } } : {}) },
+    cursor: { drag: { x: true, y: false }, sync: { key: chart.group, scales: ["x", null] as [string, null] } },
     series: [
-      { label: across.label, value: (_, value) => (value === null ? "–" : inDigits(value)) },
-      ...curves.map(({ name, colour, isDotted }) => ({
-        label: name,
-        stroke: colour || ink,
-        width: 1.6,
-        // Curves of two runs have their points at other cycles.
-        spanGaps: true,
-        ...(isDotted ? { paths: () => null } : {}),
-        points: { show: isDotted || curves.filter((curve) => !curve.isDotted).length === 1 },
-        value: (_: uPlot, value: number | null) => (value === null ? "–" : `${inDigits(value)} ${up.unit}`),
+      { label: acrossTitle(chart), value: known("") },
+      ...chart.curves.map((curve) => ({
+        label: curve.name,
+        stroke: style(COLOURS[curve.style] ?? `--${curve.style}`),
+        width: WIDTHS[curve.style] ?? 1,
+        points: { show: curve.has_dots },
+        value: known(chart.unit),
       })),
     ],
   };
 }
 
-function saves(curves: Curves, plot: () => uPlot): HTMLElement {
-  const name = curves.title.toLowerCase().replaceAll(/[^a-z0-9]+/g, "_");
-  return element(
-    "div",
-    { class: "saves" },
-    button("CSV", () => saveText(`${name}.csv`, csv(curves), "text/csv")),
-    button("PNG", () => savePicture(`${name}.png`, plot().ctx.canvas)),
-    button("SVG", () => saveText(`${name}.svg`, curvesSvg(curves), "image/svg+xml")),
-  );
-}
-
-export function csv({ across, up, at, curves }: Curves): string {
-  const head = [across.name, ...curves.map((curve) => (curves.length > 1 ? `${up.name} ${curve.name}` : up.name))];
-  const rows = at.map((x, index) => [x, ...curves.map((curve) => curve.values[index] ?? "")]);
-  return [head, ...rows].map((row) => row.join(",")).join("\n") + "\n";
+export function csv(chart: Chart): string {
+  // The id of a chart is that of its column with a letter in front.
+  const column = slug(chart.id.replace(/^[a-z]-/, ""));
+  const names = chart.curves.map(({ name }) => (chart.curves.length > 1 ? `${column}_${slug(name)}` : column));
+  const [at, ...all] = aligned(chart);
+  const rows = Array.from(at, (x, index) => [x, ...all.map((values) => values[index] ?? "")]);
+  const lines = [[slug(acrossTitle(chart)), ...names], ...rows].map((row) => `${row.join(",")}\n`);
+  return lines.join("");
 }

@@ -1,4 +1,4 @@
-// Names of condyle's files in words: the unit is the end of the name.
+// Names of fields in words; their unit is the end of the name.
 
 const UNITS: [ending: string, unit: string][] = [
   ["_mm2", "mm²"],
@@ -41,7 +41,7 @@ export function withUnit({ label, unit }: Quantity): string {
   return unit ? `${label}, ${unit}` : label;
 }
 
-// Four digits, as the report's tables have them; a minus sign that is one.
+// Four digits, as in the tables of the report, with a true minus sign.
 export function inDigits(value: number): string {
   if (!Number.isFinite(value)) return "–";
   const text = value === 0 ? "0" : Number(value.toPrecision(4)).toString();

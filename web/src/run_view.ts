@@ -1,129 +1,87 @@
-// A run as it is looked at: the bodies, and curves that are linked with them.
+// A run on the screen: the bodies, and charts that are linked with them.
 
 import { element } from "./dom";
 import { FlatMaps } from "./flat_maps";
-import { withMeasured, withWeighings } from "./measured";
-import { Plot, type Curves, type PlotOptions } from "./plots";
-import { cyclesInWords, quantity } from "./quantities";
-import type { Scene } from "./scene";
+import { Plot, type PlotOptions } from "./plots";
+import { quantity } from "./quantities";
+import type { Chart, Scene } from "./scene";
 import { updateAfter, Viewer } from "./viewer";
 
-const BLUE = "#2f6db5";
-const RED = "#c2492f";
-const MILLION_CYCLES = { name: "cycles", label: "Million cycles", unit: "" };
-const PERCENT = { name: "percent", label: "Gait cycle", unit: "%" };
+const MILLION = 1e6;
+
+export interface RunViewOptions {
+  // Flat maps inside of it are linked with the bodies.
+  root?: ParentNode;
+  // The picture of a chart that is saved as SVG.
+  svgOf?: (chart: Chart) => (() => string) | undefined;
+}
 
 export class RunView {
   readonly viewer: Viewer | undefined;
-  readonly worn = element("div", { class: "worn" });
-  readonly gait = element("div", { class: "gait" });
-  private readonly history = element("div");
+  readonly plots: Plot[];
+  // The history of the picked point.
+  readonly history = element("div");
+  private picked: Plot | undefined;
   private readonly maps: FlatMaps;
-  private readonly plots: Plot[] = [];
 
-  // Flat maps of the run that `root` holds are linked with the bodies.
   constructor(
     private readonly scene: Scene,
-    root: ParentNode = document,
+    { root = document, svgOf }: RunViewOptions = {},
   ) {
     this.maps = new FlatMaps(root, (x, z) => this.viewer?.pickAt(x, z));
     if (scene.facts.updates.length) this.viewer = new Viewer(scene);
-    this.drawWear();
-    this.drawGait();
-    if (this.viewer) this.viewer.onPick = (node) => this.picked(this.viewer!, node);
+    const { viewer } = this;
+    // Other activities have motions of their own, which the bodies do not show.
+    const chosen: Record<string, (chart: Chart) => (x: number) => void> = {
+      wear:
+        ({ cycles_per_x }) =>
+        (x) =>
+          viewer?.showUpdate(updateAfter(scene, cycles_per_x * x)),
+      cycle: () => (percent) => viewer?.showPercent(percent),
+    };
+    this.plots = scene.charts().map((chart) => {
+      const options: PlotOptions = { height: chart.group === "wear" ? 190 : 160 };
+      options.chosen = chosen[chart.group]?.(chart);
+      options.svg = svgOf?.(chart);
+      return new Plot(chart, options);
+    });
+    if (!viewer) return;
+    const moved = this.plots.filter(({ chart }) => chart.group === "cycle");
+    viewer.onPercent = (percent) => moved.forEach((plot) => plot.point(percent));
+    viewer.onPick = (node) => this.pick(viewer, node);
   }
 
-  // Lets go of the run; what it drew stays until it is taken away.
+  // Releases the run; its elements stay until they are removed.
   dispose(): void {
     this.viewer?.dispose();
     this.plots.forEach((plot) => plot.dispose());
+    this.picked?.dispose();
   }
 
-  private plotted(curves: Curves, options: PlotOptions): Plot {
-    const plot = new Plot(curves, options);
-    this.plots.push(plot);
-    return plot;
-  }
-
-  private drawWear(): void {
-    if (!this.scene.columns("wear").includes("mass_loss_mg")) return;
-    const after = [0, ...this.scene.column("wear", "cycles")];
-    const ofRun = (name: string): Curves => ({
-      title: quantity(name).label,
-      across: MILLION_CYCLES,
-      up: quantity(name),
-      at: after.map((cycles) => cycles / 1e6),
-      curves: [{ name: quantity(name).label, colour: BLUE, values: [0, ...this.scene.column("wear", name)] }],
-    });
-    const names = ["mass_loss_mg", "max_depth_mm"].filter((name) => this.scene.columns("wear").includes(name));
-    for (const name of names) {
-      const curves = withWeighings(ofRun(name), this.scene);
-      const chosen = (index: number) => this.viewer?.showUpdate(updateAfter(this.scene, 1e6 * curves.at[index]!));
-      this.worn.append(this.plotted(curves, { linked: "wear", chosen }).box);
-    }
-    this.worn.append(this.history);
-  }
-
-  private drawGait(): void {
-    const columns = this.scene.columns("kinematics");
-    const cycles = columns.includes("cycles") ? parts(this.scene.column("kinematics", "cycles")) : [];
-    if (!cycles.length || !columns.includes("percent")) return;
-    const chosen = (index: number) => this.viewer?.showInstant(index);
-    const plots = columns.slice(2).map((name) => this.plotted(withMeasured(this.channel(name, cycles), this.scene), { linked: "gait", chosen, height: 160 }));
-    this.gait.append(...plots.map((plot) => plot.box));
-    if (this.viewer) this.viewer.onInstant = (index) => plots.forEach((plot) => plot.point(index));
-  }
-
-  private channel(name: string, cycles: Part[]): Curves {
-    const column = this.scene.column("kinematics", name);
-    const [first] = cycles;
-    return {
-      title: quantity(name).label,
-      across: PERCENT,
-      up: quantity(name),
-      at: [...this.scene.column("kinematics", "percent").subarray(first!.from, first!.to)],
-      curves: cycles.map(({ from, to, cycles }, index) => ({
-        name: `${index === 0 ? "first" : "last"} cycle, after ${cyclesInWords(cycles)}`,
-        colour: index === 0 ? BLUE : RED,
-        values: [...column.subarray(from, to)],
-      })),
-    };
-  }
-
-  private picked(viewer: Viewer, node: number): void {
+  private pick(viewer: Viewer, node: number): void {
     const [x, , z] = viewer.placeOf(node);
     this.maps.mark(x, z);
-    this.drawHistory(node);
-  }
-
-  private drawHistory(node: number): void {
-    const name = this.scene.facts.fields.includes(this.viewer!.shownField) ? this.viewer!.shownField : this.scene.facts.fields[0]!;
-    const { updates } = this.scene.facts;
-    const { label } = quantity(name);
-    const curves: Curves = {
-      title: `${label} at the picked point`,
-      across: MILLION_CYCLES,
-      up: quantity(name),
-      at: updates.map((cycles) => (cycles ?? 0) / 1e6),
-      curves: [{ name: label, colour: BLUE, values: updates.map((_, update) => this.scene.field(name, update)[node]!) }],
+    const { fields, updates } = this.scene.facts;
+    const name = fields.includes(viewer.shownField) ? viewer.shownField : fields[0];
+    if (name === undefined) return;
+    const { label, unit } = quantity(name);
+    const curve = {
+      name: label,
+      style: "last",
+      has_dots: true,
+      x: updates.map((cycles) => (cycles ?? 0) / MILLION),
+      y: updates.map((_, update) => this.scene.field(name, update)[node] ?? NaN),
     };
-    this.history.replaceChildren(this.plotted(curves, { linked: "wear" }).box);
+    this.picked?.dispose();
+    this.picked = new Plot({
+      id: `p-${name}`,
+      group: "wear",
+      title: `${label} at the picked point`,
+      unit,
+      x_title: "million cycles",
+      cycles_per_x: MILLION,
+      curves: [curve],
+    });
+    this.history.replaceChildren(this.picked.box);
   }
-}
-
-interface Part {
-  cycles: number;
-  from: number;
-  to: number;
-}
-
-// The rows of each cycle of kinematics.csv.
-function parts(cycles: Float64Array): Part[] {
-  const found: Part[] = [];
-  cycles.forEach((value, row) => {
-    const last = found.at(-1);
-    if (last?.cycles === value) last.to = row + 1;
-    else found.push({ cycles: value, from: row, to: row + 1 });
-  });
-  return found;
 }

@@ -1,4 +1,4 @@
-// Files given to the reader; nothing leaves the machine.
+// Downloads of files made in the page; nothing leaves the machine.
 
 import { element } from "./dom";
 

@@ -1,4 +1,4 @@
-// A scene as condyle writes it: bodies, updates and cycles as arrays (crates/condyle-report/src/scene).
+// A scene as condyle writes it: bodies, updates, cycles and charts as arrays (crates/condyle-report/src/scene).
 
 export interface CycleFacts {
   name: string;
@@ -19,8 +19,32 @@ interface Facts {
   cycles: CycleFacts[];
   neutral_pose: Pose | null;
   has_femur: boolean;
-  tables: { name: string; columns: string[] }[];
+  charts: ChartFacts[];
   missing: string[];
+}
+
+interface ChartFacts {
+  id: string;
+  // Charts of one group share their cursor.
+  group: string;
+  title: string;
+  unit: string;
+  x_title: string;
+  // Cycles for one unit of the horizontal axis; 0 where it shows no cycles.
+  cycles_per_x: number;
+  curves: { name: string; style: string; has_dots: boolean }[];
+}
+
+export interface Curve {
+  name: string;
+  style: string;
+  has_dots: boolean;
+  x: ArrayLike<number>;
+  y: ArrayLike<number>;
+}
+
+export interface Chart extends ChartFacts {
+  curves: Curve[];
 }
 
 interface Entry {
@@ -67,7 +91,7 @@ export class Scene {
     return new Float64Array(this.buffer, this.start + offset, length);
   }
 
-  // Values of an array that was kept in 16 bits of its range.
+  // Values of an array that is stored in 16 bits of its range.
   values(name: string): Float32Array {
     const { offset, length, range } = this.entry(name);
     const [low, high] = range ?? [0, 0];
@@ -106,12 +130,15 @@ export class Scene {
     return this.entry(`cycle.${cycle.name}.pressure_mpa`).range?.[1] ?? 0;
   }
 
-  columns(table: string): string[] {
-    return this.facts.tables.find((found) => found.name === table)?.columns ?? [];
-  }
-
-  column(table: string, name: string): Float64Array {
-    return this.exact(`table.${table}.${name}`);
+  // The charts of the run, as the report declares them.
+  charts(): Chart[] {
+    return this.facts.charts.map((chart) => ({
+      ...chart,
+      curves: chart.curves.map((curve, index) => {
+        const values = (axis: string) => this.exact(`chart.${chart.id}.${index}.${axis}`);
+        return { ...curve, x: values("x"), y: values("y") };
+      }),
+    }));
   }
 
   private entry(name: string): Entry {

@@ -36,18 +36,18 @@ const DIRECTIONS: Record<View, [number, number, number]> = {
   oblique: [0.75, 0.85, 0.6],
 };
 
-// Drawn by the processor: dots to a point of the screen, of a picture that is at rest.
+// Drawn by the processor: pixels for each point of the screen, for a picture at rest.
 const FINE_AT_REST = 2;
-// A picture is at rest after so long without a change, ms.
+// A picture is at rest after this time without a change, ms.
 const REST_MS = 250;
-// A newton is so many millimetres of an arrow.
+// Length of an arrow for each newton, mm.
 const MM_A_NEWTON = 0.02;
 const SKIN = 0xd9d7cf;
 const FEMUR = 0x9fb0bf;
 const CUT_FACE = 0xb9ad8c;
-// Walls that meet at a larger angle are not smoothed into each other.
+// Edges with a larger angle stay sharp.
 const SHARP_RAD = (50 * Math.PI) / 180;
-// A scale is at least so long on the screen, px, and one of these lengths, mm.
+// The smallest length of the scale bar on the screen, px, and its possible lengths, mm.
 const SCALE_PX = 50;
 const SCALES_MM = [0.1, 0.2, 0.5, 1, 2, 5, 10, 20, 50, 100];
 
@@ -67,7 +67,7 @@ export class Stage {
   private readonly femur?: Mesh<BufferGeometry, Matter>;
   private readonly marker: Mesh;
   private readonly sections: Partial<Record<Axis, number>> = {};
-  // What is inside of the insert is of one colour: seen through a section it is the face of the cut.
+  // The inside of the insert has one colour: seen through a section, it is the cut face.
   private readonly cutFace = new Matter({ colour: CUT_FACE, isFlat: true, side: BackSide });
   private readonly inside: Mesh[];
   private readonly solids: Matter[];
@@ -85,7 +85,7 @@ export class Stage {
     private readonly host: HTMLElement,
     scene: Scene,
   ) {
-    // A processor smooths edges of pictures at rest, by more dots. Pictures are saved from what was drawn last.
+    // Without a graphics card, edges are smoothed only at rest, by more pixels. Saved pictures are the last one drawn.
     this.renderer = new WebGLRenderer({ antialias: !this.isSlow, preserveDrawingBuffer: true });
     this.canvas = this.renderer.domElement;
     this.canvas.setAttribute("role", "img");
@@ -121,7 +121,7 @@ export class Stage {
     this.fit();
   }
 
-  // Places of the surface's nodes, mm, with what they have moved since they were unworn made larger.
+  // Positions of the surface's nodes, mm, with their displacement since the unworn state exaggerated.
   place(nodes: Float32Array, exaggeration: number): void {
     const places = this.surface.geometry.getAttribute("position") as BufferAttribute;
     const shown = places.array as Float32Array;
@@ -157,7 +157,7 @@ export class Stage {
     this.ask();
   }
 
-  // Takes away what lies beyond a place of an axis, mm; nothing without one.
+  // Removes everything beyond a position on an axis, mm; nothing if there is none.
   cut(axis: Axis, at?: number): void {
     this.sections[axis] = at;
     const { x, z } = this.sections;
@@ -166,7 +166,7 @@ export class Stage {
     this.ask();
   }
 
-  // Arrows down onto the surface, as long as the forces are large.
+  // Arrows down onto the surface, with lengths in proportion to the forces.
   press(forces: Force[]): void {
     forces.forEach(({ at, newtons }, index) => {
       const length = Math.max(newtons * MM_A_NEWTON, 1);
@@ -188,7 +188,7 @@ export class Stage {
     this.ask();
   }
 
-  // The node of the surface nearest to a place on the screen, and marks it; none beside it.
+  // Marks and returns the node of the surface nearest to a point on the screen; none outside of the surface.
   pick(event: PointerEvent): number | undefined {
     const { left, top, width, height } = this.canvas.getBoundingClientRect();
     const place = new Vector2((2 * (event.clientX - left)) / width - 1, 1 - (2 * (event.clientY - top)) / height);
@@ -212,7 +212,7 @@ export class Stage {
     this.ask();
   }
 
-  // Looks from where another stage is looked at.
+  // Takes the view of another stage.
   lookAs(other: Stage): void {
     this.camera.position.copy(other.camera.position);
     this.controls.target.copy(other.controls.target);
@@ -220,7 +220,7 @@ export class Stage {
     this.ask();
   }
 
-  // Draws now, as finely as a picture at rest; whoever only changed something asks, and many changes are drawn once.
+  // Draws now, as finely as a picture at rest. Changes call `ask` instead, so that many are drawn once.
   draw(): void {
     clearTimeout(this.resting);
     this.drawWith(this.isSlow ? FINE_AT_REST : Math.min(devicePixelRatio, 2));
@@ -260,7 +260,7 @@ export class Stage {
     this.drawScale();
   }
 
-  // How long some millimetres are where the eye looks at.
+  // The scale bar is right at the centre of the view.
   private drawScale(): void {
     const away = this.camera.position.distanceTo(this.controls.target);
     const pixelsAMm = this.host.clientHeight / (2 * Math.tan((this.camera.fov * Math.PI) / 360) * away);
@@ -290,7 +290,7 @@ export class Stage {
     this.renderer.setSize(width, height);
     this.camera.aspect = width / height;
     this.camera.updateProjectionMatrix();
-    // Before it stands in the page nobody can say what colour that has.
+    // The colour of the page is known only once the stage is in the document.
     this.choosePaper();
   }
 }
@@ -330,19 +330,19 @@ export function matrixOf(numbers: ArrayLike<number>): Matrix4 {
   return new Matrix4().set(n(3), n(4), n(5), n(0), n(6), n(7), n(8), n(1), n(9), n(10), n(11), n(2), 0, 0, 0, 1);
 }
 
-// Whether the browser draws without a graphics card. WebGL that is off altogether is found out by whoever draws.
+// Whether the browser draws without a graphics card; if WebGL is off, the renderer throws.
 function isDrawnByProcessor(): boolean {
   const found = element("canvas").getContext("webgl2", { failIfMajorPerformanceCaveat: true });
   found?.getExtension("WEBGL_lose_context")?.loseContext();
   return found === null;
 }
 
-// Says why there is no picture, where the browser has no WebGL.
+// A stage, or a message where the browser has no WebGL.
 export function stageOr(host: HTMLElement, scene: Scene): Stage | undefined {
   try {
     return new Stage(host, scene);
   } catch {
-    host.append(element("p", { class: "note" }, "This browser cannot draw in three dimensions (WebGL is off); the flat maps below show the same."));
+    host.append(element("p", { class: "note" }, "This browser cannot draw in three dimensions, since WebGL is off."));
     return undefined;
   }
 }

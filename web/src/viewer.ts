@@ -1,4 +1,4 @@
-// The stage with its controls: what is shown, at which update or instant, in which colours.
+// The stage with its controls: update or instant, field, colours, sections and views.
 
 import { gradient, type MapName } from "./colours";
 import { button, choice, element, labelled, slider } from "./dom";
@@ -8,15 +8,15 @@ import { savePicture } from "./save";
 import { matrixOf, stageOr, type Axis, type Force, type Stage, type View } from "./stage";
 import type { CycleFacts, Pressed, Scene } from "./scene";
 
-// What the surface may be coloured by besides the fields of an update.
+// The pressure through the cycle, by which the surface can be coloured besides the fields of an update.
 const IN_CYCLE = "pressure_mpa";
-// Whatever a cycle takes in life, here it takes so long, s.
+// Duration of a cycle on the screen, s.
 const SECONDS_A_CYCLE = 4;
-// Words of an instant stand so long while the cycle plays, ms.
+// Smallest time between two changes of the text while the cycle plays, ms.
 const READ_MS = 150;
-// Millimetres of the section slider beyond the middle.
+// Range of the section slider on both sides of the middle, mm.
 const SECTION_MM = 45;
-// A place so far from every node is beside the surface, mm.
+// A point farther than this from every node is outside of the surface, mm.
 const REACH_MM = 3;
 
 const VIEWS: [View, string][] = [
@@ -31,16 +31,16 @@ interface Cycle {
   pressed: Pressed[];
   poses: Float64Array;
   percents: Float64Array;
-  // The update whose surface it pressed on.
+  // The update with the surface that the cycle was solved on.
   update: number;
 }
 
 export class Viewer {
   readonly box = element("div", { class: "viewer" });
   readonly stage: Stage | undefined;
-  // Hears which instant of the cycle is shown.
-  onInstant: (index: number) => void = () => {};
-  // Hears which node was picked.
+  // Called with the percent of the cycle that is shown.
+  onPercent: (percent: number) => void = () => {};
+  // Called with the node that was picked.
   onPick: (node: number) => void = () => {};
   private readonly cycles: Cycle[];
   private field: string;
@@ -56,8 +56,8 @@ export class Viewer {
   private node: number | undefined;
   private legendShown = "";
   private values: Float32Array = new Float32Array();
-  private toldAt = 0;
-  private readonly told = element("output", { class: "told" });
+  private saidAt = 0;
+  private readonly said = element("output", { class: "told" });
   private readonly picked = element("div", { class: "picked", "aria-live": "polite" });
   private readonly bar = element("div", { class: "bar" });
   private readonly barEnds = element("div", { class: "ends" });
@@ -78,7 +78,7 @@ export class Viewer {
     this.fields.value = this.field;
     this.updates = slider(0, updates.length - 1, 1, this.update, (update) => this.showUpdate(update));
     this.instants = slider(0, Math.max(0, (this.cycle?.percents.length ?? 1) - 1), 1, 0, (instant) => this.showInstant(instant));
-    this.box.append(host, this.legend(), this.told, this.controls(), this.picked);
+    this.box.append(host, this.legend(), this.said, this.controls(), this.picked);
     this.listen();
     this.showUpdate(this.update);
   }
@@ -108,13 +108,19 @@ export class Viewer {
     if (pressed) {
       const found = forces(pressed, this.surface, this.share);
       this.stage?.press(found);
-      if (isRead) this.tell(cycle, instant, found);
+      if (isRead) this.describe(cycle, instant, found);
     }
     this.recolour();
-    this.onInstant(instant);
+    this.onPercent(cycle.percents[instant] ?? 0);
   }
 
-  // Values of all fields at a node, the update as shown.
+  // Shows the instant nearest to a percent of the cycle.
+  showPercent(percent: number): void {
+    const away = Array.from(this.cycle?.percents ?? [], (at) => Math.abs(at - percent));
+    if (away.length) this.showInstant(away.indexOf(Math.min(...away)));
+  }
+
+  // Values of all fields at a node, at the update that is shown.
   valuesAt(node: number): [string, number][] {
     const { fields } = this.scene.facts;
     return fields.map((name) => [name, this.scene.field(name, this.update)[node]!]);
@@ -124,7 +130,7 @@ export class Viewer {
     return this.field;
   }
 
-  // Looks from where another viewer is looked at, at the same field.
+  // Takes the view and the field of another viewer.
   lookAs(other: Viewer): void {
     if (other.stage) this.stage?.lookAs(other.stage);
     if (!this.scene.facts.fields.includes(other.field)) return;
@@ -137,15 +143,15 @@ export class Viewer {
     this.stage?.dispose();
   }
 
-  // While it plays words and controls change no more often than can be read: each change is painted.
+  // While the cycle plays, text and controls change no more often than can be read, since every change is painted.
   private isToBeRead(): boolean {
     const now = performance.now();
-    if (this.playing && now - this.toldAt < READ_MS) return false;
-    this.toldAt = now;
+    if (this.playing && now - this.saidAt < READ_MS) return false;
+    this.saidAt = now;
     return true;
   }
 
-  private tell({ facts, percents }: Cycle, instant: number, found: Force[]): void {
+  private describe({ facts, percents }: Cycle, instant: number, found: Force[]): void {
     const sides = found.map(({ newtons }) => `${Math.round(newtons)} N`).join(" and ");
     this.say(`${inDigits(percents[instant]!)} % of the ${facts.name} cycle${sides ? `: ${sides} on the surface` : ""}`);
   }
@@ -224,7 +230,7 @@ export class Viewer {
   }
 
   private say(words: string): void {
-    this.told.textContent = words;
+    this.said.textContent = words;
   }
 
   private shownFields(): [string, string][] {
@@ -242,11 +248,24 @@ export class Viewer {
     box.append(labelled("Colours show", this.fields), labelled("After update", this.updates));
     if (this.cycles.length) box.append(labelled("Through the gait cycle", this.instants), this.play);
     if (this.cycles.length > 1) box.append(labelled("Cycle", this.cycleChoice()));
-    box.append(labelled("Wear made larger", slider(1, 20, 1, 1, (times) => this.exaggerate(times))));
+    box.append(
+      labelled(
+        "Wear made larger",
+        slider(1, 20, 1, 1, (times) => this.exaggerate(times)),
+      ),
+    );
     box.append(labelled("Section at z", this.sectionSlider("z")), labelled("Section at x", this.sectionSlider("x")));
     if (this.scene.facts.has_femur) box.append(labelled("Femur", this.femurChoice()));
-    const maps: [string, string][] = [["viridis", "Viridis"], ["cividis", "Cividis"]];
-    box.append(labelled("Colour map", choice(maps, (map) => this.useMap(map as MapName))));
+    const maps: [string, string][] = [
+      ["viridis", "Viridis"],
+      ["cividis", "Cividis"],
+    ];
+    box.append(
+      labelled(
+        "Colour map",
+        choice(maps, (map) => this.useMap(map as MapName)),
+      ),
+    );
     box.append(element("div", { class: "views" }, ...this.viewButtons()));
     return box;
   }
@@ -270,7 +289,11 @@ export class Viewer {
   }
 
   private femurChoice(): HTMLSelectElement {
-    const options: [string, string][] = [["0.3", "see-through"], ["1", "solid"], ["0", "hidden"]];
+    const options: [string, string][] = [
+      ["0.3", "see-through"],
+      ["1", "solid"],
+      ["0", "hidden"],
+    ];
     return choice(options, (opacity) => this.stage?.showFemur(Number(opacity)));
   }
 
@@ -301,7 +324,7 @@ export class Viewer {
     let began = [0, 0];
     canvas.addEventListener("pointerdown", (event) => (began = [event.clientX, event.clientY]));
     canvas.addEventListener("pointerup", (event) => {
-      // A drag turns the bodies; a press without one picks.
+      // A drag turns the bodies; a click picks a point.
       if (Math.hypot(event.clientX - began[0]!, event.clientY - began[1]!) < 4) this.pick(event);
     });
   }
@@ -311,14 +334,14 @@ export class Viewer {
     if (node !== undefined) this.choose(node);
   }
 
-  // Picks the node nearest to x, z, mm, from above; none farther than a few millimetres.
+  // Picks the node nearest to x, z, mm, seen from above, within a few millimetres.
   pickAt(x: number, z: number): void {
     const away = (node: number) => Math.hypot(this.surface[3 * node]! - x, this.surface[3 * node + 2]! - z);
     const node = this.best((one) => -away(one));
     if (away(node) <= REACH_MM) this.choose(node);
   }
 
-  // Picks the node with the highest value of what is shown.
+  // Picks the node with the highest value of the field that is shown.
   pickHighest(): void {
     const values = this.shownValues();
     this.choose(this.best((node) => values[node]!));
@@ -330,7 +353,7 @@ export class Viewer {
     return best;
   }
 
-  // Where a node is, mm.
+  // The position of a node, mm.
   placeOf(node: number): [number, number, number] {
     return [...this.surface.subarray(3 * node, 3 * node + 3)] as [number, number, number];
   }
@@ -359,7 +382,7 @@ function cyclesOf(scene: Scene): Cycle[] {
   }));
 }
 
-// The update after so many cycles, or the nearest one that is there.
+// The available update nearest to a number of cycles.
 export function updateAfter(scene: Scene, cycles: number): number {
   const away = scene.facts.updates.map((after) => (after === null ? Infinity : Math.abs(after - cycles)));
   return Math.max(0, away.indexOf(Math.min(...away)));

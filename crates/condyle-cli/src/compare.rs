@@ -29,7 +29,7 @@ pub fn compare(arguments: &Compare) -> ExitCode {
         Err(error) => return fail(&error),
     };
     if out == default_folder(arguments) {
-        match condyle_report::write_report_of_what_can_be_read(&arguments.results) {
+        match condyle_report::write_readable_report(&arguments.results) {
             Ok((page, _)) => written.push(page),
             Err(error) => return exit::fail(error, exit::BAD_INPUT),
         }

@@ -25,7 +25,7 @@ pub fn plot(arguments: &Plot) -> ExitCode {
                     cargo install --path crates/condyle-cli --features png, or take SVG";
         return exit::fail(said, exit::BAD_INPUT);
     }
-    let results = match Results::read_what_can_be(&arguments.results) {
+    let results = match Results::read_readable(&arguments.results) {
         Ok(results) => results,
         Err(error) => return exit::fail(error, exit::BAD_INPUT),
     };

@@ -48,7 +48,7 @@ fn side_by_side(folders: &[PathBuf], arguments: &Report) -> ExitCode {
 }
 
 fn of_one(folder: &Path, has_pictures: bool) -> ExitCode {
-    let (page, left_out) = match condyle_report::write_report_of_what_can_be_read(folder) {
+    let (page, left_out) = match condyle_report::write_readable_report(folder) {
         Ok(written) => written,
         Err(error) => return exit::fail(error, exit::BAD_INPUT),
     };
@@ -56,18 +56,16 @@ fn of_one(folder: &Path, has_pictures: bool) -> ExitCode {
         tell(format_args!("warning: left out of the page: {why}"));
     }
     note_unfinished(folder);
-    let mut written = vec![Ok(page)];
+    let mut written = vec![page];
     if has_pictures {
-        written.push(condyle_report::write_wear_map(folder));
-        written.push(condyle_report::write_wear_curve(folder));
-        written.push(condyle_report::write_kinematics(folder));
-    }
-    let mut lines = Lines::default();
-    for file in written {
-        match file {
-            Ok(path) => lines.line(format_args!("wrote {}", path.display())),
+        match condyle_report::write_pictures(folder) {
+            Ok(pictures) => written.extend(pictures),
             Err(error) => return exit::fail(error, exit::BAD_INPUT),
         }
+    }
+    let mut lines = Lines::default();
+    for path in written {
+        lines.line(format_args!("wrote {}", path.display()));
     }
     output::print(lines.text())
 }

@@ -1,4 +1,4 @@
-//! Files that are whole or not there.
+//! Files that are written whole or not at all.
 
 use std::path::PathBuf;
 
@@ -6,10 +6,10 @@ use crate::error::ReportError;
 
 /// Writes a text and returns its path.
 pub(crate) fn write_text(path: PathBuf, text: &str) -> Result<PathBuf, ReportError> {
-    // Beside it and then in its place in one step: a stop leaves the old page or the new one.
-    let mut beside = path.clone().into_os_string();
-    beside.push(".part");
-    match std::fs::write(&beside, text).and_then(|()| std::fs::rename(&beside, &path)) {
+    // Written next to its place and renamed in one step: an interruption leaves the old file or the new one.
+    let mut part = path.clone().into_os_string();
+    part.push(".part");
+    match std::fs::write(&part, text).and_then(|()| std::fs::rename(&part, &path)) {
         Ok(()) => Ok(path),
         Err(source) => Err(ReportError::Write { path, source }),
     }

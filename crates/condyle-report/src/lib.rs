@@ -1,14 +1,16 @@
-//! From a results folder to a page and pictures; knows no solver.
+//! Reports of results folders as pages and pictures; this crate knows no solver.
 //!
-//! [`write_report`] makes `report.html`: one file, no network; it moves where there are scripts, and says the same
-//! without them. [`report_html`] is the still page alone.
-//! The pictures on it can also be had alone, as SVG files on white, for a README or a book.
-//! The same results folder gives the same bytes: the page names no path, no date and no wall time.
+//! [`write_report`] writes `report.html`: one file that requests nothing from a network, with bodies in 3-D and interactive
+//! charts, and with the same content in print and without scripts. [`report_html`] renders the page without scripts.
+//! The pictures of the page are available as SVG files on white, for a README or a book.
+//! The same results folder gives the same bytes: the page contains no path, date or wall time.
 
 pub mod bodies;
+mod charts;
 mod error;
 mod figure;
 mod file;
+mod maps;
 pub mod measured;
 mod number;
 mod page;
@@ -21,24 +23,17 @@ pub mod runs;
 pub mod scene;
 mod sheets;
 pub mod study;
+mod template;
 
 pub use condyle_fem::Vec3;
 pub use condyle_results::{Side, Summary};
 pub use error::ReportError;
 pub use page::{moving_report_html, report_html};
-pub use pictures::{
-    Picture, kinematics_svg, pictures, wear_curve_svg, wear_map_svg, write_kinematics,
-    write_wear_curve, write_wear_map,
-};
+pub use pictures::{Picture, picture_svg, pictures, write_pictures};
 pub use plots::{Plot, plots_svg};
 #[cfg(feature = "png")]
 pub use png::png;
-pub use results::{
-    contents::Results,
-    measure::{Extreme, Region},
-    surface::SurfaceFields,
-    table::Table,
-};
+pub use results::{Extreme, Region, Results, SurfaceFields, Table};
 
 use std::path::{Path, PathBuf};
 
@@ -47,7 +42,7 @@ use scene::Scene;
 
 /// Writes `report.html` into a results folder and returns its path.
 ///
-/// What the folder does not hold is left out of the page, which says so.
+/// Parts that the folder lacks are left out of the page, which names them.
 ///
 /// # Errors
 /// The folder is missing or holds no result at all, a file in it is damaged,
@@ -56,15 +51,13 @@ pub fn write_report(results_dir: &Path) -> Result<PathBuf, ReportError> {
     write_page(results_dir, &Results::read(results_dir)?)
 }
 
-/// Writes `report.html` of what can be read of a results folder; returns its path, and what is left out of it because it
-/// cannot be read.
+/// Writes `report.html` of the readable part of a results folder; returns its path, and the files that are left out with
+/// reasons.
 ///
 /// # Errors
 /// The folder is missing, nothing in it can be read, or the page cannot be written.
-pub fn write_report_of_what_can_be_read(
-    results_dir: &Path,
-) -> Result<(PathBuf, Vec<String>), ReportError> {
-    let results = Results::read_what_can_be(results_dir)?;
+pub fn write_readable_report(results_dir: &Path) -> Result<(PathBuf, Vec<String>), ReportError> {
+    let results = Results::read_readable(results_dir)?;
     let page = write_page(results_dir, &results)?;
     Ok((page, results.left_out))
 }

@@ -1,24 +1,32 @@
-//! Numbers as people read them.
+//! Numbers and units as text for readers.
+
+use condyle_results::split_unit;
 
 /// Joins groups of three digits without a line break.
 const THIN_SPACE: char = '\u{202f}';
 /// A minus as wide as a plus.
 const MINUS: char = '\u{2212}';
 
-/// `value` with so many decimals, a true minus, and thin spaces in numbers of five digits or more.
+/// Formats a value with fixed decimals, a true minus, and thin spaces in numbers of five digits or more.
 pub(crate) fn fixed(value: f64, decimals: usize) -> String {
     let text = format!("{:.decimals$}", value.abs());
-    let negative = value < 0.0 && text.bytes().any(|byte| (b'1'..=b'9').contains(&byte));
     let (whole, fraction) = text.split_at(text.find('.').unwrap_or(text.len()));
-    let sign = if negative {
-        String::from(MINUS)
-    } else {
-        String::new()
-    };
-    format!("{sign}{}{fraction}", grouped(whole))
+    let mut out = String::new();
+    // A number that is rounded to zero has no sign.
+    if value < 0.0 && text.bytes().any(|byte| (b'1'..=b'9').contains(&byte)) {
+        out.push(MINUS);
+    }
+    for (index, digit) in whole.chars().enumerate() {
+        let is_group = index > 0 && (whole.len() - index).is_multiple_of(3);
+        if whole.len() >= 5 && is_group {
+            out.push(THIN_SPACE);
+        }
+        out.push(digit);
+    }
+    out + fraction
 }
 
-/// `value` with so many significant digits, never in powers of ten.
+/// Formats a value with significant digits, never as a power of ten.
 pub(crate) fn significant(value: f64, digits: i32) -> String {
     if value == 0.0 || !value.is_finite() {
         return fixed(value, 0);
@@ -28,31 +36,23 @@ pub(crate) fn significant(value: f64, digits: i32) -> String {
 }
 
 /// A number of cycles in words: 5 million, 250 000, 1.
-pub(crate) fn cycles(count: f64) -> String {
-    if count >= 1e6 {
-        return format!("{} million", shortest(count / 1e6));
+pub(crate) fn cycles_in_words(count: f64) -> String {
+    if count < 1e6 {
+        return fixed(count, 0);
     }
-    fixed(count, 0)
+    let millions = fixed(count / 1e6, 3);
+    let shortest = millions.trim_end_matches('0').trim_end_matches('.');
+    format!("{shortest} million")
 }
 
-/// At most three decimals, without trailing zeros.
-pub(crate) fn shortest(value: f64) -> String {
-    let text = fixed(value, 3);
-    text.trim_end_matches('0').trim_end_matches('.').to_owned()
+/// The unit that a key ends in, as it is printed; empty for a pure number.
+pub(crate) fn printed_unit(key: &str) -> String {
+    with_powers(split_unit(key).1.unwrap_or_default())
 }
 
-fn grouped(digits: &str) -> String {
-    if digits.len() < 5 {
-        return digits.to_owned();
-    }
-    let mut out = String::new();
-    for (index, digit) in digits.chars().enumerate() {
-        if index > 0 && (digits.len() - index).is_multiple_of(3) {
-            out.push(THIN_SPACE);
-        }
-        out.push(digit);
-    }
-    out
+/// A text with the powers of its units as they are printed: mm2 is mm\u{b2}.
+pub(crate) fn with_powers(text: &str) -> String {
+    text.replace("mm2", "mm\u{b2}").replace("mm3", "mm\u{b3}")
 }
 
 #[cfg(test)]
@@ -76,8 +76,8 @@ mod tests {
 
     #[test]
     fn cycles_read_as_words() {
-        assert_eq!(cycles(5e6), "5 million");
-        assert_eq!(cycles(2.5e6), "2.5 million");
-        assert_eq!(cycles(500_000.0), "500\u{202f}000");
+        assert_eq!(cycles_in_words(5e6), "5 million");
+        assert_eq!(cycles_in_words(2.5e6), "2.5 million");
+        assert_eq!(cycles_in_words(500_000.0), "500\u{202f}000");
     }
 }

@@ -1,168 +1,115 @@
-//! The pictures of the report as SVG files of their own, on white.
+//! The pictures of the report as SVG files, on white.
 
 use std::path::{Path, PathBuf};
 
-use condyle_results::{KINEMATICS_PICTURE, MAP_PICTURES, SLIP_PATHS_PICTURE, WEAR_PICTURE};
+use condyle_results::{KINEMATICS_PICTURE, MAP_PICTURES, WEAR_PICTURE};
 
+use crate::charts;
 use crate::error::ReportError;
-use crate::figure::{Map, Panel, alone, sheet};
+use crate::figure::{MEASURED, Map, Panel, sheet, svg_file};
 use crate::file::write_text;
-use crate::page::{MAPS, kinematics_panels, slip_map, wear_map, wear_panels};
-use crate::results::contents::Results;
+use crate::maps::{self, MAPS};
+use crate::results::Results;
 
-/// Scale of the map, px per mm.
+/// Scale of the maps, px per mm.
 const PX_PER_MM: f64 = 8.0;
 
 /// A picture of the report as a file.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Picture {
-    /// Its name, without an ending.
+    /// The file name, without an ending.
     pub name: &'static str,
     /// The text of an SVG file.
     pub svg: String,
 }
 
-/// All pictures of a report that a folder has the numbers for: maps, slip paths, wear over cycles, motion
-/// and load.
+/// All pictures of a report that a folder has the numbers for: maps, slip paths, wear over the test, motion and load.
 pub fn pictures(results: &Results) -> Vec<Picture> {
-    let picture = |(name, svg): (&'static str, Option<String>)| Some(Picture { name, svg: svg? });
-    let others = [
-        (SLIP_PATHS_PICTURE, slip_map(results, PX_PER_MM, map_with)),
-        (WEAR_PICTURE, sheet_of_wear(&wear_panels(results))),
-        (
-            KINEMATICS_PICTURE,
-            sheet_of_motion(&kinematics_panels(results)),
-        ),
+    let maps = maps::drawn(&MAPS, results, PX_PER_MM, map_file).into_iter();
+    let maps = maps.map(|map| (map.file, Some(map.svg)));
+    let charts = [
+        (WEAR_PICTURE, wear_sheet(&charts::wear(results))),
+        (KINEMATICS_PICTURE, motion_sheet(&charts::cycle(results))),
     ];
-    // Both are in one order.
-    let maps = MAPS.iter().zip(MAP_PICTURES).map(|(map, name)| {
-        let surface = results.surface.as_ref();
-        let map = surface.and_then(|surface| map.drawn(surface, results.side, PX_PER_MM));
-        (name, map.map(|map| map_with(&map, &map.desc(), "")))
-    });
-    maps.chain(others).filter_map(picture).collect()
+    let all = maps.chain(charts);
+    all.filter_map(|(name, svg)| Some(Picture { name, svg: svg? }))
+        .collect()
 }
 
-fn map_with(map: &Map<'_>, desc: &str, over: &str) -> String {
-    alone(map.title, desc, map.size(), &(map.body() + over))
+fn map_file(map: &Map<'_>, desc: &str, over: &str) -> String {
+    svg_file(map.style.title, desc, map.size(), &(map.body() + over))
 }
 
-/// Curves over cycles as a file; `None` without any.
-fn sheet_of_wear(panels: &[Panel]) -> Option<String> {
-    let desc = "What wears against cycles.";
-    let run = ("last", "each dot is an update of the shape");
-    let key = [&[run][..], &measured(panels, "weighed")].concat();
+/// Charts over the test as a file; `None` without any.
+fn wear_sheet(panels: &[Panel]) -> Option<String> {
+    let mut key = vec![("last", "each dot is an update of the shape")];
+    key.extend(measured(panels, "weighed"));
+    let desc = "Wear against cycles.";
     (!panels.is_empty()).then(|| sheet("Wear over the test", desc, panels, 2, &key))
 }
 
-/// Motions and loads as a file; `None` without any.
-fn sheet_of_motion(panels: &[Panel]) -> Option<String> {
+/// Charts over the cycle as a file; `None` without any.
+fn motion_sheet(panels: &[Panel]) -> Option<String> {
+    let last = "last cycle, against % of the gait cycle";
+    let mut key = vec![("first", "first cycle"), ("last", last)];
+    key.extend(measured(panels, "measured"));
     let desc = "Motions and loads against percent of the gait cycle.";
-    let first = ("first", "first cycle");
-    let last = ("last", "last cycle, against % of the gait cycle");
-    let key = [&[first, last][..], &measured(panels, "measured")].concat();
     let title = "Motion and load in a gait cycle";
     (!panels.is_empty()).then(|| sheet(title, desc, panels, 3, &key))
 }
 
-/// The key of what was measured, where a panel has it.
-fn measured(panels: &[Panel], word: &'static str) -> Vec<(&'static str, &'static str)> {
-    const MEASURED: &str = "specimen";
+/// The entry of measured curves in the key, where a panel has some.
+fn measured(panels: &[Panel], word: &'static str) -> Option<(&'static str, &'static str)> {
     let mut curves = panels.iter().flat_map(|panel| &panel.curves);
     let is_there = curves.any(|curve| curve.class == MEASURED);
-    Vec::from_iter(is_there.then_some((MEASURED, word)))
+    is_there.then_some((MEASURED, word))
 }
 
-/// The wear map of the last update as the text of an SVG file.
+/// The text of the SVG file of a picture, by its name.
 ///
 /// # Errors
-/// The folder cannot be read, or holds no mesh with `wear_depth_mm`.
-pub fn wear_map_svg(results_dir: &Path) -> Result<String, ReportError> {
+/// The folder cannot be read, or lacks the numbers of the picture.
+pub fn picture_svg(results_dir: &Path, name: &'static str) -> Result<String, ReportError> {
     let results = Results::read(results_dir)?;
-    if results.surface.is_none() {
-        return Err(missing(results_dir, "insert_0000.vtu", "the wear map"));
+    let mut drawn = pictures(&results).into_iter();
+    if let Some(picture) = drawn.find(|picture| picture.name == name) {
+        return Ok(picture.svg);
     }
-    let map = wear_map(&results, PX_PER_MM).ok_or_else(|| ReportError::MissingField {
-        path: results_dir.join("insert_*.vtu"),
-        field: "wear_depth_mm",
-    })?;
-    Ok(alone(map.title, &map.desc(), map.size(), &map.body()))
-}
-
-/// Mass loss and maximum depth against cycles as the text of an SVG file.
-///
-/// # Errors
-/// The folder cannot be read, or holds no wear.csv with these columns.
-pub fn wear_curve_svg(results_dir: &Path) -> Result<String, ReportError> {
-    const PICTURE: &str = "the wear curve";
-    let results = Results::read(results_dir)?;
-    if results.wear.is_none() {
-        return Err(missing(results_dir, "wear.csv", PICTURE));
+    let (file, is_there, content) = match name {
+        WEAR_PICTURE => (
+            "wear.csv",
+            results.wear.is_some(),
+            "rows of cycles, mass_loss_mg",
+        ),
+        KINEMATICS_PICTURE => {
+            let content = "rows of percent, flexion_deg, axial_force_n, ap_mm";
+            ("kinematics.csv", results.kinematics.is_some(), content)
+        }
+        _ => {
+            let content = "point data of its field, such as `wear_depth_mm`";
+            ("insert_*.vtu", results.surface.is_some(), content)
+        }
+    };
+    let path = results_dir.join(file);
+    if is_there {
+        let problem = format!("has no {content}, which the picture {name} needs");
+        return Err(ReportError::content(&path, problem));
     }
-    let mut panels = wear_panels(&results);
-    panels.truncate(2);
-    if panels.is_empty() {
-        let path = results_dir.join("wear.csv");
-        let columns = "cycles, mass_loss_mg, max_depth_mm";
-        return Err(ReportError::MissingColumns {
-            path,
-            columns,
-            picture: PICTURE,
-        });
-    }
-    Ok(sheet_of_wear(&panels).unwrap_or_default())
-}
-
-/// Motions and loads of the first and last cycle as the text of an SVG file.
-///
-/// # Errors
-/// The folder cannot be read, or holds no kinematics.csv with `percent` and a known channel.
-pub fn kinematics_svg(results_dir: &Path) -> Result<String, ReportError> {
-    const PICTURE: &str = "the picture of the kinematics";
-    let results = Results::read(results_dir)?;
-    if results.kinematics.is_none() {
-        return Err(missing(results_dir, "kinematics.csv", PICTURE));
-    }
-    sheet_of_motion(&kinematics_panels(&results)).ok_or_else(|| ReportError::MissingColumns {
-        path: results_dir.join("kinematics.csv"),
-        columns: "percent, flexion_deg, axial_force_n, ap_mm, ie_deg",
-        picture: PICTURE,
+    Err(ReportError::MissingFile {
+        path,
+        picture: name,
     })
 }
 
-/// Writes `wear_map.svg` into a results folder and returns its path.
+/// Writes `wear_map.svg`, `wear.svg` and `kinematics.svg` into a results folder and returns the paths.
 ///
 /// # Errors
-/// As [`wear_map_svg`], or the file cannot be written.
-pub fn write_wear_map(results_dir: &Path) -> Result<PathBuf, ReportError> {
-    write_text(
-        results_dir.join("wear_map.svg"),
-        &wear_map_svg(results_dir)?,
-    )
-}
-
-/// Writes `wear.svg` into a results folder and returns its path.
-///
-/// # Errors
-/// As [`wear_curve_svg`], or the file cannot be written.
-pub fn write_wear_curve(results_dir: &Path) -> Result<PathBuf, ReportError> {
-    write_text(results_dir.join("wear.svg"), &wear_curve_svg(results_dir)?)
-}
-
-/// Writes `kinematics.svg` into a results folder and returns its path.
-///
-/// # Errors
-/// As [`kinematics_svg`], or the file cannot be written.
-pub fn write_kinematics(results_dir: &Path) -> Result<PathBuf, ReportError> {
-    write_text(
-        results_dir.join("kinematics.svg"),
-        &kinematics_svg(results_dir)?,
-    )
-}
-
-fn missing(folder: &Path, name: &str, picture: &'static str) -> ReportError {
-    ReportError::MissingFile {
-        path: folder.join(name),
-        picture,
-    }
+/// As [`picture_svg`], or a file cannot be written.
+pub fn write_pictures(results_dir: &Path) -> Result<Vec<PathBuf>, ReportError> {
+    let write = |name| {
+        let path = results_dir.join(format!("{name}.svg"));
+        write_text(path, &picture_svg(results_dir, name)?)
+    };
+    let names = [MAP_PICTURES[0], WEAR_PICTURE, KINEMATICS_PICTURE];
+    names.into_iter().map(write).collect()
 }

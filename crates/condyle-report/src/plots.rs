@@ -1,90 +1,65 @@
-//! Plots of lines that stand alone, for studies over runs.
+//! Plots of lines as a file, for studies over runs.
 
 use crate::figure::{Axis, Curve, Panel, sheet};
 
 /// Width and height of a plot, px.
 const SIZE: (f64, f64) = (480.0, 232.0);
-/// Plots beside each other.
+/// Plots in a row.
 const COLUMNS: usize = 2;
-/// Steps of the horizontal axis, at most.
+/// Most steps of the horizontal axis.
 const MAX_INTERVALS: usize = 5;
 
-/// A plot of one line with a dot at every point, and of another to hold it against.
+/// A plot of one line with a dot at every point, and of a reference.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Plot {
-    /// What is plotted.
+    /// The quantity.
     pub title: String,
     /// Its unit.
     pub unit: String,
-    /// What the horizontal axis shows; may be empty.
+    /// Title of the horizontal axis; may be empty.
     pub x_title: &'static str,
-    /// Ticks of the horizontal axis, where and their texts; round numbers if empty.
+    /// Ticks of the horizontal axis with their texts; round numbers if empty.
     pub x_marks: Vec<(f64, String)>,
     /// Whether the vertical axis starts at 0.
     pub from_zero: bool,
-    /// The least that the vertical axis spans, so that noise does not fill the picture.
+    /// The smallest span of the vertical axis, so that noise does not fill the picture.
     pub least_span: f64,
-    /// The line to hold it against, (x, y); may be empty.
+    /// The reference line, (x, y); may be empty.
     pub reference: Vec<(f64, f64)>,
     /// The line itself, (x, y).
     pub line: Vec<(f64, f64)>,
 }
 
-/// The text of an SVG file with `plots` two in a row; `keys` says what the reference and the line are.
+/// Draws an SVG file with `plots` two in a row; `keys` names the reference and the line.
 pub fn plots_svg(title: &str, plots: &[Plot], keys: [&str; 2]) -> String {
-    let panels: Vec<Panel> = plots.iter().enumerate().map(panel).collect();
+    let panels: Vec<Panel> = plots.iter().map(panel).collect();
     let names: Vec<&str> = plots.iter().map(|plot| plot.title.as_str()).collect();
     let desc = format!("{}: {}", title, names.join(", "));
     let key = [("first", keys[0]), ("last", keys[1])];
-    let used = usize::from(plots.iter().all(|plot| plot.reference.is_empty()));
+    let has_no_reference = plots.iter().all(|plot| plot.reference.is_empty());
+    let used = usize::from(has_no_reference);
     sheet(title, &desc, &panels, COLUMNS, &key[used..])
 }
 
-fn panel((index, plot): (usize, &Plot)) -> Panel {
+fn panel(plot: &Plot) -> Panel {
+    let x = plot.line.iter().chain(&plot.reference).map(|point| point.0);
     Panel {
-        id: format!("plot-{index}"),
         title: plot.title.clone(),
         unit: plot.unit.clone(),
-        positive: String::new(),
-        x: horizontal(plot),
+        x: match plot.x_marks.as_slice() {
+            [] => Axis::over(x, 1e-6, MAX_INTERVALS),
+            _ => Axis::around(x, 0.04),
+        },
         x_marks: plot.x_marks.clone(),
-        x_unit: "",
         x_title: plot.x_title.to_owned(),
         size: SIZE,
         from_zero: plot.from_zero,
-        least_span: plot.least_span,
+        min_span: plot.least_span,
         curves: vec![
-            curve("first", &plot.reference, false),
-            curve("last", &plot.line, true),
+            Curve::new("first", plot.reference.clone()),
+            Curve::new("last", plot.line.clone()).dotted(),
         ],
-        desc: format!("{} in {}.", plot.title, plot.unit),
-    }
-}
-
-fn curve(class: &'static str, points: &[(f64, f64)], dots: bool) -> Curve {
-    Curve {
-        class,
-        points: points.to_vec(),
-        dots,
-        end: None,
-    }
-}
-
-/// Round numbers around all points; with marks of its own, the tightest range with a little room.
-fn horizontal(plot: &Plot) -> Axis {
-    const ROOM: f64 = 0.04;
-    let points = || plot.line.iter().chain(&plot.reference).map(|point| point.0);
-    let low = points().fold(f64::INFINITY, f64::min);
-    let high = points().fold(f64::NEG_INFINITY, f64::max);
-    if plot.x_marks.is_empty() {
-        return Axis::covering(low, high, 1e-6, MAX_INTERVALS);
-    }
-    let room = ROOM * (high - low).max(1e-6);
-    let (low, high) = (low - room, high + room);
-    Axis {
-        low,
-        high,
-        step: high - low,
+        ..Panel::default()
     }
 }
 

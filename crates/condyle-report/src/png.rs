@@ -39,7 +39,7 @@ pub fn png(svg: &str, dots: f32) -> Option<Vec<u8>> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::figure::alone;
+    use crate::figure::svg_file;
 
     const WHITE: [u8; 4] = [255; 4];
 
@@ -57,7 +57,7 @@ mod tests {
         let letters = "Wear \u{2212}0.4 mm\u{b2}";
         let lettered = format!(r#"{square}<text x="10" y="80">{letters}</text>"#);
         let [bare, shape, both] =
-            ["", square, &lettered].map(|body| inked(&alone("a", "b", (200.0, 100.0), body)));
+            ["", square, &lettered].map(|body| inked(&svg_file("a", "b", (200.0, 100.0), body)));
         assert_eq!(bare, 0);
         assert!(shape > 100 && both > shape + 100, "{shape} {both}");
         assert!(png("no picture", 1.0).is_none());

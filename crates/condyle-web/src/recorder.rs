@@ -6,7 +6,7 @@ use condyle::{evolve::March, geometry::TriangleMesh};
 use condyle_case::case::Side;
 use condyle_lab::RunKeeper;
 use condyle_report::{
-    Table,
+    Results, Table,
     scene::{Scene, SceneBody, SceneCycle},
 };
 use condyle_results::{
@@ -61,10 +61,11 @@ impl Recorder {
             cycle.add_pressures(pressures);
         }
         let wear = wear_csv(&march.state().updates);
-        self.scene.tables = vec![
-            ("wear", table(&wear, "wear.csv")),
-            ("kinematics", table(&kinematics, "kinematics.csv")),
-        ];
+        self.scene.add_charts(&Results {
+            wear: Some(table(&wear, "wear.csv")),
+            kinematics: Some(table(&kinematics, "kinematics.csv")),
+            ..Results::default()
+        });
     }
 }
 

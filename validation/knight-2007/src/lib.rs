@@ -78,7 +78,7 @@ pub fn study(
         &files.out.join("results.json"),
         &json(stamp, &findings, &rows),
     )?;
-    let map = condyle_report::wear_map_svg(&reference(&force).folder)?;
+    let map = condyle_report::picture_svg(&reference(&force).folder, "wear_map")?;
     write(&files.out.join("wear-map.svg"), &map)?;
     let depth = runs::depth_svg(&force, &displacement)?;
     write(&files.out.join("wear-over-cycles.svg"), &depth)?;

@@ -1,4 +1,4 @@
-// Numbers in the text of a case, found and changed where they stand; the rest of the text stays as it is.
+// Finds and changes numbers in the text of a case; the rest of the text stays as it is.
 
 export interface Place {
   // The table by its name, such as `machine.axial_force`.
@@ -6,14 +6,14 @@ export interface Place {
   key: string;
 }
 
-// Of a table, or of one of a list of tables; rows of numbers over several lines are no headings.
+// The heading of a table or of an item of a list of tables; rows of numbers over several lines are none.
 const HEADING = /^\s*\[\[?\s*([A-Za-z_][\w.-]*)\s*\]\]?\s*(#.*)?$/;
 
 export function headingOf(line: string): string | undefined {
   return HEADING.exec(line)?.[1];
 }
 
-// The table that a line is in; none before the first.
+// The table of a line; empty before the first heading.
 export function tableAt(lines: string[], line: number): string {
   for (let i = line; i >= 0; i--) {
     const heading = headingOf(lines[i]!);
@@ -23,7 +23,7 @@ export function tableAt(lines: string[], line: number): string {
 }
 
 // The text of a value, without quotes around it.
-export function valueOf(text: string, place: Place): string | undefined {
+export function valueAt(text: string, place: Place): string | undefined {
   const lines = text.split("\n");
   const line = lineOf(lines, place);
   if (line === undefined) return undefined;
@@ -32,17 +32,17 @@ export function valueOf(text: string, place: Place): string | undefined {
 }
 
 export function numberOf(text: string, place: Place): number | undefined {
-  const value = Number(valueOf(text, place)?.replaceAll("_", ""));
+  const value = Number(valueAt(text, place)?.replaceAll("_", ""));
   return Number.isFinite(value) ? value : undefined;
 }
 
-// The text with a value in place of the one that stands there, or added to its table.
+// The text with a value replaced, or added to its table.
 export function withValue(text: string, place: Place, value: string): string {
   const lines = text.split("\n");
   const line = lineOf(lines, place);
   if (line !== undefined) {
     const { before, value: old, after } = parts(lines[line]!);
-    // A remark behind it stays in its column.
+    // A comment after it stays in its column.
     const gap = Math.max(1, /^\s*/.exec(after)![0].length + old.length - value.length);
     lines[line] = before + value + (after.trim() ? " ".repeat(gap) + after.trim() : "");
     return lines.join("\n");
@@ -69,7 +69,7 @@ function parts(line: string): { before: string; value: string; after: string } {
   return { before: before!, value: value!, after: after! };
 }
 
-// Behind the last line of a table that is neither empty nor a remark.
+// After the last line of a table that is neither empty nor a comment.
 function endOfTable(lines: string[], heading: number): number {
   let last = heading;
   for (let i = heading + 1; i < lines.length && headingOf(lines[i]!) === undefined; i++) {

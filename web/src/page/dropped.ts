@@ -1,7 +1,7 @@
-// Files that somebody drops on the page or chooses: two meshes, or a case.
+// Files that are dropped on the page or chosen: two meshes, or a case.
 
 import { button, element } from "../dom";
-import type { Files } from "./memory_files";
+import type { Files } from "./wasi";
 
 export interface Bodies {
   femur: string;
@@ -22,7 +22,7 @@ export interface Hears {
   refused(why: string): void;
 }
 
-// Takes what is dropped anywhere on the page.
+// Takes files that are dropped anywhere on the page.
 export function takeDropped(hears: Hears): void {
   const over = (event: DragEvent) => {
     event.preventDefault();
@@ -51,7 +51,7 @@ export async function take(files: File[], hears: Hears): Promise<void> {
   hears.bodies({ femur: femur.name, insert: insert.name, files: { [femur.name]: await bytes(femur), [insert.name]: await bytes(insert) } });
 }
 
-// Which of two files is the femur, where exactly one way fits their names.
+// The femur among two files, if exactly one assignment fits their names.
 export function femurByName<Named extends { name: string }>(one: Named, other: Named): Named | undefined {
   const fits = (femur: Named, insert: Named) => NAMED.some(([body, words]) => words.test((body === "femur" ? femur : insert).name));
   const [first, second] = [fits(one, other), fits(other, one)];
@@ -59,7 +59,7 @@ export function femurByName<Named extends { name: string }>(one: Named, other: N
   return first ? one : other;
 }
 
-// Asks which of two files is the femur; none where the question is closed.
+// Asks which of two files is the femur; undefined if the dialog is closed.
 function askFemur(one: File, other: File): Promise<File | undefined> {
   return new Promise((done) => {
     const dialog = element("dialog", { "aria-label": "Which file is the femoral component?" });
@@ -68,7 +68,7 @@ function askFemur(one: File, other: File): Promise<File | undefined> {
       done(femur);
     };
     dialog.append(
-      element("p", {}, "Which file is the femoral component? The names do not tell."),
+      element("p", {}, "Which file is the femoral component? The names do not show it."),
       ...[one, other].map((file) => button(file.name, () => answer(file))),
       button("Neither", () => answer()),
     );

@@ -1,4 +1,4 @@
-// The case as text: line numbers, what is wrong at its place, completion of tables, keys and words.
+// The case as text: line numbers, errors at their lines, completion of tables, keys and words.
 
 import { element } from "../dom";
 import { headingOf, keyOf, tableAt } from "./case_text";
@@ -10,7 +10,14 @@ const MAX_OFFERS = 12;
 
 export class Editor {
   readonly box = element("div", { class: "editor" });
-  private readonly input = element("textarea", { id: "case-text", spellcheck: "false", autocapitalize: "off", wrap: "off", "aria-label": "The case as text; Ctrl and space offer words", "aria-describedby": "case-help" });
+  private readonly input = element("textarea", {
+    id: "case-text",
+    spellcheck: "false",
+    autocapitalize: "off",
+    wrap: "off",
+    "aria-label": "The case as text; Ctrl and space offer words",
+    "aria-describedby": "case-help",
+  });
   private readonly gutter = element("div", { class: "gutter", "aria-hidden": "true" });
   private readonly help = element("p", { id: "case-help", class: "note", "aria-live": "polite" });
   private readonly list = element("ul", { class: "offers", role: "listbox", hidden: true });
@@ -39,7 +46,7 @@ export class Editor {
     return this.input.value;
   }
 
-  // Shows a text that did not come from here.
+  // Shows a text from elsewhere.
   set text(text: string) {
     const { selectionStart, scrollTop } = this.input;
     this.input.value = text;
@@ -48,7 +55,7 @@ export class Editor {
     this.number([]);
   }
 
-  // Shows what is wrong, at its lines; nothing where all is well.
+  // Shows errors at their lines; null if there are none.
   tell(failure: Failure | null): void {
     const problems = failure?.problems ?? [];
     this.number(problems);
@@ -88,7 +95,7 @@ export class Editor {
     this.help.textContent = (key && this.schema.about(tableAt(lines, line), key)) ?? "";
   }
 
-  // Offers what may stand at the caret; unasked, only once a word has begun.
+  // Offers words for the caret; without a request, only once a word has begun.
   private offer(isAsked: boolean): void {
     const { lines, line, before } = this.caret();
     const table = tableAt(lines, headingOf(lines[line]!) === undefined ? line : line - 1);
@@ -111,7 +118,12 @@ export class Editor {
 
   private showOffers(): void {
     const items = this.offers.map(({ word, about }, index) =>
-      element("li", { role: "option", "aria-selected": String(index === this.chosen), pointerdown: (event) => this.take(index, event) }, element("b", {}, word), ` ${about}`),
+      element(
+        "li",
+        { role: "option", "aria-selected": String(index === this.chosen), pointerdown: (event) => this.take(index, event) },
+        element("b", {}, word),
+        ` ${about}`,
+      ),
     );
     this.list.replaceChildren(...items);
     this.list.hidden = items.length === 0;

@@ -1,7 +1,7 @@
-// The case that is being worked on, and its runs.
+// The present case and its runs.
 
 import { Scene } from "../scene";
-import type { Files } from "./memory_files";
+import type { Files } from "./wasi";
 import type { Summary } from "./numbers";
 import type { Failure, Told } from "./program";
 import type { Found } from "./shown_run";
@@ -9,14 +9,14 @@ import { Solver } from "./solver";
 import type { Bodies } from "./dropped";
 
 const CASE = "case.toml";
-// A slider that still moves starts no run.
+// Pause after a change before a run starts, ms: a moving slider starts none.
 const PATIENCE_MS = 120;
 
 export interface Hears {
   told(told: Told): void;
   found(found: Found): void;
   failed(failure: Failure | null): void;
-  // Whether a run is on its way.
+  // Called with whether a run is in progress.
   busy(isBusy: boolean): void;
 }
 
@@ -37,7 +37,7 @@ export class Laboratory {
     this.checks = new Solver(module);
   }
 
-  // Checks a changed text, and runs it once it stays as it is.
+  // Checks a changed text and runs it once it no longer changes.
   change(text: string): void {
     this.text = text;
     this.cancel();
@@ -61,7 +61,7 @@ export class Laboratory {
     this.hears.found({ scene: new Scene(scene.buffer as ArrayBuffer), summary: JSON.parse(decode(summary)) as Summary });
   }
 
-  // A case of two meshes, with unit and axes as condyle finds them.
+  // A case of two meshes, with unit and axes as condyle detects them.
   async draft({ femur, insert, files }: Bodies): Promise<string | undefined> {
     this.cancel();
     this.hears.busy(true);
@@ -75,7 +75,7 @@ export class Laboratory {
     return decode(drafted);
   }
 
-  // The results folder of the case; what it has is what the command writes.
+  // The results folder of the case, as the command writes it.
   async kept(folder: string): Promise<Files | undefined> {
     this.cancel();
     this.hears.busy(true);
@@ -86,7 +86,7 @@ export class Laboratory {
     return answer.failure ? undefined : answer.files;
   }
 
-  // What the case needs besides its text, to be saved with it.
+  // The meshes that the case names.
   get meshes(): Files {
     return this.bodies;
   }

@@ -1,4 +1,4 @@
-// The numbers of a run: those of summary.json, with their errors; and two runs beside each other.
+// The numbers of a run from summary.json with their errors, and the comparison of two runs.
 
 import { element } from "../dom";
 import { inDigits } from "../quantities";
@@ -10,7 +10,7 @@ export interface Summary extends Numbers {
   warnings: string[];
 }
 
-function valueOf(summary: Summary, { key, isShare }: Headline): number {
+function shownValue(summary: Summary, { key, isShare }: Headline): number {
   const value = summary[key] ?? NaN;
   return isShare ? 100 * value : value;
 }
@@ -32,7 +32,7 @@ function capital(label: string): string {
 export function tiles(summary: Summary): HTMLElement[] {
   return HEADLINES.map((headline) => {
     const { key, label, unit } = headline;
-    const shown = inDigits(valueOf(summary, headline));
+    const shown = inDigits(shownValue(summary, headline));
     const value = element("dd", { "data-number": key }, shown, element("span", {}, ` ${printed(unit)}`));
     const error = errorOf(summary, key);
     if (error !== undefined) value.append(element("small", {}, `± ${Number(error.toPrecision(2))} ${printed(unit)} by discretisation`));
@@ -40,18 +40,18 @@ export function tiles(summary: Summary): HTMLElement[] {
   });
 }
 
-// What makes the run doubtful, and what was put right on the way in.
+// Plausibility warnings, and warnings from reading the case.
 export function doubts({ plausibility, warnings }: Summary): HTMLElement[] {
   const doubtful = plausibility.map(({ message, advice }) => element("li", {}, element("strong", {}, message), ` ${advice}`));
   return [...doubtful, ...warnings.map((warning) => element("li", {}, warning))];
 }
 
-// Two runs and by how much the second differs.
+// Two runs and the difference of the second from the first.
 export function comparison(kept: Summary, now: Summary): HTMLTableElement {
   const cells = (tag: "th" | "td", words: string[]) => words.map((text) => element(tag, {}, text));
-  const head = element("tr", {}, ...cells("th", ["", "kept", "now", "difference"]));
+  const head = element("tr", {}, ...cells("th", ["", "kept", "present", "difference"]));
   const rows = HEADLINES.map((headline) => {
-    const [before, after] = [valueOf(kept, headline), valueOf(now, headline)];
+    const [before, after] = [shownValue(kept, headline), shownValue(now, headline)];
     const change = before === 0 ? "–" : `${inDigits(100 * (after / before - 1))} %`;
     const named = element("th", { scope: "row" }, `${capital(headline.label)}, ${printed(headline.unit)}`);
     return element("tr", {}, named, ...cells("td", [inDigits(before), inDigits(after), change]));

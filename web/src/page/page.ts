@@ -1,10 +1,11 @@
-// The laboratory as a web page: a case, its run, and what can be changed of both.
+// The laboratory as a web page: a case, its run, and the controls of both.
 
 import plotStyle from "uplot/dist/uPlot.min.css";
 import { element } from "../dom";
 import { Plot } from "../plots";
-import { inDigits, quantity } from "../quantities";
+import { inDigits } from "../quantities";
 import { save, saveText } from "../save";
+import type { Scene } from "../scene";
 import viewStyle from "../style.css";
 import schema from "../../../cases/condyle.schema.json";
 import genericCase from "../../../cases/stanmore-force.toml";
@@ -19,8 +20,8 @@ import { ShownRun, type Found } from "./shown_run";
 import { Sliders } from "./sliders";
 import { zip } from "./zip";
 
-const BLUE = "#2f6db5";
-const GREY = "#8a8f96";
+// Charts that are drawn for the kept run and the present one together.
+const COMPARED = ["w-mass_loss_mg", "w-max_depth_mm"];
 
 function byId(id: string): HTMLElement {
   return document.getElementById(id)!;
@@ -37,7 +38,7 @@ class Page {
   private runs = 0;
 
   constructor(module: WebAssembly.Module) {
-    // The first line names a schema file for editors of the disk.
+    // The first line names a schema file for editors on the disk.
     const text = genericCase.replace(/^#:schema.*\n/, "");
     this.laboratory = new Laboratory(module, text, {
       told: (told) => this.hear(told),
@@ -45,7 +46,10 @@ class Page {
       failed: (failure) => this.fail(failure),
       busy: (isBusy) => document.documentElement.toggleAttribute("data-busy", isBusy),
     });
-    this.sliders = new Sliders(() => this.laboratory.text, (text) => this.change(text));
+    this.sliders = new Sliders(
+      () => this.laboratory.text,
+      (text) => this.change(text),
+    );
     this.editor = new Editor(new CaseSchema(schema), (text) => this.typed(text));
     this.editor.text = text;
     byId("text").append(this.editor.box);
@@ -61,8 +65,8 @@ class Page {
 
   private buttons(): void {
     const pressed: Record<string, () => unknown> = {
-      "cancel": () => (this.laboratory.cancel(), this.say("The run is stopped; what is shown is the run before it.")),
-      "keep": () => this.keep(),
+      cancel: () => this.cancel(),
+      keep: () => this.keep(),
       "save-case": () => saveText("case.toml", this.laboratory.text, "text/plain"),
       "save-results": () => this.saveResults(),
       "save-report": () => this.saveReport(),
@@ -104,10 +108,11 @@ class Page {
 
   private hear({ reached, remark, warning }: Told): void {
     if (remark) byId("remarks").append(element("li", {}, remark));
-    // A warning is told again by the summary.
+    // The summary repeats the warning.
     else if (warning) this.say(warning);
-    else if (reached) this.reach(reached.cycles / reached.of_cycles, `${inDigits(reached.cycles / 1e6)} of ${inDigits(reached.of_cycles / 1e6)} million cycles`);
-    else this.reach(1, "All cycles are done; how accurate they are is being estimated");
+    else if (reached)
+      this.reach(reached.cycles / reached.of_cycles, `${inDigits(reached.cycles / 1e6)} of ${inDigits(reached.of_cycles / 1e6)} million cycles`);
+    else this.reach(1, "All cycles are done; their accuracy is being estimated");
   }
 
   private reach(part: number, words: string): void {
@@ -137,7 +142,12 @@ class Page {
     this.editor.tell(failure);
     byId("failure").hidden = !failure;
     byId("failure").textContent = failure?.message ?? "";
-    if (failure) this.say("This case does not run; what is shown is the run before it.");
+    if (failure) this.say("This case does not run; the previous run is shown.");
+  }
+
+  private cancel(): void {
+    this.laboratory.cancel();
+    this.say("The run is stopped; the previous run is shown.");
   }
 
   private keep(): void {
@@ -151,31 +161,15 @@ class Page {
     const { kept, now } = this;
     if (!kept || !now) return;
     this.plots.forEach((plot) => plot.dispose());
-    this.plots = ["mass_loss_mg", "max_depth_mm"].map((name) => this.beside(kept, now, name));
+    this.plots = COMPARED.flatMap((id) => beside(kept.scene, now.scene, id));
     byId("compared").replaceChildren(comparison(kept.summary, now.summary), ...this.plots.map((plot) => plot.box));
-  }
-
-  private beside(kept: Found, now: Found, name: string): Plot {
-    const of = ({ scene }: Found, column: string) => [0, ...scene.column("wear", column)];
-    const at = [...new Set([...of(kept, "cycles"), ...of(now, "cycles")])].sort((a, b) => a - b);
-    const values = (found: Found) => at.map((cycles) => of(found, name)[of(found, "cycles").indexOf(cycles)] ?? null);
-    return new Plot({
-      title: quantity(name).label,
-      across: { name: "cycles", label: "Million cycles", unit: "" },
-      up: quantity(name),
-      at: at.map((cycles) => cycles / 1e6),
-      curves: [
-        { name: "kept", colour: GREY, values: values(kept) },
-        { name: "now", colour: BLUE, values: values(now) },
-      ],
-    });
   }
 
   private async saveResults(): Promise<void> {
     const files = await this.laboratory.kept("results");
     if (!files) return;
     save("results.zip", await zip(files));
-    this.say("results.zip is saved: unpacked, it is a folder that the command reads");
+    this.say("results.zip is saved: unpacked, it is a folder for the command");
   }
 
   private async saveReport(): Promise<void> {
@@ -187,9 +181,24 @@ class Page {
   }
 }
 
+// A chart of two runs; none where one of them lacks it.
+function beside(kept: Scene, now: Scene, id: string): Plot[] {
+  const [before, after] = [kept, now].map((scene) => scene.charts().find((chart) => chart.id === id));
+  const [first, last] = [before?.curves.at(-1), after?.curves.at(-1)];
+  if (!before || !after || !first || !last) return [];
+  // Both in the unit of the present run.
+  const scale = before.cycles_per_x / after.cycles_per_x;
+  const x = Array.from(first.x, (at) => at * scale);
+  const curves = [
+    { ...first, x, name: "kept", style: "first" },
+    { ...last, name: "present", style: "last" },
+  ];
+  return [new Plot({ ...after, curves })];
+}
+
 async function compiled(): Promise<WebAssembly.Module> {
   const response = await fetch("condyle-web.wasm");
-  if (!response.ok) throw new Error(`condyle-web.wasm: the server says ${response.status}`);
+  if (!response.ok) throw new Error(`condyle-web.wasm: the server answers ${response.status}`);
   return WebAssembly.compile(await response.arrayBuffer());
 }
 

@@ -1,7 +1,6 @@
-// One call of the program: words and files in, files and what was told out.
+// One call of the program: words and files as input, files and messages as output.
 
-import { MemoryFiles, type Files } from "./memory_files";
-import { Wasi } from "./wasi";
+import { Wasi, type Files } from "./wasi";
 
 export interface Wrong {
   message: string;
@@ -27,7 +26,7 @@ export interface Told {
 export interface Call {
   words: string[];
   files: Files;
-  // The folder, or the file, that is wanted back.
+  // The folder or file to return.
   wanted: string;
 }
 
@@ -37,9 +36,8 @@ export interface Answer {
 }
 
 export function call(module: WebAssembly.Module, { words, files, wanted }: Call, told: (told: Told) => void): Answer {
-  const memory = new MemoryFiles(files);
   let failure: Failure | null = null;
-  const wasi = new Wasi(["condyle-web", ...words], memory, (line) => {
+  const wasi = new Wasi(["condyle-web", ...words], files, (line) => {
     const heard = JSON.parse(line) as Told | "estimating";
     if (heard === "estimating") return told({});
     if (heard.failed) failure = heard.failed;
@@ -47,14 +45,13 @@ export function call(module: WebAssembly.Module, { words, files, wanted }: Call,
   });
   try {
     const code = wasi.run(module);
-    if (code !== 0 && !failure) failure = wordless(wasi.said || `the program ended with ${code}`);
+    if (code !== 0 && !failure) failure = internal(wasi.errors || `the program ended with ${code}`);
   } catch (thrown) {
-    failure = wordless(`${wasi.said}\n${String(thrown)}`);
+    failure = internal(`${wasi.errors}\n${String(thrown)}`);
   }
-  const one = memory.whole(wanted);
-  return { files: one ? { [wanted]: one } : memory.inFolder(wanted), failure };
+  return { files: wasi.at(wanted), failure };
 }
 
-function wordless(words: string): Failure {
+function internal(words: string): Failure {
   return { message: `error in condyle itself: ${words.trim()}`, problems: [] };
 }

@@ -3,7 +3,7 @@
 export interface Schema {
   properties?: Record<string, Schema>;
   items?: Schema;
-  // A key that means something else for each shape, law or model.
+  // The meanings of a key that depends on shape, law or model.
   anyOf?: Schema[];
   enum?: unknown[];
   description?: string;
@@ -11,7 +11,7 @@ export interface Schema {
 }
 
 export interface Offer {
-  // What is written.
+  // The text to insert.
   word: string;
   about: string;
 }

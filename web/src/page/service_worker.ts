@@ -1,6 +1,6 @@
-// Keeps the page's files, so that it works without a network once it was loaded.
+// Caches the page's files, so that it works without a network once it was loaded.
 
-// What there is, and a hash of it all: written in by the build.
+// The files and a hash of them all, inserted by the build.
 declare const FILES: string[];
 declare const VERSION: string;
 

@@ -1,7 +1,8 @@
-// The run that the page shows: bodies and curves as in the report, from where they were looked at before.
+// The run that the page shows: bodies and charts as in the report, in the previous view.
 
+import { element } from "../dom";
 import { RunView } from "../run_view";
-import { Scene } from "../scene";
+import type { Scene } from "../scene";
 import type { Summary } from "./numbers";
 
 export interface Found {
@@ -20,11 +21,12 @@ export class ShownRun {
 
   show({ scene }: Found): void {
     const before = this.view?.viewer;
-    // The page has no flat maps to be linked with.
-    const view = new RunView(scene, this.bodies);
+    // The page has no flat maps.
+    const view = new RunView(scene, { root: this.bodies });
+    const boxes = (isWear: boolean) => view.plots.filter(({ chart }) => (chart.group === "wear") === isWear).map(({ box }) => box);
     this.bodies.replaceChildren(...(view.viewer ? [view.viewer.box] : []));
-    this.worn.replaceChildren(view.worn);
-    this.gait.replaceChildren(view.gait);
+    this.worn.replaceChildren(element("div", { class: "worn" }, ...boxes(true), view.history));
+    this.gait.replaceChildren(element("div", { class: "gait" }, ...boxes(false)));
     if (before && view.viewer) view.viewer.lookAs(before);
     this.view?.dispose();
     this.view = view;

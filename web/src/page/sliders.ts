@@ -1,8 +1,8 @@
-// Numbers of the case that can be moved by hand.
+// Sliders for numbers of the case.
 
 import { element, slider } from "../dom";
 import { inDigits } from "../quantities";
-import { numberOf, valueOf, withValue, type Place } from "./case_text";
+import { numberOf, valueAt, withValue, type Place } from "./case_text";
 
 interface Moved extends Place {
   label: string;
@@ -10,11 +10,11 @@ interface Moved extends Place {
   least: number;
   most: number;
   step: number;
-  // What condyle takes where the case says nothing.
+  // The default of condyle where the case has no value.
   silent: number;
-  // The shape of the body that has the key; none where every one has.
+  // The shape of the body that has the key; absent where every shape has it.
   shape?: string;
-  // A number of the case is so many of those shown.
+  // Factor from the number shown to that of the case.
   times?: number;
 }
 
@@ -30,13 +30,33 @@ const GROUPS: [heading: string, moved: Moved[]][] = [
   [
     "Insert",
     [
-      { table: "insert", key: "sagittal_radius_mm", label: "Radius of the dish from the side", unit: "mm", least: 42, most: 120, step: 1, silent: 55, shape: "generic" },
-      { table: "insert", key: "coronal_radius_mm", label: "Radius of the dish from the front", unit: "mm", least: 25, most: 100, step: 1, silent: 30, shape: "generic" },
+      {
+        table: "insert",
+        key: "sagittal_radius_mm",
+        label: "Radius of the dish from the side",
+        unit: "mm",
+        least: 42,
+        most: 120,
+        step: 1,
+        silent: 55,
+        shape: "generic",
+      },
+      {
+        table: "insert",
+        key: "coronal_radius_mm",
+        label: "Radius of the dish from the front",
+        unit: "mm",
+        least: 25,
+        most: 100,
+        step: 1,
+        silent: 30,
+        shape: "generic",
+      },
       { table: "insert", key: "thickness_mm", label: "Thickness", unit: "mm", least: 4, most: 15, step: 0.5, silent: 9, shape: "generic" },
     ],
   ],
   [
-    "How they lie",
+    "Placement",
     [
       { table: "femur", key: "varus_deg", label: "Varus of the femur", unit: "°", least: -4, most: 4, step: 0.25, silent: 0 },
       { table: "femur", key: "external_rotation_deg", label: "External rotation of the femur", unit: "°", least: -8, most: 8, step: 0.5, silent: 0 },
@@ -59,7 +79,7 @@ export class Sliders {
 
   constructor(
     private readonly text: () => string,
-    // Hears the text of the case with the number that was moved.
+    // Called with the changed text of the case.
     private readonly changed: (text: string) => void,
   ) {
     for (const [heading, all] of GROUPS) {
@@ -68,15 +88,15 @@ export class Sliders {
     }
   }
 
-  // Shows what the case says by now.
+  // Shows the numbers of the present case.
   show(): void {
     const text = this.text();
     for (const { moved, input, shown } of this.rows) {
       const times = moved.times ?? 1;
       const value = numberOf(text, moved);
       const found = value === undefined ? moved.silent : value / times;
-      input.disabled = moved.shape !== undefined && (valueOf(text, { table: moved.table, key: "shape" }) ?? "generic") !== moved.shape;
-      // A number beyond the slider is shown as it is, and the slider goes on from there.
+      input.disabled = moved.shape !== undefined && (valueAt(text, { table: moved.table, key: "shape" }) ?? "generic") !== moved.shape;
+      // A number outside of the slider widens its range.
       input.min = String(Math.min(moved.least, found));
       input.max = String(Math.max(moved.most, found));
       input.value = String(found);
@@ -95,7 +115,7 @@ export class Sliders {
 
   private move(moved: Moved, value: number): void {
     const times = moved.times ?? 1;
-    // Moved in decimal steps, written with as few digits.
+    // Steps are decimal: without rounding noise in the text.
     const written = Number((value * times).toPrecision(12));
     const isWhole = times !== 1;
     const text = isWhole ? String(written) : Number.isInteger(written) ? written.toFixed(1) : String(written);

@@ -1,4 +1,4 @@
-// A worker that calls the program, one call at a time; a call that is no longer wanted is ended with its worker.
+// A worker that calls the program, one call at a time; a cancelled call ends with its worker.
 
 import type { Answer, Call, Told } from "./program";
 
@@ -8,7 +8,7 @@ export class Solver {
 
   constructor(private readonly module: WebAssembly.Module) {}
 
-  // What a call answers; nothing of one that was cancelled, or put out by the next.
+  // The answer of a call; undefined if it was cancelled or replaced by the next.
   call(order: Call, told: (told: Told) => void = () => {}): Promise<Answer | undefined> {
     this.cancel();
     const worker = (this.worker ??= new Worker("worker.js"));

@@ -1,9 +1,9 @@
-// Calls the program beside the page, so that the page stays awake.
+// Calls the program in a worker, so that the page stays responsive.
 
 import { call, type Call } from "./program";
 
-onmessage = ({ data }: MessageEvent<{ module: WebAssembly.Module; order: Call }>) => {
+addEventListener("message", ({ data }: MessageEvent<{ module: WebAssembly.Module; order: Call }>) => {
   const answer = call(data.module, data.order, (told) => postMessage({ told }));
   const transfer = Object.values(answer.files).map((bytes) => bytes.buffer as ArrayBuffer);
   postMessage({ answer }, { transfer });
-};
+});

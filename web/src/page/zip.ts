@@ -1,6 +1,6 @@
 // A zip file of files in memory, deflated by the browser.
 
-import type { Files } from "./memory_files";
+import type { Files } from "./wasi";
 
 const DEFLATED = 8;
 const VERSION = 20;
@@ -25,7 +25,7 @@ async function deflated(bytes: Uint8Array): Promise<Uint8Array> {
   return new Uint8Array(await new Response(stream).arrayBuffer());
 }
 
-// Numbers of 2 and of 4 bytes, one behind the other.
+// Numbers of 2 and of 4 bytes, one after the other.
 function packed(...numbers: [value: number, bytes: 2 | 4][]): Uint8Array {
   const view = new DataView(new ArrayBuffer(numbers.reduce((sum, [, bytes]) => sum + bytes, 0)));
   let at = 0;
@@ -45,8 +45,16 @@ export async function zip(files: Files): Promise<Blob> {
     const name = new TextEncoder().encode(path);
     const small = await deflated(bytes);
     const facts: [number, 2 | 4][] = [
-      [VERSION, 2], [NAMES_IN_UTF8, 2], [DEFLATED, 2], [0, 2], [DATE, 2],
-      [crc32(bytes), 4], [small.length, 4], [bytes.length, 4], [name.length, 2], [0, 2],
+      [VERSION, 2],
+      [NAMES_IN_UTF8, 2],
+      [DEFLATED, 2],
+      [0, 2],
+      [DATE, 2],
+      [crc32(bytes), 4],
+      [small.length, 4],
+      [bytes.length, 4],
+      [name.length, 2],
+      [0, 2],
     ];
     const head = packed([0x04034b50, 4], ...facts);
     parts.push(head, name, small);

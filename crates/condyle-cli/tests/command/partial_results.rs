@@ -96,13 +96,13 @@ fn a_run_of_another_version_or_cut_at_a_line_is_told_of() {
     let older = page("summary.json", |text| {
         text.replace(env!("CARGO_PKG_VERSION"), "0.0.9")
     });
-    assert!(older.contains("The run is of condyle 0.0.9"));
+    assert!(older.contains("The run is from condyle 0.0.9"));
     fn without_last_line(text: &str) -> String {
         let end = text.trim_end().rfind('\n').map_or(0, |end| end + 1);
         text[..end].to_owned()
     }
     let wear = page("wear.csv", without_last_line);
-    assert!(wear.contains("tells of 3 updates, and wear.csv has 2"));
+    assert!(wear.contains("states 3 updates, and wear.csv has 2"));
     let kinematics = page("kinematics.csv", without_last_line);
     assert!(kinematics.contains("has a cycle of 49"));
 }

@@ -95,7 +95,7 @@ fn maps_on_other_meshes_are_not_subtracted_and_that_is_said() {
     assert_eq!(told["maps"].as_array().map(Vec::len), Some(0));
     let note = told["notes"][0].as_str().expect("a note");
     assert!(
-        note.contains("cannot be subtracted: the inserts have other meshes"),
+        note.contains("cannot be subtracted: the inserts have different meshes"),
         "{note}"
     );
     assert_eq!(bench.say(&["report", "out", "other"]).code, Some(0));
@@ -111,7 +111,7 @@ fn several_runs_stand_on_one_page_on_the_same_axes() {
     assert_eq!(said.code, Some(0), "{}", said.err);
     let page = fs::read_to_string(bench.path("page.html")).expect("the page is there");
     for words in [
-        "other against out: numbers",
+        "other compared with out: numbers",
         "other \u{2212} out",
         "class=\"run-2\"",
         "contact.friction",
@@ -140,7 +140,7 @@ fn folders_that_are_not_there_and_options_that_do_not_fit_are_refused() {
     // A run that is not finished has no numbers, and its curves and maps are shown.
     fs::remove_file(bench.path("out/summary.json")).expect("can be removed");
     let said = bench.say(&["diff", "out", "out"]);
-    assert!(said.out.contains("not there: summary.json"), "{}", said.out);
+    assert!(said.out.contains("missing: summary.json"), "{}", said.out);
 }
 
 #[test]

@@ -177,7 +177,7 @@ const MAY_USE: &[(&str, &[&str])] = &[
         "condyle_report::error",
         &["condyle_results", "condyle_mesh"],
     ),
-    ("condyle_report::number", &[]),
+    ("condyle_report::number", &["condyle::parameter"]),
     ("condyle_report::file", &["condyle_report::error"]),
     (
         "condyle_report::results",
@@ -191,25 +191,53 @@ const MAY_USE: &[(&str, &[&str])] = &[
     (
         "condyle_report::figure",
         &[
+            "condyle_results::side",
             "condyle_report::number",
             "condyle_report::results",
-            "condyle_results::side",
         ],
     ),
+    (
+        "condyle_report::charts",
+        &[
+            "condyle_results",
+            "condyle_report::figure",
+            "condyle_report::number",
+            "condyle_report::results",
+            // The table of joints that the columns of kinematics.csv are made by.
+            "condyle::machine::joint",
+            "condyle::machine::knee",
+            "condyle::machine::mechanism",
+        ],
+    ),
+    (
+        "condyle_report::maps",
+        &[
+            "condyle_results",
+            "condyle_report::figure",
+            "condyle_report::results",
+        ],
+    ),
+    ("condyle_report::template", &["condyle_report::number"]),
     ("condyle_report::plots", &["condyle_report::figure"]),
     ("condyle_report::png", &["condyle_report::figure"]),
-    ("condyle_report::sheets", &["condyle_report::figure"]),
+    (
+        "condyle_report::sheets",
+        &["condyle_report::figure", "condyle_report::template"],
+    ),
     (
         "condyle_report::runs",
         &[
+            "condyle_results",
+            "condyle_report::charts",
             "condyle_report::error",
             "condyle_report::figure",
             "condyle_report::file",
+            "condyle_report::maps",
             "condyle_report::number",
             "condyle_report::page",
             "condyle_report::results",
             "condyle_report::sheets",
-            "condyle_results",
+            "condyle_report::template",
         ],
     ),
     (
@@ -225,18 +253,20 @@ const MAY_USE: &[(&str, &[&str])] = &[
     (
         "condyle_report::bodies",
         &[
+            "condyle_results::side",
             "condyle_report::error",
             "condyle_report::figure",
             "condyle_report::file",
             "condyle_report::results",
-            "condyle_results::side",
             "condyle_fem",
         ],
     ),
     (
         "condyle_report::scene",
         &[
+            "condyle_report::charts",
             "condyle_report::error",
+            "condyle_report::figure",
             "condyle_report::results",
             "condyle_results",
             "condyle_mesh",
@@ -247,33 +277,34 @@ const MAY_USE: &[(&str, &[&str])] = &[
         "condyle_report::page",
         &[
             "condyle_results",
+            "condyle_report::charts",
             "condyle_report::figure",
+            "condyle_report::maps",
             "condyle_report::number",
             "condyle_report::results",
             "condyle_report::scene",
+            "condyle_report::template",
+            // The table of units.
             "condyle::parameter",
-            // The table of joints that the columns of kinematics.csv are made by.
-            "condyle::machine::joint",
-            "condyle::machine::knee",
-            "condyle::machine::mechanism",
         ],
     ),
     (
         "condyle_report::measured",
         &[
-            "condyle_report::figure",
-            "condyle_report::page",
-            "condyle_report::results",
             "condyle_results::side",
+            "condyle_report::charts",
+            "condyle_report::figure",
+            "condyle_report::results",
         ],
     ),
     (
         "condyle_report::pictures",
         &[
             "condyle_results::added",
+            "condyle_report::charts",
             "condyle_report::error",
             "condyle_report::figure",
-            "condyle_report::page",
+            "condyle_report::maps",
             "condyle_report::results",
             "condyle_report::file",
         ],

@@ -1,57 +1,118 @@
-//! Where a view lies, in px of the picture and in pixels of its image.
+//! The part of a view that is shown, and its place in the picture.
 
-use super::view::Bounds;
+use condyle_fem::Vec3;
+use condyle_results::Side;
 
-/// Pixels of an image for each px of the picture, both ways, so that edges are smooth.
-const FINENESS: f64 = 2.0;
+use crate::figure::finite_range;
 
-/// Where a view lies in the picture.
-pub(super) struct Frame {
-    /// Its upper left corner, px.
-    pub corner: (f64, f64),
-    /// px per mm.
-    pub scale: f64,
-    bounds: Bounds,
+/// Margin around the bodies, mm.
+const MARGIN_MM: f64 = 4.0;
+
+/// A surface for a picture, in the insert frame: x anterior, y superior, z to the right, mm.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct BodySurface {
+    /// Positions of the vertices, mm.
+    pub vertices: Vec<Vec3>,
+    /// Vertices of each triangle, facing either way.
+    pub triangles: Vec<[u32; 3]>,
 }
 
-impl Frame {
-    pub fn new(corner: (f64, f64), scale: f64, bounds: Bounds) -> Self {
-        Self {
-            corner,
-            scale,
-            bounds,
+/// A side from which the bodies are seen, by a parallel projection.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum View {
+    Front,
+    Right,
+    Above,
+}
+
+pub(super) const VIEWS: [View; 3] = [View::Front, View::Right, View::Above];
+
+impl View {
+    /// The directions to the right and up in the picture, and towards the viewer.
+    fn axes(self) -> [Vec3; 3] {
+        let [x, y, z] = [Vec3::x(), Vec3::y(), Vec3::z()];
+        match self {
+            Self::Front => [-z, y, x],
+            Self::Right => [x, y, z],
+            Self::Above => [z, x, y],
         }
     }
 
-    /// Width and height, px.
-    pub fn size(&self) -> (f64, f64) {
-        let bounds = &self.bounds;
+    /// The coordinates of a point along the axes of the view.
+    pub(super) fn seen(self, point: &Vec3) -> [f64; 3] {
+        self.axes().map(|direction| direction.dot(point))
+    }
+}
+
+/// The part of a view that is shown, and its place in the picture.
+pub(super) struct Frame {
+    pub(super) view: View,
+    /// Ends to the right and up, mm.
+    pub(super) right_mm: (f64, f64),
+    pub(super) up_mm: (f64, f64),
+    /// The upper left corner, px.
+    pub(super) corner: (f64, f64),
+    /// px per mm.
+    pub(super) scale: f64,
+}
+
+impl Frame {
+    /// A frame around bodies; a small square where there are none.
+    pub(super) fn around(bodies: [&BodySurface; 2], view: View) -> Self {
+        let ends = |axis: usize| {
+            let points = bodies.iter().flat_map(|body| &body.vertices);
+            let ends = finite_range(points.map(|point| view.seen(point)[axis]));
+            let wider = |(low, high)| (low - MARGIN_MM, high + MARGIN_MM);
+            ends.map_or((-1.0, 1.0), wider)
+        };
+        Self {
+            view,
+            right_mm: ends(0),
+            up_mm: ends(1),
+            corner: (0.0, 0.0),
+            scale: 1.0,
+        }
+    }
+
+    pub(super) fn size_mm(&self) -> (f64, f64) {
         (
-            bounds.width_mm() * self.scale,
-            bounds.height_mm() * self.scale,
+            self.right_mm.1 - self.right_mm.0,
+            self.up_mm.1 - self.up_mm.0,
         )
     }
 
-    /// Width and height of its image, pixels.
-    pub fn pixels(&self) -> (usize, usize) {
-        let (width, height) = self.size();
-        let pixels = |length: f64| (length * FINENESS).ceil() as usize;
-        (pixels(width), pixels(height))
+    /// Left, top, width and height in the picture, px.
+    pub(super) fn rectangle(&self) -> [f64; 4] {
+        let (width, height) = self.size_mm();
+        let (x, y) = self.corner;
+        [x, y, width * self.scale, height * self.scale]
     }
 
-    /// A point as a view sees it: column and row of the image, and how near it is in the same unit.
-    pub fn pixel(&self, [right, up, near]: [f64; 3]) -> [f64; 3] {
-        let fine = self.scale * FINENESS;
-        let Bounds { low, high } = self.bounds;
-        [(right - low.0) * fine, (high.1 - up) * fine, near * fine]
-    }
-
-    /// The same in px of the picture.
-    pub fn place(&self, seen: [f64; 3]) -> (f64, f64) {
-        let [column, row, _] = self.pixel(seen);
+    /// The place of a point in the picture, px.
+    pub(super) fn place(&self, point: &Vec3) -> (f64, f64) {
+        let [right, up, _] = self.view.seen(point);
         (
-            self.corner.0 + column / FINENESS,
-            self.corner.1 + row / FINENESS,
+            self.corner.0 + (right - self.right_mm.0) * self.scale,
+            self.corner.1 + (self.up_mm.1 - up) * self.scale,
+        )
+    }
+
+    /// Names of the directions around the view, and of the view above it.
+    pub(super) fn directions(&self, side: Side) -> String {
+        let [left, right] = side.regions();
+        let (name, at_left, at_right) = match self.view {
+            View::Front => ("From the front".to_owned(), right, left),
+            View::Right => {
+                let name = format!("From the right, {}", right.to_lowercase());
+                (name, "Posterior", "Anterior")
+            }
+            View::Above => ("From above, anterior up".to_owned(), left, right),
+        };
+        let [x, y, width, height] = self.rectangle();
+        let (middle, down) = (x + width / 2.0, y + height / 2.0);
+        let (above, before, after) = (y - 8.0, x - 6.0, x + width + 14.0);
+        format!(
+            r#"<text class="title" x="{middle:.1}" y="{above:.1}" text-anchor="middle">{name}</text><text class="side" text-anchor="middle" transform="translate({before:.1} {down:.1}) rotate(-90)">{at_left}</text><text class="side" text-anchor="middle" transform="translate({after:.1} {down:.1}) rotate(-90)">{at_right}</text>"#
         )
     }
 }

@@ -1,42 +1,49 @@
 //! Femur and insert in place, seen from three sides: a picture of a case before it runs.
 //!
-//! Surfaces come as plain triangles. They are drawn into small images by depth, so that sixty thousand triangles
-//! make a file no larger than six hundred; names, axes and scale stand over them as vectors.
+//! The surfaces, plain triangles, are drawn into small images with a depth buffer, so that sixty thousand triangles make a
+//! file no larger than six hundred; names, axes and scale stand over the images as vectors.
 
-mod body_surface;
 mod frame;
-mod image;
-mod labels;
-mod machine_axes;
 mod raster;
-mod view;
+
+pub use frame::BodySurface;
 
 use std::path::{Path, PathBuf};
+
+use condyle_fem::Vec3;
 
 use condyle_results::Side;
 
 use crate::error::ReportError;
-use crate::figure::alone;
+use crate::figure::{escape, scale_bar, svg_file};
 use crate::file::write_text;
-use frame::Frame;
-use raster::Raster;
-use view::{VIEWS, View};
+use frame::{Frame, VIEWS, View};
 
-pub use body_surface::BodySurface;
-pub use machine_axes::MachineAxes;
+/// The axes of the machine in the insert frame, mm.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct MachineAxes {
+    /// (x, y) of the flexion axis, which is along z.
+    pub flexion_mm: (f64, f64),
+    /// (y, z) of the varus-valgus axis, which is along x.
+    pub vv_mm: (f64, f64),
+    /// (x, z) of the axis of IE rotation, which is along y.
+    pub ie_mm: (f64, f64),
+    /// x at which AP reads zero under the flexion axis.
+    pub ap_zero_mm: f64,
+}
 
 /// Femur and insert in place.
 #[derive(Clone, Copy, Debug)]
 pub struct BodiesPicture<'a> {
-    /// What the picture is of.
+    /// Title of the picture.
     pub title: &'a str,
-    /// Which knee it is.
+    /// The side of the knee.
     pub side: Side,
-    /// The femoral component where it stands on the insert.
+    /// The femoral component in its pose on the insert.
     pub femur: &'a BodySurface,
     /// The insert.
     pub insert: &'a BodySurface,
-    /// The part of the insert's surface that is pressed, empty where that is not known.
+    /// The part of the insert's surface under pressure; empty where that is not known.
     pub contact: &'a BodySurface,
     /// The machine's axes; none where there is no machine yet.
     pub axes: Option<MachineAxes>,
@@ -44,61 +51,118 @@ pub struct BodiesPicture<'a> {
     pub caption: &'a str,
 }
 
-/// Widest that the three views are together, px.
+/// Largest width of the three views together, px.
 const MAX_WIDTH: f64 = 980.0;
 /// Largest scale, px per mm.
 const MAX_SCALE: f64 = 4.5;
 /// Space between two views, for their labels, px.
 const BETWEEN: f64 = 46.0;
-/// Space above the views, px.
+/// Space above and below the views, px.
 const ABOVE: f64 = 34.0;
-/// Space below the views, px.
 const BELOW: f64 = 64.0;
 
-/// The picture as the text of an SVG file.
+/// Style of text over an image, with a white rim to be read on any colour, and of lines.
+const OVER: &str = "paint-order:stroke;stroke:#fff;stroke-width:3px;stroke-linejoin:round";
+const LINE: &str = "stroke:#0b4f7d;stroke-width:1.1;fill:none";
+const DASHED: &str = "stroke:#0b4f7d;stroke-width:1;stroke-dasharray:4 3;fill:none";
+
+/// Renders the picture as the text of an SVG file.
 pub fn bodies_svg(picture: &BodiesPicture<'_>) -> String {
-    let bounds = VIEWS.map(|view| view.bounds([picture.femur, picture.insert]));
-    let widths_mm: f64 = bounds.iter().map(view::Bounds::width_mm).sum();
+    let mut frames = VIEWS.map(|view| Frame::around([picture.femur, picture.insert], view));
+    let widths_mm: f64 = frames.iter().map(|frame| frame.size_mm().0).sum();
     let room = MAX_WIDTH - BETWEEN * (VIEWS.len() + 1) as f64;
     let scale = (room / widths_mm).min(MAX_SCALE);
-    let tallest_mm = bounds
-        .iter()
-        .map(view::Bounds::height_mm)
-        .fold(0.0, f64::max);
+    let heights_mm = frames.iter().map(|frame| frame.size_mm().1);
+    let tallest_mm = heights_mm.fold(0.0, f64::max);
     let (mut body, mut x) = (String::new(), BETWEEN);
-    for (view, bounds) in VIEWS.iter().zip(&bounds) {
-        let y = ABOVE + (tallest_mm - bounds.height_mm()) * scale / 2.0;
-        let frame = Frame::new((x, y), scale, *bounds);
-        body += &drawn(picture, view, &frame);
-        x += bounds.width_mm() * scale + BETWEEN;
+    for frame in &mut frames {
+        let (width_mm, height_mm) = frame.size_mm();
+        frame.scale = scale;
+        frame.corner = (x, ABOVE + (tallest_mm - height_mm) * scale / 2.0);
+        body += &raster::image([picture.insert, picture.femur, picture.contact], frame);
+        body += &picture
+            .axes
+            .map_or_else(String::new, |axes| axes.svg(frame));
+        body += &frame.directions(picture.side);
+        x += width_mm * scale + BETWEEN;
     }
     let height = ABOVE + tallest_mm * scale + BELOW;
-    body += &labels::caption(picture.caption, (BETWEEN, height - 8.0));
-    body += &labels::scale_bar((x - BETWEEN, height - 16.0), scale);
+    let (base, caption) = (height - 8.0, escape(picture.caption));
+    body += &format!(r#"<text x="{BETWEEN:.1}" y="{base:.1}">{caption}</text>"#);
+    body += &scale_bar((x - BETWEEN, height - 16.0), scale);
     let desc = "Femur and insert from the front, from the right and from above.";
-    alone(picture.title, desc, (x, height), &body)
-}
-
-/// One view: its image, and what stands over it.
-fn drawn(picture: &BodiesPicture<'_>, view: &View, frame: &Frame) -> String {
-    let raster = |surface| Raster::new(surface, view, frame);
-    let pixels = image::composed(
-        &raster(picture.insert),
-        &raster(picture.femur),
-        &raster(picture.contact),
-    );
-    let axes = picture.axes.as_ref();
-    let axes = axes.map_or(String::new(), |axes| labels::axes(axes, view, frame));
-    let directions = labels::directions(view, picture.side, frame);
-    image::element(&pixels, frame) + &axes + &directions
+    svg_file(picture.title, desc, (x, height), &body)
 }
 
 /// Writes the picture as an SVG file and returns its path.
 ///
 /// # Errors
-/// A file that cannot be written.
+/// The file cannot be written.
 pub fn write_bodies(path: &Path, picture: &BodiesPicture<'_>) -> Result<PathBuf, ReportError> {
     write_text(path.to_path_buf(), &bodies_svg(picture))
+}
+
+impl MachineAxes {
+    /// The axes in a view: lines, or a ring where one is seen end on.
+    fn svg(&self, frame: &Frame) -> String {
+        let (flexion, vv, ie) = (self.flexion_mm, self.vv_mm, self.ie_mm);
+        let axes = [
+            (
+                "flexion axis",
+                Vec3::new(flexion.0, flexion.1, 0.0),
+                Vec3::z(),
+            ),
+            ("VV axis", Vec3::new(0.0, vv.0, vv.1), Vec3::x()),
+            ("IE axis", Vec3::new(ie.0, 0.0, ie.1), Vec3::y()),
+        ];
+        let drawn = axes.map(|(name, on, along)| axis(name, &on, &along, frame));
+        drawn.concat() + &self.ap_zero(frame)
+    }
+
+    /// The place where AP reads zero, named at the other ends of lines than axes are.
+    fn ap_zero(&self, frame: &Frame) -> String {
+        let (x, y) = frame.place(&Vec3::new(self.ap_zero_mm, 0.0, 0.0));
+        let [left, top, width, height] = frame.rectangle();
+        let (path, at) = match frame.view {
+            View::Front => return String::new(),
+            View::Right => (
+                format!("M{x:.1} {top:.1}v{height:.1}"),
+                (x - 3.0, top + 10.0),
+            ),
+            View::Above => {
+                let path = format!("M{left:.1} {y:.1}h{width:.1}");
+                (path, (left + width - 3.0, y + 12.0))
+            }
+        };
+        format!(r#"<path d="{path}" style="{DASHED}"/>"#) + &text("AP zero", at, "end")
+    }
+}
+
+/// A line through `on` along `along`, across the view; a ring where it is seen end on.
+fn axis(name: &str, on: &Vec3, along: &Vec3, frame: &Frame) -> String {
+    let (x, y) = frame.place(on);
+    let [left, top, width, height] = frame.rectangle();
+    let (path, at, anchor) = match frame.view.seen(along) {
+        [0.0, 0.0, _] => {
+            let ring = format!(r#"<circle cx="{x:.1}" cy="{y:.1}" r="4" style="{LINE}"/>"#);
+            return ring + &text(name, (x + 7.0, y + 3.8), "start");
+        }
+        [0.0, ..] => {
+            let path = format!("M{x:.1} {top:.1}v{height:.1}");
+            (path, (x + 3.0, top + height + 12.0), "middle")
+        }
+        _ => {
+            let path = format!("M{left:.1} {y:.1}h{width:.1}");
+            (path, (left + 3.0, y - 4.0), "start")
+        }
+    };
+    format!(r#"<path d="{path}" style="{LINE}"/>"#) + &text(name, at, anchor)
+}
+
+fn text(words: &str, (x, y): (f64, f64), anchor: &str) -> String {
+    format!(
+        r##"<text x="{x:.1}" y="{y:.1}" text-anchor="{anchor}" style="{OVER};fill:#0b4f7d">{words}</text>"##
+    )
 }
 
 #[cfg(test)]

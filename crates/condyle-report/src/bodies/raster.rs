@@ -1,97 +1,167 @@
-//! A surface as pixels: how near it is, and how light.
+//! Surfaces as pixels: drawn with a depth buffer, composed, and written as a PNG inside an SVG.
 
+use std::io::Write as _;
+
+use base64::{Engine as _, engine::general_purpose::STANDARD};
 use condyle_fem::Vec3;
+use flate2::{Compression, Crc, write::ZlibEncoder};
 
-use super::body_surface::BodySurface;
-use super::frame::Frame;
-use super::view::View;
+use super::frame::{BodySurface, Frame};
 
+/// Pixels of an image for each px of the picture, both ways, so that edges are smooth.
+const FINENESS: f64 = 2.0;
 /// Lightness of a face seen edge on; one that faces the viewer has 1.
 const MIN_LIGHT: f32 = 0.45;
 
-/// What is seen of one surface, a value a pixel, rows from above.
+type Colour = [f32; 3];
+
+const PAPER: Colour = [255.0, 255.0, 255.0];
+const POLYETHYLENE: Colour = [236.0, 229.0, 208.0];
+const METAL: Colour = [128.0, 150.0, 176.0];
+const CONTACT: Colour = [200.0, 40.0, 30.0];
+/// Opacity of the femur where it is in front of the insert, and where it is behind and shows through.
+const IN_FRONT: f32 = 0.62;
+const BEHIND: f32 = 0.18;
+/// Opacity of the contact patch over both bodies.
+const PATCH: f32 = 0.7;
+
+/// A surface as seen in a frame, a value for each pixel, rows from above.
 pub(super) struct Raster {
-    pub width: usize,
-    pub height: usize,
-    /// How near it is, mm; minus infinity where it is not.
-    pub near: Vec<f32>,
+    width: usize,
+    height: usize,
+    /// How near the surface is to the viewer, in pixels; minus infinity where it is not seen.
+    pub(super) near: Vec<f32>,
     /// Lightness, 0 to 1.
-    pub light: Vec<f32>,
+    light: Vec<f32>,
 }
 
 impl Raster {
-    /// `surface` from the side of `view`.
-    pub fn new(surface: &BodySurface, view: &View, frame: &Frame) -> Self {
-        let (width, height) = frame.pixels();
+    pub(super) fn new(surface: &BodySurface, frame: &Frame) -> Self {
+        let fine = frame.scale * FINENESS;
+        let (width_mm, height_mm) = frame.size_mm();
+        let [width, height] = [width_mm, height_mm].map(|mm| (mm * fine).ceil() as usize);
         let mut raster = Self {
             width,
             height,
             near: vec![f32::NEG_INFINITY; width * height],
             light: vec![0.0; width * height],
         };
-        let place = |vertex: &Vec3| frame.pixel(view.seen(vertex));
-        let places: Vec<[f64; 3]> = surface.vertices.iter().map(place).collect();
+        let place = |vertex: &Vec3| {
+            let [right, up, near] = frame.view.seen(vertex);
+            Vec3::new(right - frame.right_mm.0, frame.up_mm.1 - up, near) * fine
+        };
+        let places: Vec<Vec3> = surface.vertices.iter().map(place).collect();
         for triangle in &surface.triangles {
             raster.draw(triangle.map(|vertex| places[vertex as usize]));
         }
         raster
     }
 
-    /// Draws a triangle where nothing is nearer.
-    fn draw(&mut self, [a, b, c]: [[f64; 3]; 3]) {
-        let twice_area = |p: [f64; 2], q: [f64; 3], r: [f64; 3]| {
-            (q[0] - p[0]) * (r[1] - p[1]) - (q[1] - p[1]) * (r[0] - p[0])
-        };
-        let whole = twice_area([a[0], a[1]], b, c);
+    /// Draws a triangle where nothing is nearer; its corners are column, row and nearness.
+    fn draw(&mut self, [a, b, c]: [Vec3; 3]) {
+        let twice_area =
+            |p: Vec3, q: Vec3, r: Vec3| (q.x - p.x) * (r.y - p.y) - (q.y - p.y) * (r.x - p.x);
+        let whole = twice_area(a, b, c);
         if whole == 0.0 {
             return;
         }
-        let light = light_of([a, b, c]);
-        for row in pixels_between([a[1], b[1], c[1]], self.height) {
-            for column in pixels_between([a[0], b[0], c[0]], self.width) {
-                let at = [column as f64, row as f64];
-                let parts = [
-                    twice_area(at, b, c),
-                    twice_area(at, c, a),
-                    twice_area(at, a, b),
-                ];
-                let parts = parts.map(|part| part / whole);
-                if parts.iter().all(|part| *part >= 0.0) {
-                    let near = parts[0] * a[2] + parts[1] * b[2] + parts[2] * c[2];
-                    self.put(row * self.width + column, near as f32, light);
+        let light = lightness([a, b, c]);
+        for row in pixels_between([a.y, b.y, c.y], self.height) {
+            for column in pixels_between([a.x, b.x, c.x], self.width) {
+                let at = Vec3::new(column as f64, row as f64, 0.0);
+                // Barycentric coordinates: all are positive inside, for either orientation.
+                let parts = [(b, c), (c, a), (a, b)].map(|(q, r)| twice_area(at, q, r) / whole);
+                let near = (parts[0] * a.z + parts[1] * b.z + parts[2] * c.z) as f32;
+                let pixel = row * self.width + column;
+                if parts.iter().all(|part| *part >= 0.0) && near > self.near[pixel] {
+                    (self.near[pixel], self.light[pixel]) = (near, light);
                 }
             }
         }
     }
 
-    fn put(&mut self, pixel: usize, near: f32, light: f32) {
-        if near > self.near[pixel] {
-            (self.near[pixel], self.light[pixel]) = (near, light);
-        }
-    }
-
-    /// Whether the surface is seen at a pixel.
-    pub fn is_at(&self, pixel: usize) -> bool {
-        self.near[pixel].is_finite()
+    /// The lit colour of the surface at a pixel; none where it is not seen.
+    fn lit(&self, pixel: usize, colour: Colour) -> Option<Colour> {
+        let is_seen = self.near[pixel].is_finite();
+        is_seen.then(|| colour.map(|part| part * self.light[pixel]))
     }
 }
 
-/// Pixels between the smallest and the largest of three places, of `count` that there are.
-fn pixels_between(places: [f64; 3], count: usize) -> std::ops::Range<usize> {
-    let [a, b, c] = places;
+/// Pixels between the smallest and the largest of three places, within `count`.
+fn pixels_between([a, b, c]: [f64; 3], count: usize) -> std::ops::Range<usize> {
     let (low, high) = (a.min(b).min(c).ceil(), a.max(b).max(c).floor());
     let first = low.max(0.0) as usize;
     let end = (high + 1.0).clamp(0.0, count as f64) as usize;
     first..end.max(first)
 }
 
-/// Lighter the more a face looks at the viewer, and at a lamp above them.
-fn light_of([a, b, c]: [[f64; 3]; 3]) -> f32 {
-    let [a, b, c] = [a, b, c].map(Vec3::from);
+/// The lightness of a face: larger the more it faces the viewer and a lamp above.
+fn lightness([a, b, c]: [Vec3; 3]) -> f32 {
     let normal = (b - a).cross(&(c - a)).try_normalize(0.0);
     let normal = normal.unwrap_or_default();
     let towards = if normal.z < 0.0 { -normal } else { normal };
     // Rows of pixels run down, so the lamp is at negative y.
     let lit = towards.dot(&Vec3::new(-0.25, -0.35, 0.9)).max(0.0) as f32;
     MIN_LIGHT + (1.0 - MIN_LIGHT) * lit.min(1.0)
+}
+
+/// Renders insert, translucent femur and the contact patch over both, in this order, as an element of an SVG.
+pub(super) fn image(surfaces: [&BodySurface; 3], frame: &Frame) -> String {
+    let [insert, femur, contact] = surfaces.map(|surface| Raster::new(surface, frame));
+    let colour = |pixel: usize| {
+        let below = insert.lit(pixel, POLYETHYLENE).unwrap_or(PAPER);
+        let is_in_front = femur.near[pixel] >= insert.near[pixel];
+        let opacity = if is_in_front { IN_FRONT } else { BEHIND };
+        let metal = femur.lit(pixel, METAL);
+        let bodies = metal.map_or(below, |metal| mixed(below, metal, opacity));
+        match contact.near[pixel].is_finite() {
+            true => mixed(bodies, CONTACT, PATCH),
+            false => bodies,
+        }
+    };
+    let pixels = 0..insert.width * insert.height;
+    let bytes: Vec<u8> = pixels
+        .flat_map(|pixel| colour(pixel).map(|part| part.round() as u8))
+        .collect();
+    let data = STANDARD.encode(png(insert.width, insert.height, &bytes));
+    let [x, y, width, height] = frame.rectangle();
+    format!(
+        r#"<image x="{x:.1}" y="{y:.1}" width="{width:.1}" height="{height:.1}" href="data:image/png;base64,{data}"/>"#
+    )
+}
+
+fn mixed(below: Colour, above: Colour, opacity: f32) -> Colour {
+    std::array::from_fn(|i| below[i] * (1.0 - opacity) + above[i] * opacity)
+}
+
+/// The bytes of a PNG file (ISO/IEC 15948) of red, green and blue bytes.
+fn png(width: usize, height: usize, bytes: &[u8]) -> Vec<u8> {
+    // Each row as its difference from the row above: filter 2.
+    const FROM_ABOVE: u8 = 2;
+    let mut above = vec![0; 3 * width];
+    let mut data = ZlibEncoder::new(Vec::new(), Compression::default());
+    for row in bytes.chunks((3 * width).max(1)) {
+        let differences = row
+            .iter()
+            .zip(&above)
+            .map(|(here, up)| here.wrapping_sub(*up));
+        let line: Vec<u8> = [FROM_ABOVE].into_iter().chain(differences).collect();
+        data.write_all(&line).expect("a Vec takes any bytes");
+        above.copy_from_slice(row);
+    }
+    let data = data.finish().expect("a Vec takes any bytes");
+    let size = [width as u32, height as u32].map(u32::to_be_bytes);
+    // 8 bits a colour, red green blue, the only compression and filter set, no interlacing.
+    let header = [&size.concat()[..], &[8, 2, 0, 0, 0]].concat();
+    let mut file = b"\x89PNG\r\n\x1a\n".to_vec();
+    for (name, content) in [(b"IHDR", header), (b"IDAT", data), (b"IEND", Vec::new())] {
+        let mut sum = Crc::new();
+        sum.update(name);
+        sum.update(&content);
+        file.extend((content.len() as u32).to_be_bytes());
+        file.extend(name);
+        file.extend(content);
+        file.extend(sum.sum().to_be_bytes());
+    }
+    file
 }

@@ -4,7 +4,7 @@ use std::time::Instant;
 
 use condyle_fem::Vec3;
 
-use super::*;
+use super::{raster::Raster, *};
 
 /// A sheet of `count` by `count` quads, 60 mm wide, bent up by `bend` at its ends.
 fn sheet(count: u32, height_mm: f64, bend: f64) -> BodySurface {
@@ -82,19 +82,14 @@ fn sides_axes_and_scale_are_named() {
 #[test]
 fn what_is_nearer_hides_what_is_behind() {
     let (front, behind) = (sheet(3, 5.0, 0.0), sheet(3, -5.0, 0.0));
-    let above = &VIEWS[2];
-    let bounds = above.bounds([&front, &behind]);
-    let frame = Frame::new((0.0, 0.0), 1.0, bounds);
+    let frame = Frame::around([&front, &behind], VIEWS[2]);
     let mut both = front.clone();
     both.vertices.extend(&behind.vertices);
     let count = front.vertices.len() as u32;
     let behind = behind.triangles.iter();
     both.triangles
         .extend(behind.map(|triangle| triangle.map(|vertex| vertex + count)));
-    let (alone, together) = (
-        Raster::new(&front, above, &frame),
-        Raster::new(&both, above, &frame),
-    );
+    let (alone, together) = (Raster::new(&front, &frame), Raster::new(&both, &frame));
     assert!(alone.near == together.near && alone.near.iter().any(|near| near.is_finite()));
 }
 

@@ -2,11 +2,11 @@
 
 use crate::number::fixed;
 
-/// More are hard to read.
+/// Labels with more decimals are written as powers of ten.
 const MAX_DECIMALS: usize = 5;
 
 /// A range with ticks at multiples of a round step; both ends are ticks.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct Axis {
     pub(crate) low: f64,
     pub(crate) high: f64,
@@ -14,18 +14,50 @@ pub(crate) struct Axis {
 }
 
 impl Axis {
+    /// Percent of a cycle.
+    pub(crate) const PERCENT: Self = Self {
+        low: 0.0,
+        high: 100.0,
+        step: 20.0,
+    };
+
     /// The tightest axis over `low..high` with at most `intervals` steps of 1, 2 or 5 times a power of ten.
     ///
-    /// `span` is the least that it shows, so that noise does not fill the picture.
-    pub(crate) fn covering(low: f64, high: f64, span: f64, intervals: usize) -> Self {
-        let (low, high) = widened(low, high, span);
+    /// The axis spans at least `min_span`, so that noise does not fill the picture.
+    pub(crate) fn covering(low: f64, high: f64, min_span: f64, intervals: usize) -> Self {
+        // Ends that are multiples of the step but for rounding must not gain an interval.
+        const SLACK: f64 = 1e-9;
+        let missing = (min_span - (high - low)).max(0.0);
+        let (low, high) = (low - missing / 2.0, high + missing / 2.0);
         let mut step = round_step((high - low) / intervals as f64);
         loop {
-            let axis = Self::on_multiples(low, high, step);
+            let axis = Self {
+                low: (low / step + SLACK).floor() * step,
+                high: (high / step - SLACK).ceil() * step,
+                step,
+            };
             if axis.intervals() <= intervals {
                 return axis;
             }
+            // Rounding the ends outwards took one interval too many: the next coarser step.
             step = round_step(step * 1.01);
+        }
+    }
+
+    /// [`Self::covering`] of all finite values; from 0 to 1 where there is none.
+    pub(crate) fn over(values: impl Iterator<Item = f64>, min_span: f64, intervals: usize) -> Self {
+        let (low, high) = finite_range(values).unwrap_or((0.0, 1.0));
+        Self::covering(low, high, min_span, intervals)
+    }
+
+    /// A range without round ticks: `share` of its width wider than the values at both ends.
+    pub(crate) fn around(values: impl Iterator<Item = f64>, share: f64) -> Self {
+        let (low, high) = finite_range(values).unwrap_or((0.0, 1.0));
+        let room = share * (high - low).max(1e-6);
+        Self {
+            low: low - room,
+            high: high + room,
+            step: high - low + 2.0 * room,
         }
     }
 
@@ -34,7 +66,7 @@ impl Axis {
         (0..=self.intervals()).map(|tick| self.low + tick as f64 * self.step)
     }
 
-    /// A tick's text, with as many decimals as the step has; by a power of ten where these would be many.
+    /// The text of a tick, with the decimals of the step, or as a power of ten where these are too many.
     pub(crate) fn label(&self, tick: f64) -> String {
         let decimals = decimals(self.step);
         if decimals <= MAX_DECIMALS {
@@ -48,7 +80,7 @@ impl Axis {
         format!("{}e{power}", fixed(tick / 10f64.powf(power), digits))
     }
 
-    /// Where `value` lies from the low end, 0, to the high end, 1.
+    /// The position of `value` on the axis: 0 at the low end, 1 at the high end.
     pub(crate) fn fraction(&self, value: f64) -> f64 {
         (value - self.low) / (self.high - self.low)
     }
@@ -56,13 +88,13 @@ impl Axis {
     pub(crate) fn intervals(&self) -> usize {
         ((self.high - self.low) / self.step).round() as usize
     }
+}
 
-    fn on_multiples(low: f64, high: f64, step: f64) -> Self {
-        const SLACK: f64 = 1e-9;
-        let low = (low / step + SLACK).floor() * step;
-        let high = (high / step - SLACK).ceil() * step;
-        Self { low, high, step }
-    }
+/// Smallest and largest finite value.
+pub(crate) fn finite_range(values: impl Iterator<Item = f64>) -> Option<(f64, f64)> {
+    let finite = values.filter(|value| value.is_finite());
+    let ends = finite.map(|value| (value, value));
+    ends.reduce(|(low, high), (value, _)| (low.min(value), high.max(value)))
 }
 
 /// The smallest of 1, 2, 5 times a power of ten that is at least `least`.
@@ -73,11 +105,6 @@ pub(crate) fn round_step(least: f64) -> f64 {
         .into_iter()
         .find(|step| *step >= least * (1.0 - 1e-9))
         .unwrap_or(10.0 * power)
-}
-
-fn widened(low: f64, high: f64, span: f64) -> (f64, f64) {
-    let missing = (span - (high - low)).max(0.0);
-    (low - missing / 2.0, high + missing / 2.0)
 }
 
 fn decimals(step: f64) -> usize {
@@ -97,7 +124,7 @@ mod tests {
     }
 
     #[test]
-    fn a_flat_line_gets_the_least_span() {
+    fn a_flat_line_gets_the_smallest_span() {
         let axis = Axis::covering(0.0, 0.0, 0.2, 5);
         assert!(axis.low < 0.0 && axis.high > 0.0 && axis.high - axis.low < 0.3);
     }

@@ -4,102 +4,72 @@
 //! level is bounded by iso-lines through triangles and by pieces of the mesh's own border. Only
 //! those are collected and joined into loops, so a region is one path without inner seams.
 
-use crate::results::surface::SurfaceFields;
+use crate::results::SurfaceFields;
 
 /// A mesh prepared for contours, seen from above: (x, y) of the picture.
 pub(crate) struct Contours<'a> {
     /// The nodes, then the centre of each quad.
     points: Vec<(f64, f64)>,
-    /// A value a point.
-    values: Vec<f64>,
     quads: &'a [[u32; 4]],
-    /// Of each quad, which of its sides are on the border.
-    borders: &'a [[bool; 4]],
+    /// The sides of each quad that are on the border.
+    borders: Vec<[bool; 4]>,
 }
+
+/// A closed line, px.
+pub(crate) type Loop = Vec<(f64, f64)>;
 
 /// A corner of a loop: on the edge between two vertices, or at one when they are equal.
 type Corner = (u32, u32);
 
 impl<'a> Contours<'a> {
-    /// A field on a surface, its nodes placed in the picture by `place`; `borders` as from [`borders`].
-    pub(crate) fn new(
-        surface: &'a SurfaceFields,
-        borders: &'a [[bool; 4]],
-        field: &[f64],
-        place: impl Fn(f64, f64) -> (f64, f64),
-    ) -> Self {
-        let mut points: Vec<_> = surface
-            .nodes
-            .iter()
-            .map(|node| place(node.x, node.z))
-            .collect();
-        let mut values = field.to_vec();
+    /// Prepares a surface whose nodes (x, z) `place` puts into the picture.
+    pub(crate) fn new(surface: &'a SurfaceFields, place: impl Fn(f64, f64) -> (f64, f64)) -> Self {
+        let nodes = surface.nodes.iter();
+        let mut points: Vec<_> = nodes.map(|node| place(node.x, node.z)).collect();
         for quad in &surface.quads {
-            let corners = quad.map(|node| points[node as usize]);
-            let (x, y) = corners.iter().fold((0.0, 0.0), |sum, corner| {
-                (sum.0 + corner.0, sum.1 + corner.1)
-            });
-            points.push((x / 4.0, y / 4.0));
-            values.push(quad.map(|node| field[node as usize]).iter().sum::<f64>() / 4.0);
+            let [a, b, c, d] = quad.map(|node| points[node as usize]);
+            points.push(((a.0 + b.0 + c.0 + d.0) / 4.0, (a.1 + b.1 + c.1 + d.1) / 4.0));
         }
-        let quads = &surface.quads;
         Self {
             points,
-            values,
-            quads,
-            borders,
+            quads: &surface.quads,
+            borders: borders(&surface.quads),
         }
     }
 
-    /// Closed loops around the region where the field is at least `level`; holes run the other way.
-    pub(crate) fn region(&self, level: f64) -> Vec<Vec<(f64, f64)>> {
+    /// Closed loops around the region where a field is at least a level, for each level; holes run the other way.
+    pub(crate) fn regions(&self, field: &[f64], levels: &[f64]) -> Vec<Vec<Loop>> {
+        let mut values = field.to_vec();
+        let mean =
+            |quad: &[u32; 4]| quad.map(|node| field[node as usize]).iter().sum::<f64>() / 4.0;
+        values.extend(self.quads.iter().map(mean));
+        let region = |level: &f64| self.region(&values, *level);
+        levels.iter().map(region).collect()
+    }
+
+    fn region(&self, values: &[f64], level: f64) -> Vec<Loop> {
+        let is_inside = |vertex: u32| values[vertex as usize] >= level;
         let mut pieces = Vec::new();
-        let mut add = |from, to| pieces.push((from, to));
-        for quad in (0..self.quads.len()).filter(|&quad| self.touches_outline(quad, level)) {
+        for (quad, corners) in self.quads.iter().enumerate() {
+            let inside = corners.map(is_inside);
+            // No outline passes where all is outside, or where all is inside and away from the border.
+            let is_covered = inside == [true; 4] && self.borders[quad] == [false; 4];
+            if inside == [false; 4] || is_covered {
+                continue;
+            }
+            let centre = (self.points.len() - self.quads.len() + quad) as u32;
             for side in 0..4 {
-                self.outline(quad, side, level, &mut add);
+                let triangle = [corners[side], corners[(side + 1) % 4], centre];
+                let is_border = self.borders[quad][side];
+                outline(triangle, triangle.map(is_inside), is_border, &mut pieces);
             }
         }
         pieces.sort_unstable();
-        self.loops(&pieces, level)
-    }
-
-    /// False where all of a quad is outside, or all of it inside and away from the border.
-    fn touches_outline(&self, quad: usize, level: f64) -> bool {
-        let inside = self.quads[quad].map(|node| self.values[node as usize] >= level);
-        let all_inside = inside == [true; 4];
-        inside != [false; 4] && !(all_inside && self.borders[quad] == [false; 4])
-    }
-
-    /// Reports the pieces of the region's outline in the triangle on one side of a quad.
-    fn outline(&self, quad: usize, side: usize, level: f64, add: &mut impl FnMut(Corner, Corner)) {
-        let corners = self.quads[quad];
-        let centre = self.points.len() - self.quads.len() + quad;
-        let triangle = [corners[side], corners[(side + 1) % 4], centre as u32];
-        let inside = triangle.map(|vertex| self.values[vertex as usize] >= level);
-        if !inside.contains(&true) {
-            return;
-        }
-        let (mut leaves, mut enters) = (None, None);
-        for edge in 0..3 {
-            let (a, b) = (triangle[edge], triangle[(edge + 1) % 3]);
-            let (from, to) = match (inside[edge], inside[(edge + 1) % 3]) {
-                (true, true) => ((a, a), (b, b)),
-                (true, false) => ((a, a), *leaves.insert(crossing(a, b))),
-                (false, true) => (*enters.insert(crossing(a, b)), (b, b)),
-                (false, false) => continue,
-            };
-            if edge == 0 && self.borders[quad][side] {
-                add(from, to);
-            }
-        }
-        if let (Some(from), Some(to)) = (leaves, enters) {
-            add(from, to);
-        }
+        self.loops(&pieces, values, level)
     }
 
     /// Joins sorted pieces, each from a corner to a corner, into loops.
-    fn loops(&self, pieces: &[(Corner, Corner)], level: f64) -> Vec<Vec<(f64, f64)>> {
+    fn loops(&self, pieces: &[(Corner, Corner)], values: &[f64], level: f64) -> Vec<Loop> {
         let mut used = vec![false; pieces.len()];
         let mut loops = Vec::new();
         for start in 0..pieces.len() {
@@ -107,8 +77,12 @@ impl<'a> Contours<'a> {
             let mut piece = (!used[start]).then_some(start);
             while let Some(current) = piece {
                 used[current] = true;
-                points.push(self.place(pieces[current].0, level));
-                piece = unused_from(pieces, &used, pieces[current].1);
+                let (from, to) = pieces[current];
+                points.push(self.place(from, values, level));
+                // Where loops touch, two pieces start at the corner: the first unused one.
+                let first = pieces.partition_point(|piece| piece.0 < to);
+                let mut same = (first..pieces.len()).take_while(|&next| pieces[next].0 == to);
+                piece = same.find(|&next| !used[next]);
             }
             if !points.is_empty() {
                 loops.push(points);
@@ -117,17 +91,40 @@ impl<'a> Contours<'a> {
         loops
     }
 
-    fn place(&self, (a, b): Corner, level: f64) -> (f64, f64) {
+    fn place(&self, (a, b): Corner, values: &[f64], level: f64) -> (f64, f64) {
         let (p, q) = (self.points[a as usize], self.points[b as usize]);
         if a == b {
             return p;
         }
-        let (u, v) = (self.values[a as usize], self.values[b as usize]);
-        // Next to a place without a value the region ends half-way.
+        let (u, v) = (values[a as usize], values[b as usize]);
+        // Next to a node without a value the region ends half-way.
         let share = Some((level - u) / (v - u)).filter(|share| share.is_finite());
         let share = share.unwrap_or(0.5);
         (p.0 + share * (q.0 - p.0), p.1 + share * (q.1 - p.1))
     }
+}
+
+/// Adds the pieces of the region's outline in a triangle, whose first edge may be on the border.
+fn outline(
+    triangle: [u32; 3],
+    inside: [bool; 3],
+    is_border: bool,
+    pieces: &mut Vec<(Corner, Corner)>,
+) {
+    let (mut leaves, mut enters) = (None, None);
+    for edge in 0..3 {
+        let (a, b) = (triangle[edge], triangle[(edge + 1) % 3]);
+        let (from, to) = match (inside[edge], inside[(edge + 1) % 3]) {
+            (true, true) => ((a, a), (b, b)),
+            (true, false) => ((a, a), *leaves.insert(crossing(a, b))),
+            (false, true) => (*enters.insert(crossing(a, b)), (b, b)),
+            (false, false) => continue,
+        };
+        if edge == 0 && is_border {
+            pieces.push((from, to));
+        }
+    }
+    pieces.extend(leaves.zip(enters));
 }
 
 /// The same corner from both sides of an edge.
@@ -135,24 +132,13 @@ fn crossing(a: u32, b: u32) -> Corner {
     (a.min(b), a.max(b))
 }
 
-/// The first piece from a corner that is not used yet; there are two where loops touch.
-fn unused_from(pieces: &[(Corner, Corner)], used: &[bool], from: Corner) -> Option<usize> {
-    let first = pieces.partition_point(|piece| piece.0 < from);
-    let same = pieces[first..]
-        .iter()
-        .take_while(|piece| piece.0 == from)
-        .count();
-    (first..first + same).find(|&piece| !used[piece])
-}
-
-/// Of each quad, which of its sides belong to no other quad.
-pub(crate) fn borders(quads: &[[u32; 4]]) -> Vec<[bool; 4]> {
-    let mut edges: Vec<_> = (0usize..)
-        .zip(quads)
-        .flat_map(|(quad, &nodes)| {
-            (0..4).map(move |side| (crossing(nodes[side], nodes[(side + 1) % 4]), quad, side))
-        })
-        .collect();
+/// The sides of each quad that belong to no other quad.
+fn borders(quads: &[[u32; 4]]) -> Vec<[bool; 4]> {
+    let edge = |(quad, nodes): (usize, &[u32; 4])| {
+        let nodes = *nodes;
+        (0..4).map(move |side| (crossing(nodes[side], nodes[(side + 1) % 4]), quad, side))
+    };
+    let mut edges: Vec<_> = quads.iter().enumerate().flat_map(edge).collect();
     edges.sort_unstable();
     let mut borders = vec![[false; 4]; quads.len()];
     for same in edges.chunk_by(|one, other| one.0 == other.0) {
@@ -187,8 +173,8 @@ mod tests {
         }
     }
 
-    fn area(loops: &[Vec<(f64, f64)>]) -> f64 {
-        let twice = |points: &Vec<(f64, f64)>| -> f64 {
+    fn area(loops: &[Loop]) -> f64 {
+        let twice = |points: &Loop| -> f64 {
             let next = points.iter().cycle().skip(1);
             points
                 .iter()
@@ -199,9 +185,10 @@ mod tests {
         loops.iter().map(twice).sum::<f64>() / 2.0
     }
 
-    fn region(surface: &SurfaceFields, field: &[f64], level: f64) -> Vec<Vec<(f64, f64)>> {
-        let borders = borders(&surface.quads);
-        Contours::new(surface, &borders, field, |x, z| (x, z)).region(level)
+    fn region(surface: &SurfaceFields, field: &[f64], level: f64) -> Vec<Loop> {
+        Contours::new(surface, |x, z| (x, z))
+            .regions(field, &[level])
+            .concat()
     }
 
     fn cone(surface: &SurfaceFields) -> Vec<f64> {

@@ -1,30 +1,30 @@
-//! A field on the articulating surface, seen as a surgeon looks down on the tibia:
-//! anterior up, +z to the right.
+//! A field on the articulating surface, seen as a surgeon looks down on the tibia: anterior up, +z to the right.
 
+use colorous::Gradient;
+
+use super::{
+    axis::{Axis, round_step},
+    contour::{Contours, Loop},
+    marker::{Marker, TextRow},
+    path::Path,
+    svg::{escape, scale_bar, titled},
+};
 use condyle_results::Side;
 
-use super::axis::{Axis, round_step};
-use super::contour::{Contours, borders};
-use super::escape::escape;
-use super::marker::{Marker, TextRow};
-use super::path::Path;
 use crate::number::{fixed, significant};
-use crate::results::{
-    measure::{Extreme, Region},
-    surface::SurfaceFields,
-};
+use crate::results::{Extreme, Region, SurfaceFields};
 
-/// Bands between 0 and the largest value, at most.
+/// Most bands between 0 and the largest value.
 const MAX_BANDS: usize = 12;
 /// Half the width of the text below a marker, px, in the large letters of a narrow screen.
 const HALF_TEXT_WIDTH: f64 = 110.0;
 /// Half the width of the name of a direction, px.
 const HALF_DIRECTION: f64 = 40.0;
-/// Distance between the height lines of the bare surface, mm.
-const HEIGHT_STEP: f64 = 1.0;
+/// Distance between height lines, mm.
+const HEIGHT_STEP_MM: f64 = 1.0;
 /// A largest value below this counts as nothing to show.
 const NOTHING: f64 = 1e-12;
-/// Share of the first band that stays bare.
+/// Share of the first band that stays bare: rounding noise around a scar would have an outline.
 const NEXT_TO_NOTHING: f64 = 0.2;
 /// Colour of the surface below the first band: polyethylene.
 const BARE: &str = "#f2f0ea";
@@ -36,20 +36,21 @@ const BAR_GAP: f64 = 48.0;
 const BAR_WIDTH: f64 = 15.0;
 const BAR_LABELS: f64 = 62.0;
 
-/// The colours of a map, from light for little to dark for much, perceptually uniform.
+/// The style of the map of a field.
 #[derive(Clone, Copy)]
-pub(crate) enum Shades {
-    /// Yellow, red, black.
-    Magma,
-    /// Yellow, green, violet.
-    Viridis,
-    /// Yellow, grey, blue.
-    Cividis,
-    /// Blue below 0, red above.
-    RedBlue,
+pub(crate) struct MapStyle {
+    /// Distinguishes the picture on a page.
+    pub(crate) id: &'static str,
+    pub(crate) title: &'static str,
+    /// The unit; empty for a pure number.
+    pub(crate) unit: &'static str,
+    /// The word for the largest value of a side.
+    pub(crate) largest: &'static str,
+    /// The colours, perceptually uniform, which run from dark for much to light for little.
+    pub(crate) shades: Gradient,
 }
 
-/// What the colours of a map range over.
+/// The range of values that the colours cover.
 #[derive(Clone, Copy)]
 pub(crate) enum ColourRange {
     /// From 0 to the largest value.
@@ -62,38 +63,30 @@ pub(crate) enum ColourRange {
 
 /// A map of one field.
 pub(crate) struct Map<'a> {
-    /// Distinguishes the picture on a page.
-    pub(crate) id: &'static str,
-    /// What is shown.
-    pub(crate) title: &'static str,
-    /// Its unit; empty for a pure number.
-    pub(crate) unit: &'static str,
-    /// What the largest value of a side is called.
-    pub(crate) largest: &'static str,
-    /// The surface.
+    pub(crate) style: MapStyle,
     pub(crate) surface: &'a SurfaceFields,
-    /// A value a node.
+    /// A value for each node.
     pub(crate) values: &'a [f64],
-    /// Which knee it is.
     pub(crate) side: Side,
-    /// The colours.
-    pub(crate) shades: Shades,
-    /// What they range over.
     pub(crate) range: ColourRange,
-    /// Scale of the picture, px per mm.
+    /// Scale of the picture.
     pub(crate) px_per_mm: f64,
 }
 
-impl Map<'_> {
-    /// The map as an element of a page.
-    pub(crate) fn svg(&self) -> String {
-        self.svg_with(&self.desc(), "")
-    }
+/// The largest finite absolute value.
+pub(crate) fn largest_size(values: &[f64]) -> f64 {
+    let finite = values.iter().filter(|value| value.is_finite());
+    finite.fold(0.0, |most, value| value.abs().max(most))
+}
 
-    /// The map with something drawn over it, by [`Map::place`], and what it shows in a sentence.
-    pub(crate) fn svg_with(&self, desc: &str, over: &str) -> String {
-        let ((width, height), id) = (self.size(), self.id);
-        let (title, desc, place) = (escape(self.title), escape(desc), self.place_in_words());
+impl Map<'_> {
+    /// The map as an element of a page, with a description, and with something drawn over it by [`Map::place`].
+    pub(crate) fn svg(&self, desc: &str, over: &str) -> String {
+        let ((width, height), MapStyle { id, title, .. }) = (self.size(), self.style);
+        let (title, desc) = (escape(title), escape(desc));
+        let [(_, x_high), (z_low, _)] = self.surface.bounds();
+        // The inverse of `place` for the page's program: x at the top and z at the left, mm; where these are, px; px per mm.
+        let place = format!("{x_high} {z_low} {LEFT} {TOP} {}", self.px_per_mm);
         format!(
             r#"<svg class="fig" role="img" data-map="{place}" aria-labelledby="{id}-t {id}-d" viewBox="0 0 {width:.1} {height:.1}"><title id="{id}-t">{title}</title><desc id="{id}-d">{desc}</desc>{}{over}</svg>"#,
             self.body()
@@ -103,11 +96,14 @@ impl Map<'_> {
     /// The map as content of a larger picture.
     pub(crate) fn body(&self) -> String {
         let (bands, markers) = (self.bands(), self.markers());
+        let (_, height) = self.surface_size();
+        // Below the colours, where no leader passes.
+        let scale_bar_end = (self.size().0 - 1.0, TOP + height + 26.0);
         [
             self.surface_picture(&bands),
             self.directions(&markers),
             self.colour_bar(&bands),
-            self.scale_bar(),
+            scale_bar(scale_bar_end, self.px_per_mm),
             markers.iter().map(Marker::svg).collect(),
         ]
         .concat()
@@ -116,165 +112,132 @@ impl Map<'_> {
     /// Width and height, px.
     pub(crate) fn size(&self) -> (f64, f64) {
         let (width, height) = self.surface_size();
-        (
-            LEFT + width + BAR_GAP + BAR_WIDTH + BAR_LABELS,
-            TOP + height + BOTTOM,
-        )
+        let bar = BAR_GAP + BAR_WIDTH + BAR_LABELS;
+        (LEFT + width + bar, TOP + height + BOTTOM)
     }
 
-    /// A sentence for those who cannot see it.
+    /// A sentence for readers who cannot see it.
     pub(crate) fn desc(&self) -> String {
-        let [left, right] = self.side.regions();
-        let found: Vec<_> = self
-            .extremes()
-            .into_iter()
-            .map(|(name, extreme)| {
-                let (value, place) = (self.value_text(extreme.value), place_text(&extreme));
-                format!(
-                    "{} {} {value} at {place}",
-                    self.largest,
-                    name.to_lowercase()
-                )
-            })
-            .collect();
+        let [left, right] = self.side.regions().map(str::to_lowercase);
+        let (title, largest) = (self.style.title, self.style.largest);
+        let sentence = |(name, extreme): &(&str, Extreme)| {
+            let (value, place) = (self.value_text(extreme.value), place_text(extreme));
+            format!("{largest} {} {value} at {place}", name.to_lowercase())
+        };
+        let found: Vec<_> = self.extremes().iter().map(sentence).collect();
         let found = match found.as_slice() {
             [] => String::from("There is nothing to show yet"),
             found => found.join("; "),
         };
         format!(
-            "{} on the articulating surface from above, anterior up, {} on the left, {} on the right. {}.",
-            self.title,
-            left.to_lowercase(),
-            right.to_lowercase(),
-            found
+            "{title} on the articulating surface from above, anterior up, {left} on the left, {right} on the right. {found}."
         )
     }
 
-    fn largest_value(&self) -> f64 {
-        match self.range {
-            ColourRange::Own => self
-                .surface
-                .largest(self.values, Region::Whole)
-                .map_or(0.0, |extreme| extreme.value),
-            ColourRange::UpTo(largest) | ColourRange::BothWays(largest) => largest,
-        }
-    }
-
-    fn bands(&self) -> Axis {
-        let largest = self.largest_value();
-        let (sides, low) = match self.range {
-            ColourRange::Own | ColourRange::UpTo(_) => (1, 0.0),
-            ColourRange::BothWays(_) => (2, -1.0),
-        };
-        let step = round_step(largest.max(NOTHING) / (MAX_BANDS / sides) as f64);
-        let high = (largest / step - 1e-9).ceil().max(1.0) * step;
-        Axis {
-            low: low * high,
-            high,
-            step,
-        }
-    }
-
-    fn surface_size(&self) -> (f64, f64) {
-        let [(x_low, x_high), (z_low, z_high)] = self.surface.bounds();
-        (
-            (z_high - z_low) * self.px_per_mm,
-            (x_high - x_low) * self.px_per_mm,
-        )
-    }
-
-    /// Where x and z of the insert frame, mm, are in the picture.
+    /// Maps x and z of the insert frame, mm, to the picture, px.
     pub(crate) fn place(&self) -> impl Fn(f64, f64) -> (f64, f64) {
         let [(_, x_high), (z_low, _)] = self.surface.bounds();
         let scale = self.px_per_mm;
         move |x, z| (LEFT + (z - z_low) * scale, TOP + (x_high - x) * scale)
     }
 
-    /// What [`Map::place`] follows, for programs of the page: x at the top, z at the left, mm; where these are, px, and px
-    /// per mm.
-    fn place_in_words(&self) -> String {
-        let [(_, x_high), (z_low, _)] = self.surface.bounds();
+    fn largest_value(&self) -> f64 {
+        let largest = || self.surface.largest(self.values, Region::Whole);
+        match self.range {
+            ColourRange::Own => largest().map_or(0.0, |extreme| extreme.value),
+            ColourRange::UpTo(largest) | ColourRange::BothWays(largest) => largest,
+        }
+    }
+
+    fn is_both_ways(&self) -> bool {
+        matches!(self.range, ColourRange::BothWays(_))
+    }
+
+    fn bands(&self) -> Axis {
+        let largest = self.largest_value();
+        let sides = if self.is_both_ways() { 2 } else { 1 };
+        let step = round_step(largest.max(NOTHING) / (MAX_BANDS / sides) as f64);
+        // A largest value that is a multiple of the step but for rounding gets no empty band.
+        let high = (largest / step - 1e-9).ceil().max(1.0) * step;
+        let low = if self.is_both_ways() { -high } else { 0.0 };
+        Axis { low, high, step }
+    }
+
+    fn surface_size(&self) -> (f64, f64) {
+        let [(x_low, x_high), (z_low, z_high)] = self.surface.bounds();
         let scale = self.px_per_mm;
-        format!("{x_high} {z_low} {LEFT} {TOP} {scale}")
+        ((z_high - z_low) * scale, (x_high - x_low) * scale)
     }
 
     fn surface_picture(&self, bands: &Axis) -> String {
-        let borders = borders(&self.surface.quads);
-        let contours = Contours::new(self.surface, &borders, self.values, self.place());
-        let outline = path(&self.outline(&borders).region(f64::NEG_INFINITY));
+        let contours = Contours::new(self.surface, self.place());
+        let flat = vec![0.0; self.surface.nodes.len()];
+        let outline = path(&contours.regions(&flat, &[f64::NEG_INFINITY]).concat());
         let mut out = format!(r#"<path fill="{BARE}" d="{outline}"/>"#);
         if self.largest_value() > NOTHING {
             out += &self.filled(&contours, bands);
         }
-        out += &self.height_lines(&borders);
-        out += &self.middle_line();
-        out + &format!(r#"<path class="rim" d="{outline}"/>"#)
+        let heights = self.height_lines(&contours);
+        let mut middle = Path::default();
+        let [(x_low, x_high), _] = self.surface.bounds();
+        middle.open([x_high, x_low].map(|x| self.place()(x, 0.0)));
+        let middle = middle.data();
+        out + &format!(
+            r#"<path class="height" d="{heights}"/><path class="middle" d="{middle}"/><path class="rim" d="{outline}"/>"#
+        )
     }
 
-    /// The whole surface, whatever the values on it.
-    fn outline<'a>(&'a self, borders: &'a [[bool; 4]]) -> Contours<'a> {
-        let flat = vec![0.0; self.surface.nodes.len()];
-        Contours::new(self.surface, borders, &flat, self.place())
-    }
-
-    /// Each band is painted over the one below; the first leaves out what is next to nothing.
+    /// Each band is painted over the one below.
     fn filled(&self, contours: &Contours, bands: &Axis) -> String {
-        (0..bands.intervals())
-            .map(|band| {
-                let level = match (band, self.range) {
-                    (0, ColourRange::BothWays(_)) => f64::NEG_INFINITY,
-                    (0, ColourRange::Own | ColourRange::UpTo(_)) => bands.step * NEXT_TO_NOTHING,
-                    (band, _) => bands.low + bands.step * band as f64,
-                };
-                let (fill, shape) = (self.colour(band, bands), path(&contours.region(level)));
-                format!(r#"<path class="iso" fill="{fill}" d="{shape}"/>"#)
-            })
-            .collect()
+        let level = |band: usize| match (band, self.is_both_ways()) {
+            (0, true) => f64::NEG_INFINITY,
+            (0, false) => bands.step * NEXT_TO_NOTHING,
+            (band, _) => bands.low + bands.step * band as f64,
+        };
+        let levels: Vec<f64> = (0..bands.intervals()).map(level).collect();
+        let regions = contours.regions(self.values, &levels);
+        let shape = |(band, region): (usize, &Vec<Loop>)| {
+            let (fill, shape) = (self.colour(band, bands), path(region));
+            format!(r#"<path class="iso" fill="{fill}" d="{shape}"/>"#)
+        };
+        regions.iter().enumerate().map(shape).collect()
     }
 
     fn colour(&self, band: usize, bands: &Axis) -> String {
-        let share = (band as f64 + 0.5) / bands.intervals() as f64;
-        let is_next_to_zero = (share - 0.5).abs() * (bands.intervals() as f64) < 1.0;
-        if matches!(self.range, ColourRange::BothWays(_)) && is_next_to_zero {
+        let count = bands.intervals() as f64;
+        let share = (band as f64 + 0.5) / count;
+        let is_next_to_zero = (share - 0.5).abs() * count < 1.0;
+        if self.is_both_ways() && is_next_to_zero {
             return BARE.to_owned();
         }
-        let gradient = match self.shades {
-            Shades::Magma => colorous::MAGMA,
-            Shades::Viridis => colorous::VIRIDIS,
-            Shades::Cividis => colorous::CIVIDIS,
-            Shades::RedBlue => colorous::RED_BLUE,
-        };
-        format!("#{:x}", gradient.eval_continuous(1.0 - 0.95 * share))
+        // The lightest twentieth is hard to tell from paper.
+        let colour = self.style.shades.eval_continuous(1.0 - 0.95 * share);
+        format!("#{colour:x}")
     }
 
-    fn height_lines(&self, borders: &[[bool; 4]]) -> String {
-        let heights: Vec<_> = self.surface.nodes.iter().map(|node| node.y).collect();
-        let (low, high) = heights
-            .iter()
-            .fold((f64::MAX, f64::MIN), |(low, high), &y| {
-                (low.min(y), high.max(y))
-            });
-        let contours = Contours::new(self.surface, borders, &heights, self.place());
-        let steps = ((high - low) / HEIGHT_STEP).ceil() as usize;
-        let loops: Vec<_> = (1..steps)
-            .flat_map(|step| contours.region(low + step as f64 * HEIGHT_STEP))
-            .collect();
-        let lines = path(&loops);
-        format!(r#"<path class="height" d="{lines}"/>"#)
-    }
-
-    fn middle_line(&self) -> String {
-        let [(x_low, x_high), _] = self.surface.bounds();
-        let mut line = Path::default();
-        line.open([(x_high, 0.0), (x_low, 0.0)].map(|(x, z)| self.place()(x, z)));
-        format!(r#"<path class="middle" d="{}"/>"#, line.data())
+    fn height_lines(&self, contours: &Contours) -> String {
+        let heights: Vec<f64> = self.surface.nodes.iter().map(|node| node.y).collect();
+        let low = heights.iter().copied().fold(f64::MAX, f64::min);
+        let high = heights.iter().copied().fold(f64::MIN, f64::max);
+        let steps = ((high - low) / HEIGHT_STEP_MM).ceil() as usize;
+        let level = |step: usize| low + step as f64 * HEIGHT_STEP_MM;
+        let levels: Vec<f64> = (1..steps).map(level).collect();
+        path(&contours.regions(&heights, &levels).concat())
     }
 
     fn directions(&self, markers: &[Marker]) -> String {
         let ((width, height), [left, right]) = (self.surface_size(), self.side.regions());
         let (across, down) = (LEFT + width / 2.0, TOP + height / 2.0);
         let (low, far) = (TOP + height + 17.0, LEFT + width + 16.0);
-        let below = self.clear_of_leaders(low, markers);
+        // "Posterior" stands in the middle, or where no leader passes at that height.
+        let is_clear = |x: &f64| {
+            let mut leaders = markers.iter().map(|marker| marker.leader_at(low));
+            leaders.all(|leader| (leader - x).abs() > HALF_DIRECTION)
+        };
+        let mut places = [0.5, 0.25, 0.75]
+            .map(|part| LEFT + part * width)
+            .into_iter();
+        let below = places.find(is_clear).unwrap_or(across);
         format!(
             r#"<g class="side" text-anchor="middle"><text class="side" x="{across:.1}" y="{:.1}">Anterior</text><text class="side" x="{below:.1}" y="{low:.1}">Posterior</text><text class="side" transform="translate({:.1} {down:.1}) rotate(-90)">{left}</text><text class="side" transform="translate({far:.1} {down:.1}) rotate(-90)">{right}</text></g>"#,
             TOP - 10.0,
@@ -282,94 +245,53 @@ impl Map<'_> {
         )
     }
 
-    /// The middle, or where else at that height below the surface no leader passes.
-    fn clear_of_leaders(&self, y: f64, markers: &[Marker]) -> f64 {
-        let at = |part: f64| LEFT + part * self.surface_size().0;
-        let is_clear = |x: &f64| {
-            let mut leaders = markers.iter().map(|marker| marker.leader_at(y));
-            leaders.all(|leader| (leader - x).abs() > HALF_DIRECTION)
-        };
-        let mut places = [0.5, 0.25, 0.75].map(at).into_iter();
-        places.find(is_clear).unwrap_or(at(0.5))
-    }
-
     fn colour_bar(&self, bands: &Axis) -> String {
         let (width, height) = self.surface_size();
         let x = LEFT + width + BAR_GAP;
-        if self.largest_value() <= NOTHING {
-            return self.bar_title(x);
-        }
-        let band_height = height / bands.intervals() as f64;
         let mut out = String::new();
-        for band in 0..bands.intervals() {
-            let y = TOP + height - (band + 1) as f64 * band_height;
-            let fill = self.colour(band, bands);
-            out += &format!(
-                r#"<rect x="{x:.1}" y="{y:.2}" width="{BAR_WIDTH}" height="{:.2}" fill="{fill}"/>"#,
-                band_height + 0.3
-            );
+        if self.largest_value() > NOTHING {
+            let band_height = height / bands.intervals() as f64;
+            for band in 0..bands.intervals() {
+                let y = TOP + height - (band + 1) as f64 * band_height;
+                let fill = self.colour(band, bands);
+                // A little higher than the band, so that no paper shows between two.
+                out += &format!(
+                    r#"<rect x="{x:.1}" y="{y:.2}" width="{BAR_WIDTH}" height="{:.2}" fill="{fill}"/>"#,
+                    band_height + 0.3
+                );
+            }
+            for tick in bands.ticks() {
+                let y = TOP + height * (1.0 - bands.fraction(tick)) + 3.8;
+                let (x, label) = (x + BAR_WIDTH + 6.0, bands.label(tick));
+                out += &format!(r#"<text x="{x:.1}" y="{y:.1}">{label}</text>"#);
+            }
         }
-        for tick in bands.ticks() {
-            let y = TOP + height * (1.0 - bands.fraction(tick)) + 3.8;
-            let (x, label) = (x + BAR_WIDTH + 6.0, bands.label(tick));
-            out += &format!(r#"<text x="{x:.1}" y="{y:.1}">{label}</text>"#);
-        }
-        out + &self.bar_title(x)
-    }
-
-    fn bar_title(&self, x: f64) -> String {
-        let (x, y) = (x + BAR_WIDTH + BAR_LABELS, TOP - 14.0);
-        let title = escape(self.title);
-        let unit = if self.unit.is_empty() {
-            String::new()
-        } else {
-            format!(r#"<tspan class="unit">, {}</tspan>"#, escape(self.unit))
-        };
-        format!(r#"<text class="strong" x="{x:.1}" y="{y}" text-anchor="end">{title}{unit}</text>"#)
-    }
-
-    /// Below the colours, where no leader passes.
-    fn scale_bar(&self) -> String {
-        const LENGTH_MM: f64 = 10.0;
-        let (_, height) = self.surface_size();
-        let (length, y) = (LENGTH_MM * self.px_per_mm, TOP + height + 26.0);
-        let end = self.size().0 - 1.0;
-        let (start, middle) = (end - length, end - length / 2.0);
-        format!(
-            r#"<path class="leader" d="M{start:.1} {:.1}v7M{start:.1} {y:.1}H{end:.1}M{end:.1} {:.1}v7"/><text x="{middle:.1}" y="{:.1}" text-anchor="middle">{LENGTH_MM} mm</text>"#,
-            y - 3.5,
-            y - 3.5,
-            y + 14.0,
+        let (end, y) = (x + BAR_WIDTH + BAR_LABELS, TOP - 14.0);
+        let title = titled(self.style.title, self.style.unit);
+        out + &format!(
+            r#"<text class="strong" x="{end:.1}" y="{y}" text-anchor="end">{title}</text>"#
         )
     }
 
+    /// The largest value of each side and the side's name; with its sign, where values go both ways.
     fn extremes(&self) -> Vec<(&'static str, Extreme)> {
-        [Region::Left, Region::Right]
-            .into_iter()
-            .zip(self.side.regions())
-            .filter_map(|(region, name)| Some((name, self.extreme(region)?)))
-            .filter(|(_, extreme)| extreme.value.abs() > NOTHING)
-            .collect()
+        let size = |value: f64| {
+            if self.is_both_ways() {
+                value.abs()
+            } else {
+                value
+            }
+        };
+        let of_side = |(region, name)| {
+            let extreme = self.surface.largest_by(self.values, region, size)?;
+            (extreme.value.abs() > NOTHING).then_some((name, extreme))
+        };
+        let regions = [Region::Left, Region::Right].into_iter();
+        let named = regions.zip(self.side.regions());
+        named.filter_map(of_side).collect()
     }
 
-    /// The largest value of a region; with its sign, where values go both ways.
-    fn extreme(&self, region: Region) -> Option<Extreme> {
-        let highest = self.surface.largest(self.values, region)?;
-        if !matches!(self.range, ColourRange::BothWays(_)) {
-            return Some(highest);
-        }
-        let turned: Vec<f64> = self.values.iter().map(|value| -value).collect();
-        let lowest = self.surface.largest(&turned, region)?;
-        if lowest.value <= highest.value {
-            return Some(highest);
-        }
-        Some(Extreme {
-            value: -lowest.value,
-            ..lowest
-        })
-    }
-
-    /// A ring at the largest value of each side, with what it is and where.
+    /// A ring at the largest value of each side, with value and place.
     fn markers(&self) -> Vec<Marker> {
         let (width, height) = self.surface_size();
         let row = TextRow {
@@ -377,22 +299,18 @@ impl Map<'_> {
             right: LEFT + width,
             bottom: TOP + height,
         };
-        let ring = |(name, extreme): &(&str, Extreme)| {
+        let ring = |(name, extreme): (&str, Extreme)| {
             let place = self.place()(extreme.position.x, extreme.position.z);
-            (place, self.marker_lines(name, extreme))
+            let (largest, name) = (self.style.largest, name.to_lowercase());
+            let value = self.value_text(extreme.value);
+            let first = format!(r#"{largest} {name}: <tspan class="strong">{value}</tspan>"#);
+            (place, [first, place_text(&extreme)])
         };
-        row.markers(&self.extremes().iter().map(ring).collect::<Vec<_>>())
-    }
-
-    fn marker_lines(&self, name: &str, extreme: &Extreme) -> [String; 2] {
-        let (largest, name) = (self.largest, name.to_lowercase());
-        let value = self.value_text(extreme.value);
-        let first = format!(r#"{largest} {name}: <tspan class="strong">{value}</tspan>"#);
-        [first, place_text(extreme)]
+        row.markers(self.extremes().into_iter().map(ring).collect())
     }
 
     fn value_text(&self, value: f64) -> String {
-        let text = format!("{}\u{a0}{}", significant(value, 3), self.unit);
+        let text = format!("{}\u{a0}{}", significant(value, 3), self.style.unit);
         text.trim_end().to_owned()
     }
 }
@@ -402,7 +320,7 @@ fn place_text(extreme: &Extreme) -> String {
     format!("x\u{a0}{x}, z\u{a0}{z}\u{a0}mm")
 }
 
-fn path(loops: &[Vec<(f64, f64)>]) -> String {
+fn path(loops: &[Loop]) -> String {
     let mut path = Path::default();
     for points in loops {
         path.closed(points);

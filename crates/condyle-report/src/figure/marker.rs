@@ -1,31 +1,32 @@
 //! Rings at the largest values of a map, with leaders to texts that leave each other room.
 
-/// The texts' baseline below the surface, px.
+/// Baseline of the texts below the surface, px.
 const TEXT_BELOW: f64 = 50.0;
-/// A leader leaves the vertical so far below the surface, px: on the surface leaders of different rings stay apart.
+/// Leaders leave the vertical only below the surface, px: on it leaders of different rings stay apart.
 const ELBOW_BELOW: f64 = 6.0;
-/// A leader ends so far above the baseline, px.
+/// Distance of a leader's end above the baseline, px.
 const ABOVE_TEXT: f64 = 13.0;
-/// How far inside its text a leader ends, px, so that one sees whose it is.
+/// Distance of a leader's end inside the text, px, which shows whose it is.
 const INSIDE_TEXT: f64 = 24.0;
 /// Radius of a ring, px.
 const RING: f64 = 4.5;
 
-/// A ring on a map and the text that belongs to it, px.
+/// A ring on a map with its leader and text, px.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Marker {
-    /// The ring's middle.
-    pub(super) ring: (f64, f64),
+    /// Centre of the ring.
+    ring: (f64, f64),
     /// Middle of the text.
-    pub(super) text_x: f64,
-    /// What the text says, a line each; the first is safe SVG.
-    pub(super) lines: [String; 2],
+    text_x: f64,
+    /// Lines of the text, which are safe SVG.
+    lines: [String; 2],
+    /// Where the leader ends, and the heights of its elbow and end.
     leader_x: f64,
     elbow_y: f64,
-    text_y: f64,
+    end_y: f64,
 }
 
-/// Where texts stand below a map, px.
+/// The row of texts below a map, px.
 #[derive(Clone, Copy)]
 pub(super) struct TextRow {
     /// Half the width of the longest text.
@@ -37,23 +38,23 @@ pub(super) struct TextRow {
 }
 
 impl TextRow {
-    /// Markers from left to right, their texts below their rings as far as that leaves all of them room.
-    pub(super) fn markers(self, rings: &[((f64, f64), [String; 2])]) -> Vec<Marker> {
+    /// Markers from left to right, their texts below their rings as far as there is room for all.
+    pub(super) fn markers(self, rings: Vec<((f64, f64), [String; 2])>) -> Vec<Marker> {
         let mut middles: Vec<f64> = rings.iter().map(|((x, _), _)| self.inside(*x)).collect();
         if let [left, right] = middles.as_mut_slice() {
             (*left, *right) = self.apart(*left, *right);
         }
-        let pairs = rings.iter().zip(middles);
-        pairs
-            .map(|((ring, lines), text_x)| Marker {
-                ring: *ring,
-                text_x,
-                lines: lines.clone(),
-                leader_x: self.leader_end(ring.0, text_x),
-                elbow_y: self.bottom + ELBOW_BELOW,
-                text_y: self.bottom + TEXT_BELOW,
-            })
-            .collect()
+        let reach = self.half_width - INSIDE_TEXT;
+        let marker = |((ring, lines), text_x): (((f64, f64), [String; 2]), f64)| Marker {
+            ring,
+            text_x,
+            lines,
+            // Straight below the ring where its text reaches there, else at the nearer end of the text.
+            leader_x: ring.0.clamp(text_x - reach, text_x + reach),
+            elbow_y: self.bottom + ELBOW_BELOW,
+            end_y: self.bottom + TEXT_BELOW - ABOVE_TEXT,
+        };
+        rings.into_iter().zip(middles).map(marker).collect()
     }
 
     /// A scar at the rim has its ring there, but its text stays inside the picture.
@@ -61,7 +62,7 @@ impl TextRow {
         x.clamp(self.half_width, self.right.max(self.half_width))
     }
 
-    /// Two texts moved apart by the same way, or from the end of the picture.
+    /// Two texts moved apart by equal distances, or away from the end of the picture.
     fn apart(self, left: f64, right: f64) -> (f64, f64) {
         let missing = (2.0 * self.half_width - (right - left)).max(0.0);
         let left = self.inside(left - missing / 2.0);
@@ -69,36 +70,25 @@ impl TextRow {
         let over = (right - self.right.max(3.0 * self.half_width)).max(0.0);
         (self.inside(left - over), right - over)
     }
-
-    /// Straight below the ring where its text reaches there, else at the nearer end of the text.
-    fn leader_end(self, ring_x: f64, text_x: f64) -> f64 {
-        let reach = self.half_width - INSIDE_TEXT;
-        ring_x.clamp(text_x - reach, text_x + reach)
-    }
 }
 
 impl Marker {
     /// Ring, leader and text.
     pub(super) fn svg(&self) -> String {
         let ((x, y), [first, second]) = (self.ring, &self.lines);
-        let (text_x, text_y) = (self.text_x, self.text_y);
+        let (text_x, text_y) = (self.text_x, self.end_y + ABOVE_TEXT);
         let (from_y, elbow_y) = (y + RING, self.elbow_y);
-        let (end_x, end_y) = (self.leader_x, self.leader_end_y());
+        let (end_x, end_y) = (self.leader_x, self.end_y);
         let leader = format!("M{x:.1} {from_y:.1}V{elbow_y:.1}L{end_x:.1} {end_y:.1}");
         format!(
             r#"<circle class="halo" cx="{x:.1}" cy="{y:.1}" r="{RING}"/><path class="halo" d="{leader}"/><circle class="mark" cx="{x:.1}" cy="{y:.1}" r="{RING}"/><path class="leader" d="{leader}"/><text x="{text_x:.1}" y="{text_y:.1}" text-anchor="middle">{first}<tspan x="{text_x:.1}" dy="1.35em">{second}</tspan></text>"#
         )
     }
 
-    /// Where its leader is at a height of the picture, px.
+    /// The horizontal position of the leader at a height of the picture, px.
     pub(super) fn leader_at(&self, y: f64) -> f64 {
-        let x = self.ring.0;
-        let part = (y - self.elbow_y) / (self.leader_end_y() - self.elbow_y);
-        x + part.clamp(0.0, 1.0) * (self.leader_x - x)
-    }
-
-    fn leader_end_y(&self) -> f64 {
-        self.text_y - ABOVE_TEXT
+        let part = (y - self.elbow_y) / (self.end_y - self.elbow_y);
+        self.ring.0 + part.clamp(0.0, 1.0) * (self.leader_x - self.ring.0)
     }
 }
 
@@ -114,12 +104,7 @@ mod tests {
 
     fn markers(rings: &[(f64, f64)]) -> Vec<Marker> {
         let lines = || [String::new(), String::new()];
-        ROW.markers(
-            &rings
-                .iter()
-                .map(|&ring| (ring, lines()))
-                .collect::<Vec<_>>(),
-        )
+        ROW.markers(rings.iter().map(|&ring| (ring, lines())).collect())
     }
 
     #[test]

@@ -1,19 +1,15 @@
-//! Pictures as SVG, drawn from numbers; they know no file.
+//! Pictures as SVG, drawn from numbers; this module reads no file.
 
 mod axis;
 mod contour;
-mod escape;
 mod map;
 mod marker;
 mod panel;
 mod path;
-mod sheet;
-mod style;
+mod svg;
 
-pub(crate) use axis::Axis;
-pub(crate) use escape::escape;
-pub(crate) use map::{ColourRange, Map, Shades};
-pub(crate) use panel::{Curve, Panel};
+pub(crate) use axis::{Axis, finite_range};
+pub(crate) use map::{ColourRange, Map, MapStyle, largest_size};
+pub(crate) use panel::{Curve, MEASURED, Panel, sheet};
 pub(crate) use path::Path;
-pub(crate) use sheet::{alone, sheet};
-pub(crate) use style::{css, variables};
+pub(crate) use svg::{STYLE, colour_variables, escape, scale_bar, svg_file, titled};

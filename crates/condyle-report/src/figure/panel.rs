@@ -1,12 +1,12 @@
-//! One plot of lines: title and unit on top, round ticks, light grid.
+//! A plot of lines with title and unit on top, round ticks and a light grid; and sheets of several plots.
 
-use std::fmt::Write as _;
+use super::{
+    axis::Axis,
+    path::Path,
+    svg::{escape, svg_file, titled},
+};
 
-use super::axis::Axis;
-use super::escape::escape;
-use super::path::Path;
-
-/// Space above a plot's grid for its heading, and around it for the labels, px.
+/// Space around the grid for heading and labels, px.
 const LEFT: f64 = 46.0;
 const RIGHT: f64 = 14.0;
 const TOP: f64 = 38.0;
@@ -14,167 +14,178 @@ const BOTTOM: f64 = 30.0;
 const X_TITLE: f64 = 15.0;
 const MAX_INTERVALS: usize = 5;
 
-/// Class of what was measured on one of several specimens.
-const SPECIMEN: &str = "specimen";
+/// Space between rows of panels on a sheet, px.
+const GAP: f64 = 14.0;
+/// Height of the key below the panels of a sheet, px.
+const KEY: f64 = 26.0;
+
+/// Class of measured values.
+pub(crate) const MEASURED: &str = "specimen";
 
 /// A line of a plot.
+#[derive(Clone, Debug, Default)]
 pub(crate) struct Curve {
-    /// Class of its style: `first`, `last` or `specimen`.
+    /// Its name in the legend of the interactive plot.
+    pub(crate) name: String,
+    /// Class of its style: `first`, `last`, [`MEASURED`] or `run-1` and so on.
     pub(crate) class: &'static str,
     /// Points (x, y); a point with NaN breaks the line.
     pub(crate) points: Vec<(f64, f64)>,
-    /// Whether each point gets a dot.
-    pub(crate) dots: bool,
+    pub(crate) has_dots: bool,
     /// A label at the last point.
     pub(crate) end: Option<String>,
 }
 
+impl Curve {
+    pub(crate) fn new(class: &'static str, points: Vec<(f64, f64)>) -> Self {
+        Self {
+            class,
+            points,
+            ..Self::default()
+        }
+    }
+
+    /// With a dot at every point.
+    pub(crate) fn dotted(self) -> Self {
+        Self {
+            has_dots: true,
+            ..self
+        }
+    }
+
+    pub(crate) fn named(self, name: String) -> Self {
+        Self { name, ..self }
+    }
+}
+
 /// A plot with one or more lines.
+#[derive(Clone, Debug, Default)]
 pub(crate) struct Panel {
-    /// Distinguishes the picture on a page.
+    /// Distinguishes the plot on a page.
     pub(crate) id: String,
-    /// What is plotted.
+    /// Interactive plots of one group share their cursor.
+    pub(crate) group: String,
     pub(crate) title: String,
-    /// Its unit.
+    /// Unit of the vertical axis.
     pub(crate) unit: String,
-    /// What the positive direction means; may be empty.
-    pub(crate) positive: String,
+    /// The positive direction in words; may be empty.
+    pub(crate) positive: &'static str,
     /// The horizontal axis.
     pub(crate) x: Axis,
-    /// Ticks of the horizontal axis, if not at its round numbers: where, and their texts.
+    /// Ticks of the horizontal axis with their texts; round numbers if empty.
     pub(crate) x_marks: Vec<(f64, String)>,
     /// Unit of the horizontal axis, after its last tick; may be empty.
     pub(crate) x_unit: &'static str,
-    /// What the horizontal axis shows, on a line below it; may be empty.
+    /// Title of the horizontal axis, on a line below it; may be empty.
     pub(crate) x_title: String,
+    /// Cycles for one unit of the horizontal axis; 0 where it shows no cycles.
+    pub(crate) cycles_per_x: f64,
     /// Width and height, px.
     pub(crate) size: (f64, f64),
     /// Whether the vertical axis starts at 0.
     pub(crate) from_zero: bool,
-    /// The least that the vertical axis spans.
-    pub(crate) least_span: f64,
+    /// The smallest span of the vertical axis, so that noise does not fill the picture.
+    pub(crate) min_span: f64,
     /// The lines, the lowest first.
     pub(crate) curves: Vec<Curve>,
-    /// A sentence for those who cannot see it.
+    /// A sentence for readers who cannot see it.
     pub(crate) desc: String,
 }
 
 impl Panel {
     /// The panel as an element of a page.
     pub(crate) fn svg(&self) -> String {
-        let ((width, height), id) = (self.size, &self.id);
+        let ((width, height), id) = (self.size, escape(&self.id));
         let (title, desc) = (escape(&self.title), escape(&self.desc));
         format!(
-            r#"<svg class="fig" role="img" aria-labelledby="{id}-t {id}-d" viewBox="0 0 {width} {height}"><title id="{id}-t">{title}</title><desc id="{id}-d">{desc}</desc>{}</svg>"#,
+            r#"<svg class="fig" role="img" data-chart="{id}" aria-labelledby="{id}-t {id}-d" viewBox="0 0 {width} {height}"><title id="{id}-t">{title}</title><desc id="{id}-d">{desc}</desc>{}</svg>"#,
             self.body()
         )
     }
 
     /// The panel as content of a larger picture.
-    pub(crate) fn body(&self) -> String {
+    fn body(&self) -> String {
         let y = self.y_axis();
-        let mut out = self.heading();
-        out += &self.grid(&y);
-        for curve in &self.curves {
-            out += &self.line(curve, &y);
-        }
-        out
+        let lines = self.curves.iter().map(|curve| self.line(curve, &y));
+        self.heading() + &self.grid(&y) + &lines.collect::<String>()
     }
 
     fn y_axis(&self) -> Axis {
-        let values = || {
-            let all = self.curves.iter().flat_map(|curve| &curve.points);
-            all.map(|point| point.1).filter(|value| value.is_finite())
-        };
-        let start = if self.from_zero { 0.0 } else { f64::INFINITY };
-        let low = values().fold(start, f64::min);
-        let high = values().fold(if self.from_zero { self.least_span } else { low }, f64::max);
-        if !low.is_finite() {
-            return Axis::covering(0.0, 1.0, 0.0, MAX_INTERVALS);
-        }
-        Axis::covering(low, high, self.least_span, MAX_INTERVALS)
+        let values = self.curves.iter().flat_map(|curve| &curve.points);
+        let base = self.from_zero.then_some([0.0, self.min_span]);
+        let values = values.map(|point| point.1);
+        let all = values.chain(base.into_iter().flatten());
+        Axis::over(all, self.min_span, MAX_INTERVALS)
     }
 
     fn heading(&self) -> String {
-        let title = escape(&self.title);
-        let unit = match escape(&self.unit) {
-            unit if unit.is_empty() => String::new(),
-            unit => format!(r#"<tspan class="unit">, {unit}</tspan>"#),
-        };
-        let mut out = format!(r#"<text x="{LEFT}" y="16" class="title">{title}{unit}</text>"#);
-        if !self.positive.is_empty() {
-            let x = self.right();
-            let positive = escape(&self.positive);
-            write!(
-                out,
-                r#"<text x="{x}" y="16" text-anchor="end">+ {positive}</text>"#
-            )
-            .expect("a String takes any text");
+        let title = titled(&self.title, &self.unit);
+        let heading = format!(r#"<text x="{LEFT}" y="16" class="title">{title}</text>"#);
+        if self.positive.is_empty() {
+            return heading;
         }
-        out
+        let (right, positive) = (self.right(), escape(self.positive));
+        heading + &format!(r#"<text x="{right}" y="16" text-anchor="end">+ {positive}</text>"#)
     }
 
     fn grid(&self, y: &Axis) -> String {
-        let mut out = String::new();
         let (mut lines, mut zero) = (Path::default(), Path::default());
+        let mut labels = String::new();
         for tick in y.ticks() {
             let height = self.to_y(y, tick);
             let is_zero = tick.abs() < y.step / 2.0;
             let line = if is_zero { &mut zero } else { &mut lines };
             line.open([(LEFT, height), (self.right(), height)]);
             let (x, base, label) = (LEFT - 7.0, height + 3.8, y.label(tick));
-            out += &format!(r#"<text x="{x}" y="{base:.1}" text-anchor="end">{label}</text>"#);
+            labels += &format!(r#"<text x="{x}" y="{base:.1}" text-anchor="end">{label}</text>"#);
         }
-        if self.x_marks.is_empty() {
-            out.extend(self.x.ticks().map(|tick| self.x_label(tick)));
-        }
-        out.extend(self.x_marks.iter().map(|mark| self.x_mark(mark)));
-        out += &self.x_title();
-        let (lines, zero) = (lines.data(), zero.data());
-        format!(r#"<path class="grid" d="{lines}"/><path class="axis" d="{zero}"/>{out}"#)
+        let (lines, zero, across) = (lines.data(), zero.data(), self.x_labels());
+        format!(
+            r#"<path class="grid" d="{lines}"/><path class="axis" d="{zero}"/>{labels}{across}"#
+        )
     }
 
-    fn x_label(&self, tick: f64) -> String {
-        let (x, y) = (self.to_x(tick), self.bottom() + 17.0);
-        let label = self.x.label(tick);
-        let last = tick > self.x.high - self.x.step / 2.0;
-        if !last || self.x_unit.is_empty() {
-            return format!(r#"<text x="{x:.1}" y="{y}" text-anchor="middle">{label}</text>"#);
+    fn x_labels(&self) -> String {
+        let base = self.bottom() + 17.0;
+        let centred = |x: f64, y: f64, text: &str| {
+            format!(r#"<text x="{x:.1}" y="{y}" text-anchor="middle">{text}</text>"#)
+        };
+        let mark = |(at, text): &(f64, String)| centred(self.to_x(*at), base, &escape(text));
+        let tick = |tick: f64| {
+            let label = self.x.label(tick);
+            let is_last = tick > self.x.high - self.x.step / 2.0;
+            if !is_last || self.x_unit.is_empty() {
+                return centred(self.to_x(tick), base, &label);
+            }
+            let (unit, end) = (escape(self.x_unit), self.right() + 8.0);
+            format!(r#"<text x="{end:.1}" y="{base}" text-anchor="end">{label}&#160;{unit}</text>"#)
+        };
+        let mut labels: String = match self.x_marks.as_slice() {
+            [] => self.x.ticks().map(tick).collect(),
+            marks => marks.iter().map(mark).collect(),
+        };
+        if !self.x_title.is_empty() {
+            let middle = f64::midpoint(LEFT, self.right());
+            labels += &centred(middle, self.bottom() + 33.0, &escape(&self.x_title));
         }
-        let (unit, end) = (escape(self.x_unit), self.right() + 8.0);
-        format!(r#"<text x="{end:.1}" y="{y}" text-anchor="end">{label}&#160;{unit}</text>"#)
-    }
-
-    fn x_mark(&self, (at, text): &(f64, String)) -> String {
-        let (x, y, text) = (self.to_x(*at), self.bottom() + 17.0, escape(text));
-        format!(r#"<text x="{x:.1}" y="{y}" text-anchor="middle">{text}</text>"#)
-    }
-
-    fn x_title(&self) -> String {
-        if self.x_title.is_empty() {
-            return String::new();
-        }
-        let (x, y, title) = (
-            (LEFT + self.right()) / 2.0,
-            self.bottom() + 33.0,
-            escape(&self.x_title),
-        );
-        format!(r#"<text x="{x:.1}" y="{y}" text-anchor="middle">{title}</text>"#)
+        labels
     }
 
     fn line(&self, curve: &Curve, y: &Axis) -> String {
-        let points = || {
-            curve
-                .points
-                .iter()
-                .map(|&(u, v)| (self.to_x(u), self.to_y(y, v)))
-        };
+        let place = |&(u, v): &(f64, f64)| (self.to_x(u), self.to_y(y, v));
+        let points = || curve.points.iter().map(place);
         let mut path = Path::default();
         path.open(points());
         let mut out = format!(r#"<path class="{}" d="{}"/>"#, curve.class, path.data());
-        if curve.dots {
+        if curve.has_dots {
+            let class = match curve.class {
+                MEASURED => "dot specimen",
+                _ => "dot",
+            };
             let seen = points().filter(|point| point.1.is_finite());
-            out.extend(seen.map(|point| dot(point, curve.class)));
+            out.extend(seen.map(|(x, y)| {
+                format!(r#"<circle class="{class}" cx="{x:.1}" cy="{y:.1}" r="2.6"/>"#)
+            }));
         }
         if let (Some(label), Some((x, y))) = (&curve.end, points().next_back()) {
             let (x, y) = (x + 4.0, y - 9.0);
@@ -190,27 +201,58 @@ impl Panel {
     }
 
     fn bottom(&self) -> f64 {
-        let title = if self.x_title.is_empty() {
-            0.0
-        } else {
-            X_TITLE
-        };
-        self.size.1 - BOTTOM - title
-    }
-
-    fn to_y(&self, axis: &Axis, value: f64) -> f64 {
-        self.bottom() - axis.fraction(value) * (self.bottom() - TOP)
+        let has_title = !self.x_title.is_empty();
+        self.size.1 - BOTTOM - if has_title { X_TITLE } else { 0.0 }
     }
 
     fn to_x(&self, value: f64) -> f64 {
         LEFT + self.x.fraction(value) * (self.right() - LEFT)
     }
+
+    fn to_y(&self, axis: &Axis, value: f64) -> f64 {
+        self.bottom() - axis.fraction(value) * (self.bottom() - TOP)
+    }
 }
 
-fn dot((x, y): (f64, f64), class: &str) -> String {
-    let class = match class {
-        SPECIMEN => "dot specimen",
-        _ => "dot",
+/// An SVG file of panels in rows of `columns`, with a key of (class, meaning) below.
+pub(crate) fn sheet(
+    title: &str,
+    desc: &str,
+    panels: &[Panel],
+    columns: usize,
+    key: &[(&str, &str)],
+) -> String {
+    let (across, down) = panels.first().map_or((0.0, 0.0), |panel| panel.size);
+    let pitch = down + GAP;
+    let place = |(index, panel): (usize, &Panel)| {
+        let x = (index % columns) as f64 * across;
+        let y = (index / columns) as f64 * pitch;
+        format!(r#"<g transform="translate({x} {y})">{}</g>"#, panel.body())
     };
-    format!(r#"<circle class="{class}" cx="{x:.1}" cy="{y:.1}" r="2.6"/>"#)
+    let body: String = panels.iter().enumerate().map(place).collect();
+    let height = panels.len().div_ceil(columns) as f64 * pitch;
+    let size = (columns as f64 * across, height + KEY);
+    svg_file(
+        title,
+        desc,
+        size,
+        &(body + &key_line(key, height + KEY / 2.0)),
+    )
+}
+
+fn key_line(key: &[(&str, &str)], y: f64) -> String {
+    // Width of a letter, and the least distance from one entry to the next, px.
+    const LETTER: f64 = 6.2;
+    const PITCH: f64 = 130.0;
+    let mut x = LEFT;
+    let mut line = String::new();
+    for (class, meaning) in key {
+        let (end, text, base) = (x + 24.0, x + 32.0, y + 3.8);
+        let words = escape(meaning);
+        line += &format!(
+            r#"<path class="{class}" d="M{x} {y}H{end}"/><text x="{text}" y="{base}">{words}</text>"#
+        );
+        x += PITCH.max(56.0 + LETTER * meaning.chars().count() as f64);
+    }
+    line
 }

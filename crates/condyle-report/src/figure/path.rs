@@ -1,6 +1,4 @@
-//! SVG path data, rounded to a tenth of a unit and written as differences, to keep it short.
-
-use std::fmt::Write as _;
+//! SVG path data, rounded to a tenth of a unit and written as differences, which keeps files small.
 
 /// Path data under construction; coordinates are those of the picture.
 #[derive(Default)]
@@ -10,45 +8,29 @@ pub(crate) struct Path {
 }
 
 impl Path {
-    /// Starts a new line at a point.
-    pub(crate) fn start(&mut self, (x, y): (f64, f64)) {
-        self.step('m', x, y, true);
-    }
-
-    /// Draws a line to a point; a point that rounds to where the pen is adds nothing.
-    pub(crate) fn line(&mut self, (x, y): (f64, f64)) {
-        self.step('l', x, y, false);
-    }
-
-    /// Closes the line.
-    pub(crate) fn close(&mut self, (x, y): (f64, f64)) {
-        self.data.push('z');
-        self.pen = (tenths(x), tenths(y));
-    }
-
     /// Adds a closed loop.
     pub(crate) fn closed(&mut self, points: &[(f64, f64)]) {
         let Some((&first, rest)) = points.split_first() else {
             return;
         };
-        self.start(first);
+        self.step('m', first);
         for &point in rest {
-            self.line(point);
+            self.step('l', point);
         }
-        self.close(first);
+        self.data.push('z');
+        // Closing takes the pen back to the start.
+        self.pen = tenths(first);
     }
 
     /// Adds an open line; it is broken where a coordinate is not a number.
     pub(crate) fn open(&mut self, points: impl IntoIterator<Item = (f64, f64)>) {
-        let mut down = false;
+        let mut is_down = false;
         for (x, y) in points {
-            let drawable = x.is_finite() && y.is_finite();
-            match (drawable, down) {
-                (true, true) => self.line((x, y)),
-                (true, false) => self.start((x, y)),
-                (false, _) => {}
+            let is_drawn = x.is_finite() && y.is_finite();
+            if is_drawn {
+                self.step(if is_down { 'l' } else { 'm' }, (x, y));
             }
-            down = drawable;
+            is_down = is_drawn;
         }
     }
 
@@ -57,14 +39,16 @@ impl Path {
         self.data
     }
 
-    fn step(&mut self, command: char, x: f64, y: f64, always: bool) {
-        let to = (tenths(x), tenths(y));
+    /// Moves the pen or draws a line; a line to where the pen already is adds nothing.
+    fn step(&mut self, command: char, to: (f64, f64)) {
+        let to = tenths(to);
         let (dx, dy) = (to.0 - self.pen.0, to.1 - self.pen.1);
-        if !always && dx == 0 && dy == 0 {
+        if command == 'l' && dx == 0 && dy == 0 {
             return;
         }
         self.data.push(command);
         push_tenths(&mut self.data, dx);
+        // A minus separates the numbers by itself.
         if dy >= 0 {
             self.data.push(' ');
         }
@@ -73,8 +57,8 @@ impl Path {
     }
 }
 
-fn tenths(value: f64) -> i64 {
-    (value * 10.0).round() as i64
+fn tenths((x, y): (f64, f64)) -> (i64, i64) {
+    ((x * 10.0).round() as i64, (y * 10.0).round() as i64)
 }
 
 fn push_tenths(out: &mut String, tenths: i64) {
@@ -83,10 +67,10 @@ fn push_tenths(out: &mut String, tenths: i64) {
     }
     let (whole, tenth) = (tenths.abs() / 10, tenths.abs() % 10);
     if whole != 0 || tenth == 0 {
-        write!(out, "{whole}").expect("a String takes any text");
+        *out += &whole.to_string();
     }
     if tenth != 0 {
-        write!(out, ".{tenth}").expect("a String takes any text");
+        *out += &format!(".{tenth}");
     }
 }
 

@@ -1,6 +1,8 @@
-//! What a key of the summary says in words, for numbers that the report does not know.
+//! Titles and units of keys that are not in the catalogue.
 
 use condyle_results::split_unit;
+
+use crate::number::with_powers;
 
 /// Parts of names that are written in capitals.
 const CAPITALS: [&str; 5] = ["ap", "ie", "ml", "vv", "is"];
@@ -14,11 +16,6 @@ pub(super) fn in_words(key: &str) -> (String, String) {
     let words: Vec<String> = name.split('_').map(word).collect();
     let unit = with_powers(unit.unwrap_or_default()).replace(' ', "\u{a0}");
     (first_letter_large(&words.join(" ")), unit)
-}
-
-/// Powers in units as they are printed: mm2 is mm\u{b2}.
-pub(super) fn with_powers(text: &str) -> String {
-    text.replace("mm2", "mm\u{b2}").replace("mm3", "mm\u{b3}")
 }
 
 /// The text with its first letter in capitals.

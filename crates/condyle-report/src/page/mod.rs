@@ -1,164 +1,137 @@
-//! The page: what stands on it, and in which order.
+//! The report of one run as an HTML page.
 
-mod accuracy;
-mod activities;
-mod agreement;
-mod captions;
-mod channels;
-mod compartments;
-mod curves;
-mod doubts;
 mod key_words;
-mod laws;
-mod maps;
-mod moving;
 mod numbers;
-mod ranges;
-mod rate;
-mod slip;
-mod story;
+mod sentences;
+mod tables;
 
-pub(crate) use channels::{PlottedColumn, channel, panels as kinematics_panels};
-pub(crate) use curves::{most_cycles, panels as wear_panels, panels_up_to as wear_panels_up_to};
-pub(crate) use maps::{MAPS, MapOf, wear_map};
 pub(crate) use numbers::{label_of, shown, unit_of};
-pub(crate) use slip::slip_map;
 
-use minijinja::Environment;
-use minijinja::syntax::SyntaxConfig;
-use minijinja::value::Serde;
-use serde::Serialize;
+use std::io::Write;
 
-use crate::figure::{Panel, css, variables};
-use crate::results::{
-    case::{creeps, is_deformable, title, yields},
-    contents::Results,
-};
+use base64::{Engine, engine::general_purpose::STANDARD};
+use condyle_results::catalogue::WEAR_OVER_CONVENTIONAL;
+use flate2::{Compression, write::ZlibEncoder};
+use serde_json::{Value, json};
+
+use crate::charts;
+use crate::figure::{Map, Panel, STYLE, colour_variables};
+use crate::maps::{self, DrawnMap};
+use crate::number::significant;
+use crate::results::{CaseFacts, Results};
 use crate::scene::Scene;
+use crate::template::{PAGE_STYLE, render};
 
 const PAGE: &str = include_str!("page.html");
-const STYLE: &str = include_str!("page.css");
+/// The page's program: `web/src/report.ts`, bundled and deflated by `web/build.mjs`.
+const PROGRAM: &[u8] = include_bytes!("moving.js.zz");
 
-/// Scale of the large map, px per mm.
+/// Scale of the maps, px per mm: the large one at the top, and those below it.
 const LARGE: f64 = 8.0;
-/// Scale of the small maps, px per mm.
 const SMALL: f64 = 5.4;
 
-/// What the template is filled with.
-#[derive(Serialize)]
-struct Page<'a> {
-    style: &'static str,
-    figure_style: &'static str,
-    light: String,
-    dark: String,
-    title: Option<String>,
-    lede: Option<String>,
-    unfinished: Option<&'static str>,
-    doubts: Vec<doubts::Doubt>,
-    warnings: Vec<String>,
-    rate: Option<String>,
-    tiles: Vec<numbers::Tile>,
-    missing: Vec<&'static str>,
-    left_out: Vec<String>,
-    disagreements: Vec<String>,
-    is_deformable: bool,
-    yields: bool,
-    wear_map: Option<String>,
-    compartments: Vec<compartments::Comparison>,
-    laws: Vec<laws::Law>,
-    law_of_run: Option<String>,
-    wear_over_conventional: Option<String>,
-    activities: Vec<activities::Row>,
-    first_activity: Option<String>,
-    activity_curves: Vec<activities::Curves>,
-    creeps: bool,
-    wear_curves: Vec<String>,
-    channels: Vec<String>,
-    cycles: Option<(String, String)>,
-    /// Whether motions are measured, and wear.
-    measured: [bool; 2],
-    ranges: Vec<ranges::ChannelRange>,
-    small_maps: Vec<maps::Small>,
-    numbers: Vec<numbers::Group>,
-    checks: Option<String>,
-    accuracy: Option<accuracy::Accuracy>,
-    provenance: Vec<story::Fact>,
-    case: Option<&'a str>,
-    moving: Option<moving::Moving>,
-}
-
-impl<'a> Page<'a> {
-    fn of(results: &'a Results, scene: Option<&Scene>) -> Self {
-        let (light, dark) = variables();
-        Self {
-            style: STYLE,
-            figure_style: css(),
-            light,
-            dark,
-            title: results.case.as_deref().and_then(title),
-            lede: story::lede(results),
-            unfinished: story::unfinished(results),
-            doubts: doubts::doubts(results),
-            warnings: doubts::warnings(results),
-            rate: rate::rate(results),
-            tiles: numbers::tiles(results),
-            missing: story::missing(results),
-            left_out: story::left_out(results, scene),
-            disagreements: agreement::disagreements(results),
-            is_deformable: results.case.as_deref().is_some_and(is_deformable),
-            yields: results.case.as_deref().is_some_and(yields),
-            wear_map: wear_map(results, LARGE).map(|map| map.svg()),
-            compartments: compartments::comparisons(results),
-            laws: laws::laws(results),
-            law_of_run: laws::of_run(results),
-            wear_over_conventional: laws::wear_over_conventional(results),
-            activities: activities::rows(results),
-            first_activity: activities::first(results),
-            activity_curves: activities::curves(results),
-            creeps: results.case.as_deref().is_some_and(creeps),
-            wear_curves: svgs(&wear_panels(results)),
-            channels: svgs(&kinematics_panels(results)),
-            cycles: channels::cycle_names(results),
-            measured: [&results.measured_kinematics, &results.measured_wear].map(Option::is_some),
-            ranges: ranges::ranges(results),
-            small_maps: maps::small(results, SMALL),
-            numbers: numbers::groups(results),
-            checks: story::volume_check(results),
-            accuracy: accuracy::accuracy(results),
-            provenance: story::provenance(results),
-            case: results.case.as_deref(),
-            moving: scene.and_then(moving::Moving::of),
-        }
-    }
-}
-
-/// The report of a results folder as one HTML page.
+/// Renders the report of a results folder as one HTML page without scripts.
 ///
-/// It asks for nothing outside itself and needs no JavaScript; what `results` lacks is left out.
+/// The page requests nothing outside itself; parts that `results` lacks are left out.
 pub fn report_html(results: &Results) -> String {
     page_of(results, None)
 }
 
-/// The same page with bodies that move and curves that can be asked, where there are scripts; without
-/// them, and printed, it is the still one.
+/// Renders the same page with bodies in 3-D and interactive charts; without scripts, and in print, it equals
+/// [`report_html`].
 ///
-/// It asks for nothing outside itself.
+/// The page requests nothing outside itself.
 pub fn moving_report_html(results: &Results, scene: &Scene) -> String {
     page_of(results, Some(scene))
 }
 
 fn page_of(results: &Results, scene: Option<&Scene>) -> String {
-    render(Page::of(results, scene))
-        .expect("the template is part of the program, and its tests render it")
+    let (light, dark) = colour_variables();
+    let summary = results.summary.as_ref();
+    let facts = results.case.as_deref().map(CaseFacts::of);
+    let facts = facts.unwrap_or_default();
+    let on_page = |map: &Map<'_>, desc: &str, over: &str| map.svg(desc, over);
+    let captioned = |map: DrawnMap| json!({ "svg": map.svg, "caption": map.caption });
+    let other_maps = maps::drawn(&maps::MAPS[1..], results, SMALL, on_page).into_iter();
+    let other_maps: Vec<Value> = other_maps.map(captioned).collect();
+    let activities: Vec<_> = results.activities.iter().map(|(one, _)| one).collect();
+    let kinematics = results.kinematics.as_ref();
+    let times = summary.and_then(|summary| summary.get(&WEAR_OVER_CONVENTIONAL));
+    render(
+        PAGE,
+        &json!({
+            "style": PAGE_STYLE,
+            "figure_style": STYLE,
+            "light": light,
+            "dark": dark,
+            "lede": sentences::lede(results, &facts),
+            "unfinished": sentences::unfinished(results),
+            "doubts": sentences::doubts(results),
+            "warnings": sentences::warnings(results),
+            "rate": sentences::rate(results),
+            "tiles": numbers::tiles(results),
+            "missing": sentences::missing(results),
+            "left_out": sentences::left_out(results, scene),
+            "disagreements": sentences::disagreements(results),
+            "wear_map": large_map(results),
+            "compartments": tables::compartments(results),
+            "wear_laws": summary.map(|summary| &summary.wear_laws),
+            "wear_over_conventional": times.map(|times| significant(times, 3)),
+            "activities": activities,
+            "activity_charts": activity_charts(results),
+            "wear_charts": svgs(&charts::wear(results)),
+            "cycle_charts": svgs(&charts::cycle(results)),
+            "cycles": kinematics.and_then(charts::cycle_captions),
+            "has_measured_motion": results.measured_kinematics.is_some(),
+            "has_weighed": results.measured_wear.is_some(),
+            "ranges": tables::ranges(results),
+            "other_maps": other_maps,
+            "numbers": numbers::groups(results),
+            "volume_check": sentences::volume_check(results),
+            "accuracy": tables::accuracy(results),
+            "provenance": sentences::provenance(results),
+            "title": facts.title,
+            "is_deformable": facts.is_deformable,
+            "yields": facts.yields,
+            "creeps": facts.creeps,
+            "case": results.case,
+            "moving": scene.and_then(moving),
+        }),
+    )
+}
+
+/// The map of wear depth; `None` without a mesh that has it.
+fn large_map(results: &Results) -> Option<String> {
+    let surface = results.surface.as_ref()?;
+    let map = maps::MAPS[0].of(surface, results.side, LARGE)?;
+    Some(map.svg(&map.desc(), ""))
+}
+
+/// Motions and loads of all activities but the first.
+fn activity_charts(results: &Results) -> Vec<Value> {
+    let charts = results
+        .activities
+        .iter()
+        .skip(1)
+        .filter_map(|(activity, table)| {
+            let charts = svgs(&charts::cycle_of(table.as_ref()?, &activity.name));
+            Some(json!({ "name": activity.name, "charts": charts }))
+        });
+    charts.collect()
 }
 
 fn svgs(panels: &[Panel]) -> Vec<String> {
     panels.iter().map(Panel::svg).collect()
 }
 
-fn render(page: Page) -> Result<String, minijinja::Error> {
-    let mut syntax = SyntaxConfig::builder();
-    let mut environment = Environment::new();
-    environment.set_syntax(syntax.trim_blocks(true).lstrip_blocks(true).build()?);
-    environment.render_named_str("report.html", PAGE, Serde(page))
+/// The program and its scene, compressed, as text of a page; none where the scene is empty.
+fn moving(scene: &Scene) -> Option<Value> {
+    if scene.is_empty() {
+        return None;
+    }
+    let mut deflated = ZlibEncoder::new(Vec::new(), Compression::new(6));
+    let written = deflated.write_all(&scene.to_bytes());
+    let scene = written.and_then(|()| deflated.finish());
+    let scene = scene.expect("writing to memory cannot fail");
+    Some(json!({ "program": STANDARD.encode(PROGRAM), "scene": STANDARD.encode(scene) }))
 }

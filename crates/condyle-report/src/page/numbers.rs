@@ -7,9 +7,9 @@ use condyle_results::{
 use serde::Serialize;
 use serde_json::Value;
 
-use super::key_words::{first_letter_large, in_words, with_powers};
-use crate::number::{fixed, significant};
-use crate::results::contents::Results;
+use super::key_words::{first_letter_large, in_words};
+use crate::number::{fixed, significant, with_powers};
+use crate::results::Results;
 
 /// Numbers under one heading.
 #[derive(Serialize)]
@@ -82,10 +82,10 @@ pub(super) fn groups(results: &Results) -> Vec<Group> {
     groups
 }
 
-/// Where the neutral pose stands among the groups: after the motion that counts from it.
+/// The place of the neutral pose among the groups: after the motion, which is relative to it.
 const NEUTRAL_PLACE: usize = 4;
 
-/// Where the femur stands when AP, ML and IS read zero.
+/// The pose of the femur at which AP, ML and IS read zero.
 fn neutral(summary: &Summary) -> Group {
     let row = |label: &str, values: &[f64], unit: &str, meaning: &str| Listed {
         label: label.to_owned(),
@@ -103,13 +103,13 @@ fn neutral(summary: &Summary) -> Group {
                 "Femoral frame's origin: x, y, z",
                 &pose.femoral_origin_mm,
                 "mm",
-                "In the insert frame where the femur settles: there AP, ML and IS read zero. x is anterior, y up, z to the right.",
+                "In the insert frame, with the settled femur: there AP, ML and IS read zero. x is anterior, y up, z to the right.",
             ),
             row(
                 "Flexion, internal rotation, varus",
                 &[pose.flexion_deg, pose.ie_deg, pose.vv_deg],
                 "degrees",
-                "Where the femur settles; zero would be parallel frames.",
+                "Of the settled femur; zero if both frames are parallel.",
             ),
         ]
     });
@@ -167,7 +167,10 @@ fn unlisted(path: &str, key: &str, value: &Value) -> Vec<Listed> {
     if let Value::Object(entries) = value {
         let entry = |(inner, value): (&String, &Value)| {
             let rows = unlisted(&format!("{path}.{inner}"), inner, value);
-            rows.into_iter().map(|row| under(key, row))
+            rows.into_iter().map(|row| Listed {
+                label: format!("{}: {}", in_words(key).0, row.label),
+                ..row
+            })
         };
         return entries.iter().flat_map(entry).collect();
     }
@@ -181,15 +184,6 @@ fn unlisted(path: &str, key: &str, value: &Value) -> Vec<Listed> {
     Vec::from_iter(row)
 }
 
-/// An entry of an object, named after it too.
-fn under(key: &str, row: Listed) -> Listed {
-    let (group, _) = in_words(key);
-    Listed {
-        label: format!("{group}: {}", row.label),
-        ..row
-    }
-}
-
 /// Numbers with a unit span orders of magnitude and get significant digits; counts, shares and ratios get decimals.
 pub(crate) fn shown(number: &Scalar, value: f64, digits: i32) -> String {
     let value = number.shown(value);
@@ -201,7 +195,10 @@ pub(crate) fn shown(number: &Scalar, value: f64, digits: i32) -> String {
 
 fn plain(value: &Value) -> Option<String> {
     match value {
-        Value::Number(number) => number.as_f64().map(in_digits),
+        Value::Number(number) => number.as_f64().map(|value| match value.fract() {
+            0.0 => fixed(value, 0),
+            _ => significant(value, 4),
+        }),
         Value::String(text) => Some(text.clone()),
         Value::Bool(yes) => Some(String::from(if *yes { "yes" } else { "no" })),
         Value::Array(values) if !values.is_empty() => {
@@ -210,12 +207,4 @@ fn plain(value: &Value) -> Option<String> {
         }
         Value::Null | Value::Array(_) | Value::Object(_) => None,
     }
-}
-
-/// Four digits, but all of a whole number.
-fn in_digits(value: f64) -> String {
-    if value.fract() == 0.0 {
-        return fixed(value, 0);
-    }
-    significant(value, 4)
 }

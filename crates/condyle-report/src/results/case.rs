@@ -1,70 +1,64 @@
-//! What the report takes from the case file: its title, the side of the knee, the model of contact.
+//! The facts of a case file that the report states.
 
 use condyle_results::Side;
-
 use toml::{Table, Value};
 
-/// The text of `title` or `name` at the top of a case.
-pub(crate) fn title(case: &str) -> Option<String> {
-    let case: Table = case.parse().ok()?;
-    let named = ["title", "name"]
-        .iter()
-        .find_map(|key| case.get(*key)?.as_str())?;
-    Some(named.to_owned())
-}
-
-/// The gait cycles that the case asks for.
-pub(crate) fn cycles_asked(case: &str) -> Option<f64> {
-    let case: Table = case.parse().ok()?;
-    let cycles = case.get("march")?.get("cycles")?;
-    let whole = cycles.as_integer().map(|cycles| cycles as f64);
-    whole.or_else(|| cycles.as_float())
-}
-
-/// Whether the insert of the case deforms, and is no foundation.
-pub(crate) fn is_deformable(case: &str) -> bool {
-    let case: Option<Table> = case.parse().ok();
-    let model = case
-        .as_ref()
-        .and_then(|case| case.get("contact")?.get("model")?.as_str());
-    model == Some("deformable")
-}
-
-/// Whether the insert of the case yields.
-pub(crate) fn yields(case: &str) -> bool {
-    let case: Option<Table> = case.parse().ok();
-    let plasticity = case.as_ref().and_then(|case| {
-        let contact = case.get("contact")?;
-        // Results of version 0.1 have the key in the table above.
-        let model = contact.get("deformable").unwrap_or(contact);
-        model.get("plasticity")?.as_str()
-    });
-    plasticity.is_some_and(|plasticity| plasticity != "none")
-}
-
-/// Whether the insert of the case creeps.
-pub(crate) fn creeps(case: &str) -> bool {
-    let case: Option<Table> = case.parse().ok();
-    let law = case
-        .as_ref()
-        .and_then(|case| case.get("creep")?.get("law")?.as_str());
-    law.is_some_and(|law| law != "none")
-}
-
-/// The side of the knee: left where any table of the case says `side = "left"`, else right.
+/// The side of the knee: left where any table of the case has `side = "left"`, else right.
 pub(super) fn side(case: &str) -> Side {
     match case.parse::<Table>() {
-        Ok(case) if says_left(&case) => Side::Left,
+        Ok(case) if has_left(&case) => Side::Left,
         _ => Side::Right,
     }
 }
 
-fn says_left(table: &Table) -> bool {
+fn has_left(table: &Table) -> bool {
     table.iter().any(|(key, value)| match value {
         Value::String(text) => key == "side" && text == "left",
-        Value::Table(inner) => says_left(inner),
+        Value::Table(inner) => has_left(inner),
         _ => false,
     })
+}
+
+/// The facts of a case that the report states.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub(crate) struct CaseFacts {
+    /// `title` or `name` at the top of the case.
+    pub title: Option<String>,
+    /// Gait cycles of the whole test.
+    pub cycles: Option<f64>,
+    /// Whether the insert is a deformable solid rather than a foundation.
+    pub is_deformable: bool,
+    /// Whether the insert yields.
+    pub yields: bool,
+    /// Whether the insert creeps.
+    pub creeps: bool,
+}
+
+impl CaseFacts {
+    /// The facts of a case; of a text that is no TOML, none.
+    pub(crate) fn of(case: &str) -> Self {
+        let case: Table = case.parse().unwrap_or_default();
+        let value = |table: &str, key: &str| case.get(table)?.get(key);
+        let word = |table: &str, key: &str| value(table, key)?.as_str();
+        // Results of version 0.1 have the key in the table above.
+        let model = value("contact", "deformable").or(case.get("contact"));
+        let plasticity = model.and_then(|model| model.get("plasticity")?.as_str());
+        let yields = plasticity.is_some_and(|plasticity| plasticity != "none");
+        let cycles = value("march", "cycles");
+        let cycles = cycles.and_then(|cycles| match cycles {
+            Value::Integer(cycles) => Some(*cycles as f64),
+            other => other.as_float(),
+        });
+        let mut titles = ["title", "name"].into_iter();
+        let title = titles.find_map(|key| case.get(key)?.as_str());
+        Self {
+            title: title.map(str::to_owned),
+            cycles,
+            is_deformable: word("contact", "model") == Some("deformable"),
+            yields,
+            creeps: word("creep", "law").is_some_and(|law| law != "none"),
+        }
+    }
 }
 
 #[cfg(test)]
@@ -80,19 +74,22 @@ mod tests {
 
     #[test]
     fn the_cycles_are_those_of_the_march() {
-        assert_eq!(cycles_asked("[march]\ncycles = 5_000_000"), Some(5e6));
-        assert_eq!(cycles_asked("[run]\ncycles = 2"), None);
+        let cycles = |case| CaseFacts::of(case).cycles;
+        assert_eq!(cycles("[march]\ncycles = 5_000_000"), Some(5e6));
+        assert_eq!(cycles("[run]\ncycles = 2"), None);
     }
 
     #[test]
-    fn an_insert_deforms_where_the_case_says_so() {
+    fn an_insert_deforms_where_the_contact_model_is_deformable() {
+        let is_deformable = |case| CaseFacts::of(case).is_deformable;
         assert!(is_deformable("[contact]\nmodel = \"deformable\""));
         assert!(!is_deformable("[contact]\nmodel = \"foundation\""));
         assert!(!is_deformable("model = \"deformable\""));
     }
 
     #[test]
-    fn an_insert_yields_where_the_case_says_how() {
+    fn an_insert_yields_where_the_contact_has_a_plasticity() {
+        let yields = |case| CaseFacts::of(case).yields;
         assert!(yields("[contact.deformable]\nplasticity = \"j2\""));
         assert!(yields("[contact]\nplasticity = \"j2\""));
         assert!(!yields("[contact]\nplasticity = \"none\""));
@@ -100,7 +97,8 @@ mod tests {
     }
 
     #[test]
-    fn an_insert_creeps_where_the_case_has_a_law_of_it() {
+    fn an_insert_creeps_where_the_case_has_a_creep_law() {
+        let creeps = |case| CaseFacts::of(case).creeps;
         assert!(creeps("[creep]\nlaw = \"lee-pienkowski\""));
         assert!(!creeps("[creep]\nlaw = \"none\""));
         assert!(!creeps("[wear]\nlaw = \"archard\""));
@@ -108,6 +106,7 @@ mod tests {
 
     #[test]
     fn the_title_is_the_case_s_own() {
+        let title = |case| CaseFacts::of(case).title;
         assert_eq!(title("title = \"A knee\"").as_deref(), Some("A knee"));
         assert_eq!(title("[machine]\npreset = \"x\""), None);
     }

@@ -1,9 +1,240 @@
 //! A results folder, read.
 
-pub(crate) mod case;
-pub(crate) mod contents;
-pub(crate) mod measure;
-pub(crate) mod read;
-pub(crate) mod surface;
-pub(crate) mod surface_of_mesh;
-pub(crate) mod table;
+mod case;
+mod surface;
+mod table;
+
+pub use surface::{Extreme, Region, SurfaceFields};
+pub use table::Table;
+
+pub(crate) use self::case::CaseFacts;
+pub(crate) use surface::{ARTICULATING, Articulating};
+
+use std::path::{MAIN_SEPARATOR, Path, PathBuf};
+
+use condyle_mesh::formats::{VtuFile, read_vtu_points};
+use condyle_results::{
+    ActivitySummary, COMPARED, COMPARED_KINEMATICS, COMPARED_WEAR, Side, Summary, check_file,
+};
+
+use crate::error::ReportError;
+
+/// The content of a results folder; a part that is not there is `None`.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Results {
+    /// `summary.json`.
+    pub summary: Option<Summary>,
+    /// `wear.csv`, a row for each update.
+    pub wear: Option<Table>,
+    /// `kinematics.csv`, a row for each increment of the first and of the last cycle.
+    pub kinematics: Option<Table>,
+    /// `slip_paths.csv`, a row for each increment and place.
+    pub slip_paths: Option<Table>,
+    /// Each of several activities with its motions and loads; empty where the case has one.
+    pub activities: Vec<(ActivitySummary, Option<Table>)>,
+    /// The articulating surface at the last update.
+    pub surface: Option<SurfaceFields>,
+    /// The text of `case.toml`.
+    pub case: Option<String>,
+    /// The side of the knee.
+    pub side: Side,
+    /// Measured motions and loads, where `condyle compare` has added them to the run: `percent`, and columns as those of
+    /// `kinematics`.
+    pub measured_kinematics: Option<Table>,
+    /// Mass loss of specimens, mg, by `cycles`: a column for each specimen.
+    pub measured_wear: Option<Table>,
+    /// The files that could not be read, with reasons; only of [`Results::read_readable`].
+    pub left_out: Vec<String>,
+}
+
+/// Decides about a part that cannot be read: the reading ends, or goes on without it.
+type OnDamage<'a> = &'a mut dyn FnMut(ReportError) -> Result<(), ReportError>;
+
+impl Results {
+    /// Reads a results folder; parts that are not there become `None`.
+    ///
+    /// # Errors
+    /// The folder is missing or holds no result at all, or a file in it is damaged.
+    pub fn read(folder: &Path) -> Result<Self, ReportError> {
+        let results = Self::read_parts(folder, &mut Err)?;
+        if results.has_any() {
+            return Ok(results);
+        }
+        Err(ReportError::NoResults(folder.to_owned()))
+    }
+
+    /// Reads the readable part of a results folder: damaged parts become `None` too, and [`Results::left_out`] has the
+    /// reasons.
+    ///
+    /// # Errors
+    /// The folder is missing or holds no result that can be read.
+    pub fn read_readable(folder: &Path) -> Result<Self, ReportError> {
+        let mut left_out = Vec::new();
+        let mut note = |error: ReportError| {
+            left_out.push(without_folder(&error.to_string(), folder));
+            Ok(())
+        };
+        let results = Self::read_parts(folder, &mut note)?;
+        if results.has_any() {
+            return Ok(Self {
+                left_out,
+                ..results
+            });
+        }
+        let folder = folder.to_owned();
+        if left_out.is_empty() {
+            return Err(ReportError::NoResults(folder));
+        }
+        let reasons = left_out.join(" ");
+        Err(ReportError::NothingReadable { folder, reasons })
+    }
+
+    fn read_parts(folder: &Path, on_damage: OnDamage<'_>) -> Result<Self, ReportError> {
+        if !folder.is_dir() {
+            return Err(ReportError::NoFolder(folder.to_owned()));
+        }
+        let case = part(case(&folder.join("case.toml")), on_damage)?;
+        let summary = part(summary(&folder.join("summary.json")), on_damage)?;
+        let mut activities = Vec::new();
+        for activity in summary
+            .iter()
+            .flat_map(|summary| summary.activities.clone())
+        {
+            // A summary from elsewhere may name any path: only a file of this folder is read.
+            let name = Path::new(&activity.kinematics_file).file_name();
+            let path = name.map(|name| folder.join(name));
+            let table = path.map(|path| part(table(&path), on_damage)).transpose()?;
+            activities.push((activity, table.flatten()));
+        }
+        let mut table = |name: &str| part(table(&folder.join(name)), on_damage);
+        let compared = |name| format!("{}/{name}.csv", COMPARED.folder);
+        Ok(Self {
+            side: case.as_deref().map_or_else(Side::default, case::side),
+            case,
+            summary,
+            activities,
+            wear: table("wear.csv")?,
+            kinematics: table("kinematics.csv")?,
+            slip_paths: table("slip_paths.csv")?,
+            measured_kinematics: table(&compared(COMPARED_KINEMATICS))?,
+            measured_wear: table(&compared(COMPARED_WEAR))?,
+            surface: part(last_surface(folder), on_damage)?,
+            left_out: Vec::new(),
+        })
+    }
+
+    fn has_any(&self) -> bool {
+        let has_table = self.wear.is_some() || self.kinematics.is_some();
+        self.summary.is_some() || has_table || self.surface.is_some()
+    }
+}
+
+/// A part; none where it cannot be read and the reading goes on.
+fn part<T>(
+    read: Result<Option<T>, ReportError>,
+    on_damage: OnDamage<'_>,
+) -> Result<Option<T>, ReportError> {
+    read.or_else(|error| on_damage(error).map(|()| None))
+}
+
+/// A message whose paths lack the folder: the same run gives the same page in every folder.
+pub(crate) fn without_folder(message: &str, folder: &Path) -> String {
+    message.replace(&format!("{}{MAIN_SEPARATOR}", folder.display()), "")
+}
+
+fn last_surface(folder: &Path) -> Result<Option<SurfaceFields>, ReportError> {
+    let last = meshes(folder)?.pop();
+    last.map(|(_, path)| surface_of(&path)).transpose()
+}
+
+/// The articulating surface before the first cycle; none where there is no mesh of it.
+pub(crate) fn unworn_surface(folder: &Path) -> Result<Option<SurfaceFields>, ReportError> {
+    let first = meshes(folder)?.into_iter().find(|(update, _)| *update == 0);
+    first.map(|(_, path)| surface_of(&path)).transpose()
+}
+
+fn surface_of(path: &Path) -> Result<SurfaceFields, ReportError> {
+    let file = read_mesh(path)?;
+    SurfaceFields::of_mesh(&file.mesh, &file.point_data, path)
+}
+
+/// Reads a mesh after a check that it is the one that the run wrote.
+pub(crate) fn read_mesh(path: &Path) -> Result<VtuFile, ReportError> {
+    check_file(path)?;
+    Ok(read_vtu_points(path)?)
+}
+
+/// The meshes `insert_NNNN.vtu` of a run with their numbers of updates, in rising order.
+pub(crate) fn meshes(folder: &Path) -> Result<Vec<(u32, PathBuf)>, ReportError> {
+    let failed = |source| ReportError::Read {
+        path: folder.to_owned(),
+        source,
+    };
+    let update_of = |path: &Path| {
+        let name = path.file_name()?.to_str()?;
+        let number = name.strip_prefix("insert_")?.strip_suffix(".vtu")?;
+        number.parse().ok()
+    };
+    let mut found = Vec::new();
+    for entry in std::fs::read_dir(folder).map_err(failed)? {
+        let path = entry.map_err(failed)?.path();
+        found.extend(update_of(&path).map(|update| (update, path)));
+    }
+    found.sort_unstable();
+    Ok(found)
+}
+
+fn case(path: &Path) -> Result<Option<String>, ReportError> {
+    let Some(text) = text(path)? else {
+        return Ok(None);
+    };
+    if let Err(error) = text.parse::<toml::Table>() {
+        let problem = format!("is not a case: {}", error.message());
+        return Err(ReportError::content(path, problem));
+    }
+    // An empty case is one, with every default.
+    if !text.is_empty() {
+        check_end(&text, path)?;
+    }
+    Ok(Some(text))
+}
+
+fn summary(path: &Path) -> Result<Option<Summary>, ReportError> {
+    let Some(text) = text(path)? else {
+        return Ok(None);
+    };
+    let failed = |error| {
+        let problem = format!("is not a summary in JSON: {error}. Run the case again");
+        ReportError::content(path, problem)
+    };
+    serde_json::from_str(&text).map(Some).map_err(failed)
+}
+
+/// The table of a file; none where there is no such file.
+pub(crate) fn table(path: &Path) -> Result<Option<Table>, ReportError> {
+    let Some(text) = text(path)? else {
+        return Ok(None);
+    };
+    check_end(&text, path)?;
+    Table::parse(&text, path).map(Some)
+}
+
+/// A run ends every line of its files: one without an end was cut short.
+fn check_end(text: &str, path: &Path) -> Result<(), ReportError> {
+    if text.ends_with('\n') {
+        return Ok(());
+    }
+    let problem = "is cut short: its last line does not end";
+    Err(ReportError::content(path, problem))
+}
+
+fn text(path: &Path) -> Result<Option<String>, ReportError> {
+    match std::fs::read_to_string(path) {
+        Ok(text) => Ok(Some(text)),
+        Err(source) if source.kind() == std::io::ErrorKind::NotFound => Ok(None),
+        Err(source) => Err(ReportError::Read {
+            path: path.to_owned(),
+            source,
+        }),
+    }
+}

@@ -1,6 +1,14 @@
 //! The articulating surface with its fields.
 
-use condyle_fem::Vec3;
+use std::collections::BTreeSet;
+use std::path::Path;
+
+use condyle_fem::{HEX_FACES, HexMesh, Vec3};
+
+use crate::error::ReportError;
+
+/// Point data that is 1 on nodes of the articulating surface.
+pub(crate) const ARTICULATING: &str = "articulating";
 
 /// A surface of quads with values at its nodes.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -9,31 +17,329 @@ pub struct SurfaceFields {
     pub nodes: Vec<Vec3>,
     /// Nodes of each quad, from 0, anticlockwise seen from outside.
     pub quads: Vec<[u32; 4]>,
-    /// Name and a value a node of each field; the name carries the unit.
+    /// Name of each field, which carries the unit, and a value for each node.
     pub fields: Vec<(String, Vec<f64>)>,
 }
 
+/// A part of the surface by the sign of z.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Region {
+    /// z below 0: medial in a right knee.
+    Left,
+    /// z at or above 0: lateral in a right knee.
+    Right,
+    /// The whole surface.
+    Whole,
+}
+
+/// The largest value of a field and its place.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Extreme {
+    /// The value, in the unit of the field.
+    pub value: f64,
+    /// The node's position, mm.
+    pub position: Vec3,
+}
+
+impl Region {
+    /// Returns whether a point with this z, mm, is in the region.
+    pub fn holds(self, z: f64) -> bool {
+        match self {
+            Self::Left => z < 0.0,
+            Self::Right => z >= 0.0,
+            Self::Whole => true,
+        }
+    }
+}
+
 impl SurfaceFields {
-    /// The field called `name`, a value a node.
+    /// Extracts the boundary faces of a mesh all of whose nodes have `articulating` = 1, with the point data.
+    ///
+    /// `path` is for messages only.
+    ///
+    /// # Errors
+    /// `articulating` is missing or marks no face, or an array does not fit the nodes.
+    pub fn of_mesh(
+        mesh: &HexMesh,
+        point_data: &[(String, Vec<f64>)],
+        path: &Path,
+    ) -> Result<Self, ReportError> {
+        let nodes = mesh.nodes.len();
+        let fail = |problem: String| Err(ReportError::content(path, problem));
+        if let Some((field, values)) = point_data.iter().find(|(_, all)| all.len() != nodes) {
+            let found = values.len();
+            return fail(format!(
+                "has {nodes} nodes, but {found} values of `{field}`"
+            ));
+        }
+        let Some((_, marks)) = point_data.iter().find(|(name, _)| name == ARTICULATING) else {
+            return fail(format!("has no point data `{ARTICULATING}`"));
+        };
+        let Some(surface) = Articulating::of(mesh, marks) else {
+            return fail(format!(
+                "has no face whose nodes all have `{ARTICULATING}` = 1"
+            ));
+        };
+        let field = |(name, values): &(String, Vec<f64>)| (name.clone(), surface.pick(values));
+        Ok(Self {
+            nodes: surface.pick(&mesh.nodes),
+            fields: point_data.iter().map(field).collect(),
+            quads: surface.quads,
+        })
+    }
+
+    /// The field called `name`, a value for each node.
     pub fn field(&self, name: &str) -> Option<&[f64]> {
         let (_, values) = self.fields.iter().find(|(known, _)| known == name)?;
         Some(values)
     }
 
-    /// Positions of the corners of quad `quad`, mm.
+    /// Positions of the corners of a quad, mm.
     pub fn corners(&self, quad: [u32; 4]) -> [Vec3; 4] {
         quad.map(|node| self.nodes[node as usize])
     }
 
-    /// Smallest and largest (x, z) of the surface, mm.
+    /// Smallest and largest x, then z, of the surface, mm.
     pub(crate) fn bounds(&self) -> [(f64, f64); 2] {
-        let span = |axis: usize| {
-            let values = self.nodes.iter().map(move |node| node[axis]);
-            (
-                values.clone().fold(f64::INFINITY, f64::min),
-                values.fold(f64::NEG_INFINITY, f64::max),
-            )
+        [0, 2].map(|axis| {
+            let values = self.nodes.iter().map(|node| node[axis]);
+            let low = values.clone().fold(f64::INFINITY, f64::min);
+            (low, values.fold(f64::NEG_INFINITY, f64::max))
+        })
+    }
+
+    /// The largest finite value of a field in a region; `None` where it has no node.
+    pub fn largest(&self, values: &[f64], region: Region) -> Option<Extreme> {
+        self.largest_by(values, region, |value| value)
+    }
+
+    /// The finite value of a field in a region whose `size` is largest.
+    pub(crate) fn largest_by(
+        &self,
+        values: &[f64],
+        region: Region,
+        size: impl Fn(f64) -> f64,
+    ) -> Option<Extreme> {
+        let found = self.in_region(values, region);
+        let finite = found.filter(|extreme| extreme.value.is_finite());
+        finite.reduce(|best, next| {
+            if size(next.value) > size(best.value) {
+                next
+            } else {
+                best
+            }
+        })
+    }
+
+    /// The smallest value above 0 of a field in a region; `None` where there is none.
+    pub fn smallest_positive(&self, values: &[f64], region: Region) -> Option<f64> {
+        let values = self.in_region(values, region).map(|found| found.value);
+        values.filter(|value| *value > 0.0).reduce(f64::min)
+    }
+
+    /// Integral of a field over a region's faces: sum of face area times mean of the corners.
+    pub fn integral(&self, values: &[f64], region: Region) -> f64 {
+        let faces = self.faces(region);
+        faces.map(|(quad, area)| area * mean(values, quad)).sum()
+    }
+
+    /// Area of the faces of a region where the mean of a field is above `threshold`, mm2.
+    pub fn area_above(&self, values: &[f64], threshold: f64, region: Region) -> f64 {
+        let faces = self.faces(region);
+        let above = faces.filter(|&(quad, _)| mean(values, quad) > threshold);
+        above.map(|(_, area)| area).sum()
+    }
+
+    fn in_region(&self, values: &[f64], region: Region) -> impl Iterator<Item = Extreme> {
+        let all = self.nodes.iter().zip(values);
+        let own = all.filter(move |(node, _)| region.holds(node.z));
+        own.map(|(&position, &value)| Extreme { value, position })
+    }
+
+    fn faces(&self, region: Region) -> impl Iterator<Item = ([u32; 4], f64)> {
+        self.quads.iter().filter_map(move |&quad| {
+            let [a, b, c, d] = self.corners(quad);
+            let is_inside = region.holds((a.z + b.z + c.z + d.z) / 4.0);
+            is_inside.then(|| (quad, (c - a).cross(&(d - b)).norm() / 2.0))
+        })
+    }
+}
+
+fn mean(values: &[f64], quad: [u32; 4]) -> f64 {
+    quad.iter().map(|&node| values[node as usize]).sum::<f64>() / 4.0
+}
+
+/// The articulating surface of a hexahedral mesh.
+#[derive(Clone, Debug)]
+pub(crate) struct Articulating {
+    /// Its nodes by their numbers in the mesh, in rising order.
+    pub nodes: Vec<u32>,
+    /// Nodes of each quad, numbered as in `nodes`.
+    pub quads: Vec<[u32; 4]>,
+}
+
+impl Articulating {
+    /// The boundary faces all of whose nodes are marked 1; none where there is none.
+    pub fn of(mesh: &HexMesh, marks: &[f64]) -> Option<Self> {
+        let quads = (marks.len() == mesh.nodes.len()).then(|| marked_boundary(mesh, marks))?;
+        if quads.is_empty() {
+            return None;
+        }
+        let nodes: BTreeSet<u32> = quads.iter().flatten().copied().collect();
+        let nodes = Vec::from_iter(nodes);
+        let mut place = vec![u32::MAX; mesh.nodes.len()];
+        for (new, &old) in (0..).zip(&nodes) {
+            place[old as usize] = new;
+        }
+        let renumbered = |quad: &[u32; 4]| quad.map(|node| place[node as usize]);
+        let quads = quads.iter().map(renumbered).collect();
+        Some(Self { nodes, quads })
+    }
+
+    /// The values at the nodes of the surface, of those at all nodes of the mesh.
+    pub fn pick<T: Copy>(&self, values: &[T]) -> Vec<T> {
+        let nodes = self.nodes.iter();
+        nodes.map(|&node| values[node as usize]).collect()
+    }
+}
+
+/// The marked part of `HexMesh::boundary_quads`; it looks at marked faces only, which is ten times faster.
+fn marked_boundary(mesh: &HexMesh, marks: &[f64]) -> Vec<[u32; 4]> {
+    let is_marked = |quad: &[u32; 4]| quad.iter().all(|&node| marks[node as usize] == 1.0);
+    let faces = |hex: &[u32; 8]| HEX_FACES.map(|face| face.map(|corner| hex[corner]));
+    let faces = mesh.hexes.iter().flat_map(faces);
+    let mut quads: Vec<_> = faces.filter(is_marked).collect();
+    let (mut once, mut twice) = (BTreeSet::new(), BTreeSet::new());
+    for key in quads.iter().copied().map(sorted) {
+        if !once.insert(key) {
+            twice.insert(key);
+        }
+    }
+    // A face of two elements is inside.
+    quads.retain(|&quad| !twice.contains(&sorted(quad)));
+    quads
+}
+
+fn sorted(mut quad: [u32; 4]) -> [u32; 4] {
+    quad.sort_unstable();
+    quad
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Two unit cubes on top of each other along y; the field is the node's number.
+    fn column() -> HexMesh {
+        let corner = |i: u32| Vec3::new(f64::from(i % 2), f64::from(i / 4), f64::from(i / 2 % 2));
+        let nodes = (0..12).map(corner).collect();
+        let hex = |low: u32| {
+            [
+                low,
+                low + 2,
+                low + 3,
+                low + 1,
+                low + 4,
+                low + 6,
+                low + 7,
+                low + 5,
+            ]
         };
-        [span(0), span(2)]
+        HexMesh {
+            nodes,
+            hexes: [hex(0), hex(4)].into(),
+        }
+    }
+
+    fn data(marked: &[usize]) -> Vec<(String, Vec<f64>)> {
+        let marks = (0..12)
+            .map(|node| f64::from(u8::from(marked.contains(&node))))
+            .collect();
+        let number = (0..12).map(f64::from).collect();
+        vec![
+            (ARTICULATING.to_owned(), marks),
+            (String::from("number"), number),
+        ]
+    }
+
+    #[test]
+    fn the_top_of_a_column_is_its_surface() {
+        let surface = SurfaceFields::of_mesh(&column(), &data(&[8, 9, 10, 11]), Path::new("a.vtu"))
+            .expect("has a surface");
+        assert_eq!((surface.nodes.len(), surface.quads.len()), (4, 1));
+        assert_eq!(
+            surface.field("number"),
+            Some([8.0, 9.0, 10.0, 11.0].as_slice())
+        );
+        assert!(surface.nodes.iter().all(|node| node.y == 2.0));
+        let [a, b, c, _] = surface.corners(surface.quads[0]);
+        assert!((b - a).cross(&(c - b)).y > 0.0, "the surface faces up");
+    }
+
+    #[test]
+    fn a_face_between_two_elements_is_no_surface() {
+        let all: Vec<_> = (0..12).collect();
+        let surface = SurfaceFields::of_mesh(&column(), &data(&all), Path::new("a.vtu"))
+            .expect("has a surface");
+        assert_eq!(surface.quads.len(), column().boundary_quads().len());
+    }
+
+    #[test]
+    fn what_is_wrong_with_a_mesh_is_said() {
+        let said = |data: &[(String, Vec<f64>)]| {
+            SurfaceFields::of_mesh(&column(), data, Path::new("a.vtu"))
+                .expect_err("is wrong")
+                .to_string()
+        };
+        assert_eq!(
+            said(&data(&[])),
+            "The file a.vtu has no face whose nodes all have `articulating` = 1."
+        );
+        assert_eq!(
+            said(&[]),
+            "The file a.vtu has no point data `articulating`."
+        );
+        let short = [(String::from("depth"), vec![0.0; 3])];
+        assert_eq!(
+            said(&short),
+            "The file a.vtu has 12 nodes, but 3 values of `depth`."
+        );
+    }
+
+    /// Two unit squares side by side along z, the field equal to z + 1.
+    fn pair() -> (SurfaceFields, Vec<f64>) {
+        let nodes: Vec<_> = (0..6)
+            .map(|i| Vec3::new(f64::from(i / 3), 0.0, f64::from(i % 3) - 1.0))
+            .collect();
+        let values = nodes.iter().map(|node| node.z + 1.0).collect();
+        let quads = vec![[0, 1, 4, 3], [1, 2, 5, 4]];
+        (
+            SurfaceFields {
+                nodes,
+                quads,
+                fields: Vec::new(),
+            },
+            values,
+        )
+    }
+
+    #[test]
+    fn verify_integral_and_area_of_two_squares() {
+        let (surface, values) = pair();
+        assert!((surface.integral(&values, Region::Left) - 0.5).abs() < 1e-12);
+        assert!((surface.integral(&values, Region::Right) - 1.5).abs() < 1e-12);
+        assert!((surface.integral(&values, Region::Whole) - 2.0).abs() < 1e-12);
+        assert!((surface.area_above(&values, 1.0, Region::Whole) - 1.0).abs() < 1e-12);
+    }
+
+    #[test]
+    fn the_largest_value_is_found_in_its_region() {
+        let (surface, values) = pair();
+        let left = surface.largest(&values, Region::Left).expect("has nodes");
+        let whole = surface.largest(&values, Region::Whole).expect("has nodes");
+        assert_eq!((left.value, whole.value), (0.0, 2.0));
+        assert_eq!(whole.position.z, 1.0);
+        assert_eq!(surface.smallest_positive(&values, Region::Whole), Some(1.0));
+        assert_eq!(surface.smallest_positive(&values, Region::Left), None);
     }
 }

@@ -35,12 +35,12 @@ impl Table {
         Some(&self.columns[index])
     }
 
-    /// Names of the columns.
+    /// Names of the columns, in the order of the file.
     pub fn names(&self) -> &[String] {
         &self.names
     }
 
-    /// Number of rows.
+    /// Number of rows, without the header.
     pub fn rows(&self) -> usize {
         self.columns.first().map_or(0, Vec::len)
     }
@@ -51,39 +51,34 @@ impl Table {
             self.columns = vec![Vec::new(); row.len()];
             return Ok(());
         }
-        let line = row
-            .position()
-            .map_or(0, |position| position.line() as usize);
-        self.check_length(row.len(), line, path)?;
-        for (index, cell) in row.iter().enumerate() {
-            let value = number(cell).ok_or_else(|| ReportError::NotANumber {
-                path: path.to_owned(),
+        let fail = |problem: String| {
+            let line = row.position().map(|position| position.line() as usize);
+            let path = path.to_owned();
+            Err(ReportError::Content {
+                path,
                 line,
-                column: self.names[index].clone(),
-                text: cell.to_owned(),
-            })?;
-            self.columns[index].push(value);
+                problem,
+            })
+        };
+        let (found, expected) = (row.len(), self.names.len());
+        if found != expected {
+            return fail(format!(
+                "has {found} values; its header names {expected} columns"
+            ));
+        }
+        for ((cell, name), column) in row.iter().zip(&self.names).zip(&mut self.columns) {
+            let value = if cell.is_empty() {
+                Ok(f64::NAN)
+            } else {
+                cell.parse()
+            };
+            let Ok(value) = value else {
+                return fail(format!(
+                    "holds `{cell}` in column `{name}`, which is not a number"
+                ));
+            };
+            column.push(value);
         }
         Ok(())
     }
-
-    fn check_length(&self, found: usize, line: usize, path: &Path) -> Result<(), ReportError> {
-        let expected = self.names.len();
-        if found == expected {
-            return Ok(());
-        }
-        Err(ReportError::RaggedRow {
-            path: path.to_owned(),
-            line,
-            found,
-            expected,
-        })
-    }
-}
-
-fn number(cell: &str) -> Option<f64> {
-    if cell.is_empty() {
-        return Some(f64::NAN);
-    }
-    cell.parse().ok()
 }

@@ -1,34 +1,40 @@
-//! All in which two runs differ.
+//! The differences between two runs: settings, numbers, curves and maps.
 
-use serde::Serialize;
+use std::cmp::Ordering;
+use std::collections::BTreeMap;
 
-use super::{
-    curves::{CurveDifference, curves},
-    maps::{MapDifference, maps},
-    numbers::{NumberDifference, numbers},
-    run::Run,
-    settings::{SettingDifference, settings},
+use condyle_results::{
+    Summary,
+    catalogue::{self, Scalar},
 };
+use serde::Serialize;
+use toml::Value;
 
-/// All in which two runs differ: second less first.
+use super::run::Run;
+use crate::charts::{Channel, first_and_last};
+use crate::maps::{MAPS, MappedField};
+use crate::page::{label_of, unit_of};
+use crate::results::{Region, Results, SurfaceFields, Table};
+
+/// All differences between two runs: second minus first.
 #[derive(Clone, Debug, Serialize)]
 pub struct Differences {
-    /// What the runs are called.
+    /// Names of the runs.
     pub runs: [String; 2],
-    /// What their cases set otherwise.
+    /// Settings in which the cases differ.
     pub settings: Vec<SettingDifference>,
-    /// Numbers, by size over errors.
+    /// Numbers, ranked by difference over error.
     pub numbers: Vec<NumberDifference>,
-    /// Motions and loads, by size over range.
+    /// Motions and loads, ranked by difference over range.
     pub curves: Vec<CurveDifference>,
-    /// Maps of the last update, by size over the first's largest value.
+    /// Maps of the last update, ranked by difference over the first's largest value.
     pub maps: Vec<MapDifference>,
-    /// What could not be held against each other, and why.
+    /// Parts that could not be compared, with reasons.
     pub notes: Vec<String>,
 }
 
 impl Differences {
-    /// Holds the second run against the first.
+    /// Compares the second run with the first.
     pub fn of(first: &Run, second: &Run) -> Self {
         let [one, two] = [first, second].map(|run| &run.results);
         let cases = one.case.as_deref().zip(two.case.as_deref());
@@ -43,7 +49,7 @@ impl Differences {
         }
     }
 
-    /// Whether nothing differs of what could be held against each other.
+    /// Returns whether nothing differs among the parts that could be compared.
     pub fn is_none(&self) -> bool {
         self.numbers.is_empty() && self.curves.is_empty() && self.maps.is_empty()
     }
@@ -51,45 +57,390 @@ impl Differences {
 
 fn notes(first: &Run, second: &Run) -> Vec<String> {
     let mut notes = Vec::new();
-    for run in [first, second] {
-        let left_out = run.results.left_out.iter();
-        notes.extend(left_out.map(|why| format!("{}: left out: {why}", run.name)));
-        notes.extend(run.lacks());
-    }
-    let maps = first.maps_apart(second);
-    notes.extend(maps.map(|why| {
-        let [one, two] = [first, second].map(|run| &run.name);
-        format!("Maps of {one} and {two} cannot be subtracted: {why}.")
-    }));
-    if first.results.side != second.results.side {
-        notes.push(
-            "One is a right knee and the other a left one: medial is on opposite sides.".to_owned(),
-        );
-    }
-    let version = |run: &Run| Some(run.results.summary.as_ref()?.version.clone());
-    if let Some((one, two)) = version(first).zip(version(second))
-        && one != two
-    {
-        notes.push(format!("The runs are of condyle {one} and {two}."));
-    }
-    notes
-}
-
-impl Run {
-    /// Files without which something cannot be held against another run.
-    fn lacks(&self) -> Option<String> {
-        let Self { name, results, .. } = self;
-        let gone: Vec<&str> = [
+    for Run { name, results, .. } in [first, second] {
+        let left_out = results.left_out.iter();
+        notes.extend(left_out.map(|why| format!("{name}: left out: {why}")));
+        let files = [
             (
                 "summary.json (the run is not finished)",
                 results.summary.is_none(),
             ),
             ("kinematics.csv", results.kinematics.is_none()),
             ("case.toml", results.case.is_none()),
-        ]
-        .into_iter()
-        .filter_map(|(file, gone)| gone.then_some(file))
+        ];
+        let missing = files.into_iter().filter(|(_, is_missing)| *is_missing);
+        let missing: Vec<&str> = missing.map(|(file, _)| file).collect();
+        if !missing.is_empty() {
+            notes.push(format!("{name}: missing: {}.", missing.join(", ")));
+        }
+    }
+    if let Some(why) = first.maps_obstacle(second) {
+        let (one, two) = (&first.name, &second.name);
+        notes.push(format!(
+            "Maps of {one} and {two} cannot be subtracted: {why}."
+        ));
+    }
+    if first.results.side != second.results.side {
+        let sides = "One is a right knee and the other a left one: medial is on opposite sides.";
+        notes.push(sides.to_owned());
+    }
+    let version = |run: &Run| Some(run.results.summary.as_ref()?.version.clone());
+    if let Some((one, two)) = version(first).zip(version(second))
+        && one != two
+    {
+        notes.push(format!("The runs are from condyle {one} and {two}."));
+    }
+    notes
+}
+
+/// A key with different values in two cases.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct SettingDifference {
+    /// The dotted path of the key.
+    pub key: String,
+    /// Its value in the first case; none where it is absent.
+    pub first: Option<String>,
+    /// Its value in the second case; none where it is absent.
+    pub second: Option<String>,
+}
+
+/// Keys with different values, in alphabetical order; cases are written with every default.
+fn settings(first: &str, second: &str) -> Vec<SettingDifference> {
+    let [first, second] = [first, second].map(|case| {
+        let mut values = BTreeMap::new();
+        flatten(
+            "",
+            &Value::Table(case.parse().unwrap_or_default()),
+            &mut values,
+        );
+        values
+    });
+    let mut keys: Vec<&String> = first.keys().chain(second.keys()).collect();
+    keys.sort_unstable();
+    keys.dedup();
+    keys.retain(|key| first.get(*key) != second.get(*key));
+    let difference = |key: &String| SettingDifference {
+        key: key.clone(),
+        first: first.get(key).cloned(),
+        second: second.get(key).cloned(),
+    };
+    keys.into_iter().map(difference).collect()
+}
+
+fn flatten(path: &str, value: &Value, into: &mut BTreeMap<String, String>) {
+    match value {
+        Value::Table(table) => {
+            for (key, value) in table {
+                let below = format!("{path}.{key}");
+                flatten(below.trim_start_matches('.'), value, into);
+            }
+        }
+        Value::Array(items) if items.iter().any(Value::is_table) => {
+            for (index, item) in items.iter().enumerate() {
+                flatten(&format!("{path}[{index}]"), item, into);
+            }
+        }
+        plain => {
+            into.insert(path.to_owned(), plain.to_string());
+        }
+    }
+}
+
+/// A number in which two runs differ.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct NumberDifference {
+    /// The number, as the catalogue describes it.
+    #[serde(skip)]
+    pub scalar: &'static Scalar,
+    /// Its key in `summary.json`, which ends in its unit.
+    pub key: &'static str,
+    /// Its name in words.
+    pub label: String,
+    /// Its unit as the report shows it.
+    pub unit: String,
+    /// The value of the first run.
+    pub first: f64,
+    /// The value of the second run.
+    pub second: f64,
+    /// Second minus first.
+    pub difference: f64,
+    /// The difference in percent of the first; none where that is 0.
+    pub difference_percent: Option<f64>,
+    /// Estimated discretisation error of the first.
+    pub first_error: Option<f64>,
+    /// Estimated discretisation error of the second.
+    pub second_error: Option<f64>,
+    /// The absolute difference over the sum of both errors: below 1 it may be due to discretisation alone. None where not
+    /// both errors are stated.
+    pub times_errors: Option<f64>,
+}
+
+impl NumberDifference {
+    /// The size of the difference relative to the errors, in words.
+    pub fn verdict(&self) -> String {
+        match self.times_errors {
+            None => "no error stated".to_owned(),
+            Some(times) if times < 1.0 => "smaller than the errors".to_owned(),
+            Some(times) if times < 10.0 => format!("{times:.1} times the errors"),
+            Some(times) => format!("{times:.0} times the errors"),
+        }
+    }
+
+    /// The sum of both errors.
+    pub fn errors(&self) -> Option<f64> {
+        Some(self.first_error? + self.second_error?)
+    }
+}
+
+/// Numbers that differ: ranked by difference over errors, then those without errors by their percent.
+fn numbers(first: &Summary, second: &Summary) -> Vec<NumberDifference> {
+    let difference = |scalar: &'static Scalar| {
+        let (one, two) = (first.get(scalar)?, second.get(scalar)?);
+        let difference = two - one;
+        let number = NumberDifference {
+            scalar,
+            key: scalar.key,
+            label: label_of(scalar),
+            unit: unit_of(scalar),
+            first: one,
+            second: two,
+            difference,
+            difference_percent: (one != 0.0).then(|| 100.0 * difference / one.abs()),
+            first_error: first.total_error(scalar),
+            second_error: second.total_error(scalar),
+            times_errors: None,
+        };
+        let errors = number.errors().filter(|errors| *errors > 0.0);
+        (difference != 0.0).then(|| NumberDifference {
+            times_errors: errors.map(|errors| difference.abs() / errors),
+            ..number
+        })
+    };
+    let mut numbers: Vec<_> = catalogue::results().filter_map(difference).collect();
+    let rank = |number: &NumberDifference| {
+        let percent = number.difference_percent.map_or(f64::INFINITY, f64::abs);
+        (number.times_errors.unwrap_or(-1.0), percent)
+    };
+    numbers.sort_by(|one, two| rank(two).partial_cmp(&rank(one)).unwrap_or(Ordering::Equal));
+    numbers
+}
+
+/// The difference of two curves, in the unit of their column.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct CurveDifference {
+    /// Name of the column of `kinematics.csv`.
+    pub column: &'static str,
+    /// Its name in words.
+    pub title: &'static str,
+    /// Its unit.
+    pub unit: &'static str,
+    /// The cycle: "first" or "last".
+    pub cycle: &'static str,
+    /// Root mean square of second minus first, at the instants of the first.
+    pub rms: f64,
+    /// The difference with the largest absolute value.
+    pub largest: f64,
+    /// Percent of the cycle of the largest difference.
+    pub largest_at_percent: f64,
+    /// The root mean square in percent of the first curve's range; none where that is flat.
+    pub rms_percent_of_range: Option<f64>,
+}
+
+/// Points (percent, value) of a curve.
+type Points = Vec<(f64, f64)>;
+
+/// Motions and loads of the first and last cycle that both runs have and that differ, ranked by difference over range.
+fn curves(first: &Results, second: &Results) -> Vec<CurveDifference> {
+    let (Some(one), Some(two)) = (&first.kinematics, &second.kinematics) else {
+        return Vec::new();
+    };
+    let cycles = ["first", "last"].into_iter();
+    let mut curves: Vec<_> = cycles
+        .flat_map(|cycle| one.names().iter().map(move |name| (cycle, name)))
+        .filter_map(|(cycle, name)| curve(one, two, cycle, name))
         .collect();
-        (!gone.is_empty()).then(|| format!("{name}: not there: {}.", gone.join(", ")))
+    let rank = |curve: &CurveDifference| curve.rms_percent_of_range.unwrap_or(0.0);
+    curves.sort_by(|one, two| rank(two).total_cmp(&rank(one)));
+    curves
+}
+
+fn curve(one: &Table, two: &Table, cycle: &'static str, name: &str) -> Option<CurveDifference> {
+    let channel = Channel::find(name)?;
+    let [here, there] = [points(one, cycle, name)?, points(two, cycle, name)?];
+    let apart = |&(percent, value): &(f64, f64)| Some((percent, at(&there, percent)? - value));
+    let apart: Points = here.iter().filter_map(apart).collect();
+    let largest = apart
+        .iter()
+        .max_by(|a, b| a.1.abs().total_cmp(&b.1.abs()))?;
+    let rms = (apart.iter().map(|(_, off)| off * off).sum::<f64>() / apart.len() as f64).sqrt();
+    let values = || here.iter().map(|point| point.1);
+    let range = values().fold(f64::NEG_INFINITY, f64::max) - values().fold(f64::INFINITY, f64::min);
+    (rms > 0.0).then(|| CurveDifference {
+        column: channel.column,
+        title: channel.title,
+        unit: channel.unit,
+        cycle,
+        rms,
+        largest: largest.1,
+        largest_at_percent: largest.0,
+        rms_percent_of_range: (range > 0.0).then(|| 100.0 * rms / range),
+    })
+}
+
+/// The points of a cycle; the only cycle of a table is its first and its last.
+fn points(table: &Table, cycle: &str, name: &str) -> Option<Points> {
+    let (percents, values) = (table.column("percent")?, table.column(name)?);
+    table.column("cycles")?;
+    let ends = first_and_last(table);
+    let chosen = if cycle == "first" {
+        ends.first()
+    } else {
+        ends.last()
+    };
+    let rows = chosen?.rows.iter().copied();
+    let known = rows.filter(|&row| values[row].is_finite());
+    let points: Points = known.map(|row| (percents[row], values[row])).collect();
+    (!points.is_empty()).then_some(points)
+}
+
+/// The value of a curve at an instant, by linear interpolation; none before its first or after its last point.
+fn at(points: &Points, percent: f64) -> Option<f64> {
+    let after = points.partition_point(|point| point.0 < percent);
+    let &(x, y) = points.get(after)?;
+    if x == percent {
+        return Some(y);
+    }
+    let &(x0, y0) = points.get(after.checked_sub(1)?)?;
+    Some(y0 + (percent - x0) / (x - x0) * (y - y0))
+}
+
+/// The difference of two maps, in the unit of the field.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct MapDifference {
+    /// Name of the point data.
+    pub field: &'static str,
+    /// Its name in words.
+    pub title: &'static str,
+    /// Its unit.
+    pub unit: &'static str,
+    /// The difference, second minus first, with the largest absolute value.
+    pub largest: f64,
+    /// x of the largest difference, mm.
+    pub x_mm: f64,
+    /// z of the largest difference, mm.
+    pub z_mm: f64,
+    /// Mean absolute difference over the surface.
+    pub mean_absolute: f64,
+    /// The largest difference in percent of the first map's largest value; none where that is 0.
+    pub largest_percent: Option<f64>,
+}
+
+/// Maps that differ, ranked by difference over the largest value; none where maps cannot be subtracted.
+fn maps(first: &Run, second: &Run) -> Vec<MapDifference> {
+    let Some((one, two)) = first.comparable_surfaces(second) else {
+        return Vec::new();
+    };
+    let map = |map: &MappedField| map_difference(map, one, two);
+    let mut maps: Vec<_> = MAPS.iter().filter_map(map).collect();
+    let rank = |map: &MapDifference| map.largest_percent.map_or(f64::INFINITY, f64::abs);
+    maps.sort_by(|one, two| rank(two).total_cmp(&rank(one)));
+    maps
+}
+
+fn map_difference(
+    map: &MappedField,
+    one: &SurfaceFields,
+    two: &SurfaceFields,
+) -> Option<MapDifference> {
+    let apart = subtracted(one, two, map.field)?;
+    let largest = one.largest_by(&apart, Region::Whole, f64::abs)?;
+    let sizes: Vec<f64> = apart.iter().map(|value| value.abs()).collect();
+    let area = one.integral(&vec![1.0; sizes.len()], Region::Whole);
+    let of = one.largest(one.field(map.field)?, Region::Whole)?.value;
+    (largest.value != 0.0).then(|| MapDifference {
+        field: map.field,
+        title: map.style.title,
+        unit: map.style.unit,
+        largest: largest.value,
+        x_mm: largest.position.x,
+        z_mm: largest.position.z,
+        mean_absolute: one.integral(&sizes, Region::Whole) / area,
+        largest_percent: (of != 0.0).then(|| 100.0 * largest.value / of),
+    })
+}
+
+/// Second minus first at every node.
+pub(super) fn subtracted(
+    one: &SurfaceFields,
+    two: &SurfaceFields,
+    field: &str,
+) -> Option<Vec<f64>> {
+    let pairs = two.field(field)?.iter().zip(one.field(field)?);
+    Some(pairs.map(|(two, one)| two - one).collect())
+}
+
+#[cfg(test)]
+mod tests {
+    use std::path::Path;
+
+    use super::*;
+
+    #[test]
+    fn keys_that_differ_are_listed_by_their_path() {
+        let first = "[contact]\nfriction = 0.04\nlaw = \"linear\"\n[[activity]]\nname = \"gait\"\n";
+        let second = "[contact]\nfriction = 0.06\nlaw = \"linear\"\n[[activity]]\nname = \"stairs\"\nshare = 1\n";
+        let found = settings(first, second);
+        let keys: Vec<&str> = found.iter().map(|found| found.key.as_str()).collect();
+        assert_eq!(
+            keys,
+            ["activity[0].name", "activity[0].share", "contact.friction"]
+        );
+        assert_eq!(found[1].first, None);
+        assert_eq!(found[2].second.as_deref(), Some("0.06"));
+    }
+
+    fn summary(mass: f64, depth: f64, ap: f64) -> Summary {
+        let text = format!(
+            r#"{{"mass_loss_mg": {mass}, "max_depth_mm": {depth}, "ap_range_mm": {ap}, "ie_range_deg": 5,
+                "error": {{"mass_loss_mg": {{"total": 0.5}}, "max_depth_mm": {{"total": 0.01}}}}}}"#
+        );
+        serde_json::from_str(&text).expect("is JSON")
+    }
+
+    #[test]
+    fn differences_rank_by_size_over_errors_and_equal_numbers_are_left_out() {
+        let found = numbers(&summary(80.0, 0.4, 4.0), &summary(80.5, 0.5, 5.0));
+        let keys: Vec<&str> = found.iter().map(|found| found.key).collect();
+        assert_eq!(keys, ["max_depth_mm", "mass_loss_mg", "ap_range_mm"]);
+        assert!((found[0].times_errors.expect("has errors") - 5.0).abs() < 1e-9);
+        assert_eq!(found[0].verdict(), "5.0 times the errors");
+        assert_eq!(found[1].verdict(), "smaller than the errors");
+        assert_eq!(found[2].verdict(), "no error stated");
+        assert_eq!(found[2].difference_percent, Some(25.0));
+    }
+
+    fn results(rows: &str) -> Results {
+        let text = format!("cycles,percent,ap_mm\n{rows}");
+        Results {
+            kinematics: Some(Table::parse(&text, Path::new("k.csv")).expect("is a table")),
+            ..Results::default()
+        }
+    }
+
+    #[test]
+    fn curves_of_other_instants_are_interpolated() {
+        let coarse = results("0,50,1\n0,100,3\n");
+        let fine = results("0,50,1\n0,75,2\n0,100,5\n");
+        let found = curves(&coarse, &fine);
+        // The one cycle is the first and the last.
+        assert_eq!(found.len(), 2);
+        assert_eq!(
+            (found[0].largest, found[0].largest_at_percent),
+            (2.0, 100.0)
+        );
+        assert!((found[0].rms - 2.0_f64.sqrt()).abs() < 1e-12);
+        let back = curves(&fine, &coarse);
+        assert_eq!(back[0].largest, -2.0);
+        assert!(curves(&coarse, &coarse).is_empty());
     }
 }

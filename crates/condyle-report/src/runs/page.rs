@@ -1,25 +1,28 @@
-//! Several runs side by side on one page.
+//! Several runs side by side on one page: tables, and curves and maps with common axes and colours.
 
 use std::path::{Path, PathBuf};
 
-use super::{differences::Differences, numbers::NumberDifference, pictures, run::Run};
-use crate::error::ReportError;
-use crate::file::write_text;
-use crate::number::significant;
 use condyle_results::catalogue::{self, Scalar};
+use serde_json::{Value, json};
 
+use super::differences::{Differences, NumberDifference, subtracted};
+use super::run::Run;
+use crate::charts;
+use crate::error::ReportError;
+use crate::figure::{
+    ColourRange, Curve, MEASURED, Map, MapStyle, Panel, escape, largest_size, sheet, svg_file,
+};
+use crate::file::write_text;
+use crate::maps::{MAPS, MappedField};
+use crate::number::significant;
 use crate::page::{label_of, shown, unit_of};
 use crate::sheets::Sheets;
+use crate::template::render;
 
-/// A table: its heading, and rows of which the first is the head.
-type Table = (String, Vec<Vec<String>>);
-/// A picture: name of its file, what it shows, its text.
+/// A picture: its name, caption and text.
 type Sheet = (&'static str, String, String);
 
-/// Curves and maps of a difference that are listed, at most; the others are smaller.
-const MAX_ROWS: usize = 12;
-
-/// Writes the page of several runs, held against the first, and returns its path.
+/// Writes the page of several runs, compared with the first, and returns its path.
 ///
 /// # Errors
 /// The page cannot be written.
@@ -27,216 +30,254 @@ pub fn write_runs(path: &Path, runs: &[Run]) -> Result<PathBuf, ReportError> {
     write_text(path.to_owned(), &runs_html(runs))
 }
 
-/// Several runs side by side as one HTML page: numbers with their errors, what differs from the first run, ranked, curves on
-/// the same axes and maps in the same colours. It asks for nothing outside itself.
+/// Renders several runs side by side as one HTML page: numbers with their errors, ranked differences from the first run,
+/// curves with common axes and maps with common colours. It requests nothing outside itself.
 pub fn runs_html(runs: &[Run]) -> String {
     let Some((first, others)) = runs.split_first() else {
         return String::new();
     };
-    let differences: Vec<_> = others
-        .iter()
-        .map(|run| Differences::of(first, run))
-        .collect();
-    let mut tables = vec![numbers(runs)];
-    for difference in &differences {
-        tables.extend(of_difference(difference));
-    }
-    let title = format!("{} runs side by side", runs.len());
-    let lede = format!("Every run is held against the first, {}.", first.name);
-    let mut notes: Vec<String> = differences
-        .iter()
-        .flat_map(|one| one.notes.clone())
-        .collect();
-    let mut known = Vec::new();
-    notes.retain(|note| {
-        !known.contains(note) && {
-            known.push(note.clone());
-            true
+    let differences = others.iter().map(|run| Differences::of(first, run));
+    let differences: Vec<Differences> = differences.collect();
+    let mut notes: Vec<String> = Vec::new();
+    for note in differences.iter().flat_map(|difference| &difference.notes) {
+        // A note on the first run comes with every other.
+        if !notes.contains(note) {
+            notes.push(note.clone());
         }
-    });
+    }
     let sheets = Sheets {
         kicker: "condyle \u{b7} virtual wear tests",
-        title: &title,
-        lede: &lede,
+        title: &format!("{} runs side by side", runs.len()),
+        lede: &format!("Every run is compared with the first, {}.", first.name),
         notes: &notes,
-        tables: &tables,
+        body: &tables(runs, &differences),
+        tables: &[],
         pictures: &sheets(runs),
     };
     sheets.html()
 }
 
+/// The tables as HTML: numbers of all runs with their errors, and differences from the first.
+fn tables(runs: &[Run], differences: &[Differences]) -> String {
+    let with_error = |run: &Run, scalar: &Scalar| {
+        let summary = run.results.summary.as_ref()?;
+        let value = shown(scalar, summary.get(scalar)?, 4);
+        Some(match summary.total_error(scalar) {
+            Some(error) => format!("{value} \u{b1} {}", significant(error, 2)),
+            None => value,
+        })
+    };
+    let row = |scalar: &'static Scalar| {
+        let cells: Vec<Option<String>> = runs.iter().map(|run| with_error(run, scalar)).collect();
+        let is_known = cells.iter().any(Option::is_some);
+        let named = [Some(label_of(scalar)), Some(unit_of(scalar))].into_iter();
+        is_known.then(|| named.chain(cells).collect())
+    };
+    let numbers: Vec<Vec<Option<String>>> = catalogue::results().filter_map(row).collect();
+    let names: Vec<&str> = runs.iter().map(|run| run.name.as_str()).collect();
+    let differences: Vec<Value> = differences.iter().map(in_words).collect();
+    let context = json!({ "names": names, "numbers": numbers, "differences": differences });
+    render(include_str!("tables.html"), &context)
+}
+
+/// A difference as the template shows it: numbers with the digits and the words of the report.
+fn in_words(difference: &Differences) -> Value {
+    let number = |one: &NumberDifference| {
+        let sign = if one.difference < 0.0 {
+            '\u{2212}'
+        } else {
+            '+'
+        };
+        let magnitude = shown(one.scalar, one.difference.abs(), 3);
+        json!({
+            "label": one.label,
+            "unit": one.unit,
+            "shown": format!("{sign}{magnitude}"),
+            "difference_percent": one.difference_percent,
+            "errors": one.errors(),
+            "verdict": one.verdict(),
+        })
+    };
+    let numbers: Vec<Value> = difference.numbers.iter().map(number).collect();
+    let mut whole = json!(difference);
+    whole["numbers"] = Value::Array(numbers);
+    whole
+}
+
 fn sheets(runs: &[Run]) -> Vec<Sheet> {
-    let curves = [
+    // Curves of all runs end at the same number of cycles.
+    let cycles = runs.iter().map(|run| charts::cycles_of(&run.results));
+    let cycles = cycles.fold(0.0, f64::max);
+    let wear = runs
+        .iter()
+        .map(|run| charts::wear_up_to(&run.results, cycles));
+    let wear = together(wear, Curves::Last);
+    let motion = |pick| together(runs.iter().map(|run| charts::cycle(&run.results)), pick);
+    let names = runs.iter().map(|run| run.name.as_str());
+    let key: Vec<_> = (0..).map(line).zip(names).collect();
+    let mut sheets: Vec<Sheet> = Vec::new();
+    for (name, caption, title, panels, columns) in [
         (
             "runs_wear.svg",
-            "Wear over the test, a line a run.",
-            pictures::wear(runs),
+            "Wear over the test, one line for each run.",
+            "Wear over the test",
+            wear,
+            2,
         ),
         (
             "runs_first_cycle.svg",
             "The first cycle, on unworn inserts.",
-            pictures::motion(runs, "Motion and load in the first cycle", true),
+            "Motion and load in the first cycle",
+            motion(Curves::First),
+            3,
         ),
         (
             "runs_last_cycle.svg",
             "The last cycle that each run solved.",
-            pictures::motion(runs, "Motion and load in the last cycle", false),
+            "Motion and load in the last cycle",
+            motion(Curves::Last),
+            3,
         ),
-    ];
-    let curves = curves.into_iter();
-    let curves = curves.filter_map(|(name, caption, svg)| Some((name, caption.to_owned(), svg?)));
-    let maps = pictures::maps(runs).into_iter().map(|(name, title, svg)| {
-        let caption = format!(
-            "{title} after the last update, all runs in the same colours; below, where meshes are the same, what each differs by \
-             from the first, in colours of its own."
-        );
-        (name, caption, svg)
-    });
-    curves.chain(maps).collect()
-}
-
-/// Every number that a run has, with its error.
-fn numbers(runs: &[Run]) -> Table {
-    let names = runs.iter().map(|run| run.name.clone());
-    let head = ["Quantity".to_owned(), "Unit".to_owned()];
-    let mut rows = vec![head.into_iter().chain(names).collect()];
-    for scalar in catalogue::results() {
-        let cells: Vec<Option<String>> = runs.iter().map(|run| with_error(run, scalar)).collect();
-        if cells.iter().any(Option::is_some) {
-            let cells = cells.into_iter();
-            let cells = cells.map(|cell| cell.unwrap_or_else(|| "\u{2013}".to_owned()));
-            let named = [label_of(scalar), unit_of(scalar)];
-            rows.push(named.into_iter().chain(cells).collect());
+    ] {
+        if !panels.is_empty() {
+            let svg = sheet(title, caption, &panels, columns, &key);
+            sheets.push((name, caption.to_owned(), svg));
         }
     }
-    ("All numbers".to_owned(), rows)
+    sheets.extend(MAPS.iter().filter_map(|field| {
+        let caption = format!(
+            "{} after the last update, all runs in the same colours; below, where the meshes are the same, the difference of \
+             each from the first, in colours of its own.",
+            field.style.title
+        );
+        Some((field.style.id, caption, map_rows(runs, field)?))
+    }));
+    sheets
 }
 
-fn with_error(run: &Run, scalar: &Scalar) -> Option<String> {
-    let summary = run.results.summary.as_ref()?;
-    let value = shown(scalar, summary.get(scalar)?, 4);
-    Some(match summary.total_error(scalar) {
-        Some(error) => format!("{value} \u{b1} {}", significant(error, 2)),
-        None => value,
-    })
+/// The style of the line of a run; the seventh looks like the first again.
+fn line(run: usize) -> &'static str {
+    const LINES: [&str; 6] = ["run-1", "run-2", "run-3", "run-4", "run-5", "run-6"];
+    LINES[run % LINES.len()]
 }
 
-fn of_difference(difference: &Differences) -> Vec<Table> {
-    let [first, second] = &difference.runs;
-    let against = |what: &str| format!("{second} against {first}: {what}");
-    let tables = [
-        (against("what was set otherwise"), settings(difference)),
-        (
-            against("numbers, by size over their errors"),
-            differing(difference),
-        ),
-        (
-            against("curves, by size over their range"),
-            curves(difference),
-        ),
-        (
-            against("maps, by size over their largest value"),
-            maps(difference),
-        ),
-    ];
-    // A head alone tells nothing.
-    tables
-        .into_iter()
-        .filter(|(_, rows)| rows.len() > 1)
-        .collect()
+/// The curve of a run's panel that is drawn.
+#[derive(Clone, Copy)]
+enum Curves {
+    First,
+    Last,
 }
 
-fn head<const N: usize>(names: [&str; N]) -> Vec<Vec<String>> {
-    vec![names.map(str::to_owned).to_vec()]
+/// Panels of the same quantity as one, with a curve for each run.
+fn together(of_runs: impl Iterator<Item = Vec<Panel>>, pick: Curves) -> Vec<Panel> {
+    let mut all: Vec<Panel> = Vec::new();
+    for (run, panels) in of_runs.enumerate() {
+        for mut panel in panels {
+            let curves = std::mem::take(&mut panel.curves).into_iter();
+            let mut own = curves.filter(|curve| curve.class != MEASURED);
+            let own = match pick {
+                Curves::First => own.next(),
+                Curves::Last => own.next_back(),
+            };
+            let curve = own.map(|curve| Curve::new(line(run), curve.points));
+            let place = all.iter().position(|known| known.id == panel.id);
+            let place = place.unwrap_or_else(|| {
+                all.push(panel);
+                all.len() - 1
+            });
+            all[place].curves.extend(curve);
+        }
+    }
+    all
 }
 
-fn settings(difference: &Differences) -> Vec<Vec<String>> {
-    let [first, second] = &difference.runs;
-    let mut rows = head(["Key", first, second]);
-    let said = |value: &Option<String>| value.clone().unwrap_or_else(|| "\u{2013}".to_owned());
-    let cells = difference.settings.iter();
-    rows.extend(cells.map(|one| vec![one.key.clone(), said(&one.first), said(&one.second)]));
-    rows
-}
-
-fn differing(difference: &Differences) -> Vec<Vec<String>> {
-    let mut rows = head([
-        "Quantity",
-        "Unit",
-        "Difference",
-        "%",
-        "Errors together",
-        "That is",
-    ]);
-    let row = |one: &NumberDifference| {
-        let errors = one.errors();
-        vec![
-            label_of(one.scalar),
-            unit_of(one.scalar),
-            signed(one.difference, &shown(one.scalar, one.difference.abs(), 3)),
-            percent(one.difference_percent),
-            errors.map_or_else(|| "\u{2013}".to_owned(), |errors| significant(errors, 2)),
-            one.verdict(),
-        ]
+/// The maps of all runs in one row, in the same colours, and their differences from the first below.
+fn map_rows(runs: &[Run], field: &MappedField) -> Option<String> {
+    // Space between maps, and for the name above one, px.
+    const GAP: f64 = 18.0;
+    const NAME: f64 = 24.0;
+    let maps = runs.iter().map(|run| map(run, field));
+    let values = maps.flatten().map(|map| largest_size(map.values));
+    let range = ColourRange::UpTo(values.fold(0.0, f64::max));
+    let value = |run: &Run| {
+        let map = map(run, field)?;
+        Some(placed(&Map { range, ..map }, run.name.clone()))
     };
-    rows.extend(difference.numbers.iter().map(row));
-    rows
+    let rows = [runs.iter().map(value).collect(), differences(runs, field)];
+    let all = || rows.iter().flatten().flatten();
+    let widest = all().map(|one| one.size.0).reduce(f64::max)? + GAP;
+    let tallest = all().map(|one| one.size.1).reduce(f64::max)? + NAME + GAP;
+    let mut body = String::new();
+    let (mut width, mut height) = (0.0_f64, 0.0_f64);
+    for (row, maps) in rows.iter().enumerate() {
+        for (column, one) in maps.iter().enumerate() {
+            let Some(Placed {
+                name, body: map, ..
+            }) = one
+            else {
+                continue;
+            };
+            let (x, y, name) = (column as f64 * widest, row as f64 * tallest, escape(name));
+            (width, height) = (width.max(x + widest), height.max(y + tallest));
+            body += &format!(
+                r#"<g transform="translate({x:.1} {y:.1})"><text class="title" x="30" y="12">{name}</text><g transform="translate(0 {NAME})">{map}</g></g>"#
+            );
+        }
+    }
+    let desc: Vec<&str> = all().map(|one| one.desc.as_str()).collect();
+    let size = (width - GAP, height - GAP);
+    Some(svg_file(field.style.title, &desc.join(" "), size, &body))
 }
 
-fn curves(difference: &Differences) -> Vec<Vec<String>> {
-    let mut rows = head([
-        "Curve",
-        "Cycle",
-        "Unit",
-        "Root mean square",
-        "% of range",
-        "Largest",
-        "At %",
-    ]);
-    let cells = difference.curves.iter().take(MAX_ROWS).map(|one| {
-        vec![
-            one.title.to_owned(),
-            one.cycle.to_owned(),
-            one.unit.to_owned(),
-            significant(one.rms, 3),
-            percent(one.rms_percent_of_range),
-            signed(one.largest, &significant(one.largest.abs(), 3)),
-            significant(one.largest_at_percent, 3),
-        ]
-    });
-    rows.extend(cells);
-    rows
+/// A map in a row, with its name above.
+struct Placed {
+    name: String,
+    size: (f64, f64),
+    body: String,
+    desc: String,
 }
 
-fn maps(difference: &Differences) -> Vec<Vec<String>> {
-    let mut rows = head([
-        "Map",
-        "Unit",
-        "Largest",
-        "% of the largest value",
-        "At x, z, mm",
-        "Mean size",
-    ]);
-    let cells = difference.maps.iter().map(|one| {
-        vec![
-            one.title.to_owned(),
-            one.unit.to_owned(),
-            signed(one.largest, &significant(one.largest.abs(), 3)),
-            percent(one.largest_percent),
-            format!("{}, {}", significant(one.x_mm, 3), significant(one.z_mm, 3)),
-            significant(one.mean_absolute, 3),
-        ]
-    });
-    rows.extend(cells);
-    rows
+fn placed(map: &Map<'_>, name: String) -> Placed {
+    Placed {
+        size: map.size(),
+        body: map.body(),
+        desc: format!("{name}: {}", map.desc()),
+        name,
+    }
 }
 
-fn percent(value: Option<f64>) -> String {
-    value.map_or_else(|| "\u{2013}".to_owned(), |value| significant(value, 3))
+fn map<'a>(run: &'a Run, field: &MappedField) -> Option<Map<'a>> {
+    let surface = run.results.surface.as_ref()?;
+    field.of(surface, run.results.side, 4.6)
 }
 
-/// A size with the sign of a value.
-fn signed(value: f64, size: &str) -> String {
-    let sign = if value < 0.0 { '\u{2212}' } else { '+' };
-    format!("{sign}{size}")
+/// The difference of each run from the first, all in the same colours.
+fn differences(runs: &[Run], field: &MappedField) -> Vec<Option<Placed>> {
+    let difference = |run: &Run| {
+        let (one, two) = runs[0].comparable_surfaces(run)?;
+        subtracted(one, two, field.field)
+    };
+    // The first has no difference from itself: its place below stays empty.
+    let others = runs[1..].iter().map(difference);
+    let values: Vec<Option<Vec<f64>>> = [None].into_iter().chain(others).collect();
+    let sizes = values.iter().flatten().map(|values| largest_size(values));
+    let range = ColourRange::BothWays(sizes.fold(0.0, f64::max));
+    let style = MapStyle {
+        shades: colorous::RED_BLUE,
+        largest: "Largest",
+        ..field.style
+    };
+    let place = |(run, values): (&Run, &Option<Vec<f64>>)| {
+        let map = Map {
+            values: values.as_deref()?,
+            style,
+            range,
+            ..map(run, field)?
+        };
+        Some(placed(
+            &map,
+            format!("{} \u{2212} {}", run.name, runs[0].name),
+        ))
+    };
+    runs.iter().zip(&values).map(place).collect()
 }

@@ -1,107 +1,72 @@
-//! Arrays one behind the other, with a list of what they are.
+//! Named arrays in one block of bytes, with a list of their places.
 
-use serde::Serialize;
+use serde_json::{Value, json};
 
-/// Largest number of a quantised value.
+/// The largest quantised value.
 const LEVELS: f64 = 65535.0;
 
-/// What an array is and where it begins.
-#[derive(Debug, Serialize)]
-struct Entry {
-    name: String,
-    kind: &'static str,
-    /// Bytes from the start of the first array.
-    offset: usize,
-    /// Numbers in it.
-    length: usize,
-    /// What the quantised number 0 stands for, and 65535.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    range: Option<[f64; 2]>,
-}
-
-/// Arrays one behind the other, with a list of what they are.
+/// Named arrays, one after the other.
 #[derive(Debug, Default)]
 pub(super) struct Arrays {
-    entries: Vec<Entry>,
+    /// For each array: name, kind, offset from the start of the first array in bytes, length, and the values of the
+    /// quantised numbers 0 and 65535.
+    entries: Vec<Value>,
     bytes: Vec<u8>,
 }
 
 impl Arrays {
-    /// Whole numbers, in 16 bits where they fit.
-    pub fn whole(&mut self, name: impl Into<String>, values: &[u32]) {
-        if values.iter().all(|&value| value <= u32::from(u16::MAX)) {
-            let values = values
-                .iter()
-                .flat_map(|&value| (value as u16).to_le_bytes());
-            self.add(name.into(), "u16", 2, values.collect(), None);
+    /// Adds whole numbers, in 16 bits where they fit.
+    pub fn whole(&mut self, name: &str, values: &[u32]) {
+        let narrow: Option<Vec<u16>> = values.iter().map(|&value| value.try_into().ok()).collect();
+        if let Some(values) = narrow {
+            let bytes = values.into_iter().flat_map(u16::to_le_bytes);
+            self.add(name, "u16", 2, bytes.collect(), None);
         } else {
-            let values = values.iter().flat_map(|value| value.to_le_bytes());
-            self.add(name.into(), "u32", 4, values.collect(), None);
+            let bytes = values.iter().flat_map(|value| value.to_le_bytes());
+            self.add(name, "u32", 4, bytes.collect(), None);
         }
     }
 
-    /// Numbers as they are.
-    pub fn exact(&mut self, name: impl Into<String>, values: impl IntoIterator<Item = f64>) {
-        let values = values.into_iter().flat_map(f64::to_le_bytes).collect();
-        self.add(name.into(), "f64", 8, values, None);
+    /// Adds numbers in full precision.
+    pub fn exact(&mut self, name: &str, values: impl Iterator<Item = f64>) {
+        let bytes = values.flat_map(f64::to_le_bytes);
+        self.add(name, "f64", 8, bytes.collect(), None);
     }
 
-    /// Numbers in 16 bits of their range; what is not finite is taken for the lower end.
-    pub fn quantised(
-        &mut self,
-        name: impl Into<String>,
-        values: impl Iterator<Item = f64> + Clone,
-        range: [f64; 2],
-    ) {
+    /// Adds numbers in 16 bits of their range; values that are not finite become the lower end.
+    pub fn quantised(&mut self, name: &str, values: impl Iterator<Item = f64>, range: [f64; 2]) {
         let [low, high] = range;
         let span = (high - low).max(f64::MIN_POSITIVE);
         let level = |value: f64| (((value - low) / span).clamp(0.0, 1.0) * LEVELS).round() as u16;
-        let values = values.flat_map(|value| level(value).to_le_bytes());
-        self.add(name.into(), "q16", 2, values.collect(), Some(range));
+        let bytes = values.flat_map(|value| level(value).to_le_bytes());
+        self.add(name, "q16", 2, bytes.collect(), Some(range));
     }
 
     fn add(
         &mut self,
-        name: String,
+        name: &str,
         kind: &'static str,
         width: usize,
         bytes: Vec<u8>,
         range: Option<[f64; 2]>,
     ) {
-        self.entries.push(Entry {
-            name,
-            kind,
-            offset: self.bytes.len(),
-            length: bytes.len() / width,
-            range,
-        });
+        let (offset, length) = (self.bytes.len(), bytes.len() / width);
+        let entry = json!({ "name": name, "kind": kind, "offset": offset, "length": length, "range": range });
+        self.entries.push(entry);
         self.bytes.extend(bytes);
-        // A typed array begins at a multiple of its width.
+        // Typed arrays of JavaScript must start at a multiple of their width.
         self.bytes.resize(self.bytes.len().next_multiple_of(8), 0);
     }
 
-    /// A header of eight bytes with the length of the list, the list as JSON beside `facts`, the arrays.
-    pub fn to_bytes(&self, facts: &impl Serialize) -> Vec<u8> {
-        let head = serde_json::json!({ "facts": facts, "arrays": self.entries });
+    /// Encodes eight bytes with the length of a header, the header as JSON with `facts` and the list, and the arrays.
+    pub fn to_bytes(&self, facts: &Value) -> Vec<u8> {
+        let head = json!({ "facts": facts, "arrays": self.entries });
         let mut head = head.to_string().into_bytes();
         head.resize(head.len().next_multiple_of(8), b' ');
         let mut bytes = (head.len() as u64).to_le_bytes().to_vec();
         bytes.append(&mut head);
         bytes.extend_from_slice(&self.bytes);
         bytes
-    }
-}
-
-/// Smallest and largest finite value; 0 twice where there is none.
-pub(super) fn range(values: impl Iterator<Item = f64>) -> [f64; 2] {
-    let widen = |[low, high]: [f64; 2], value: f64| [low.min(value), high.max(value)];
-    let found = values
-        .filter(|value| value.is_finite())
-        .fold([f64::INFINITY, f64::NEG_INFINITY], widen);
-    if found[0] <= found[1] {
-        found
-    } else {
-        [0.0; 2]
     }
 }
 
@@ -114,12 +79,11 @@ mod tests {
         let mut arrays = Arrays::default();
         arrays.whole("faces", &[1, 2, 3]);
         arrays.quantised("depth", [0.0, 0.5, 1.0, f64::NAN].into_iter(), [0.0, 1.0]);
-        arrays.exact("cycles", [2.5]);
+        arrays.exact("cycles", [2.5].into_iter());
         arrays.whole("many", &[70_000]);
-        let bytes = arrays.to_bytes(&"facts");
+        let bytes = arrays.to_bytes(&json!("facts"));
         let head = u64::from_le_bytes(bytes[..8].try_into().expect("eight bytes")) as usize;
-        let list: serde_json::Value =
-            serde_json::from_slice(&bytes[8..8 + head]).expect("the list is JSON");
+        let list: Value = serde_json::from_slice(&bytes[8..8 + head]).expect("the list is JSON");
         let data = &bytes[8 + head..];
         let begin = |at: usize| list["arrays"][at]["offset"].as_u64().expect("is listed") as usize;
         assert_eq!(data[begin(0)..][..6], [1, 0, 2, 0, 3, 0]);

@@ -1,4 +1,4 @@
-//! A body of fewer triangles, for a picture that a processor draws.
+//! Simplification of a body for a picture that a processor draws.
 
 use std::collections::BTreeMap;
 
@@ -6,10 +6,14 @@ use condyle_fem::Vec3;
 
 use super::SceneBody;
 
-/// Cosine of the angle, 30 degrees, from which an edge is one that the eye sees.
+/// Cosine of the angle, 30 degrees, from which an edge is visibly sharp.
 const SHARP_COSINE: f64 = 0.866;
+/// Factor on the edge of the grid, and how often it is applied: where border and sharp edges take many triangles, larger
+/// cubes would spoil the surface between them.
+const WIDER: f64 = 1.1;
+const MAX_WIDENINGS: i32 = 3;
 
-/// What becomes one node: a cube of a grid, or a node of the border by itself.
+/// The nodes that become one: those in a cube of a grid, or a single node of the border.
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 enum Cell {
     Cube([i64; 3]),
@@ -17,46 +21,48 @@ enum Cell {
 }
 
 impl SceneBody {
-    /// The body with at most `most` triangles, or more where its border and sharp edges take them; itself where it has no more.
+    /// The body with at most `most` triangles, or more where its border and sharp edges need them; itself where it has no
+    /// more.
     ///
-    /// The border stays as it is, and so do sharp edges. The other nodes of every cube of a grid become the one of them that is nearest to their
-    /// mean: all nodes stay on the surface, and a triangle of edge `h` is off a surface of radius `R` by up to `h^2 / (8 R)`.
+    /// The border stays as it is, and so do sharp edges. The other nodes of every cube of a grid become the one that is
+    /// nearest to their mean: all nodes stay on the surface, and a triangle of edge `h` deviates from a surface of radius
+    /// `R` by up to `h^2 / (8 R)`.
     pub(super) fn coarser(&self, most: usize) -> Self {
-        // Cubes become so much wider, so many times at most: where border and sharp edges take many triangles, wider ones
-        // would spoil what lies between.
-        const WIDER: f64 = 1.1;
-        const TIMES: usize = 3;
         if self.triangles.len() <= most {
             return self.clone();
         }
-        // Two triangles to the square that a cube cuts out of the surface.
+        // A cube cuts a square out of the surface, which becomes two triangles.
         let edge = (2.0 * self.area() / most as f64).sqrt();
         let border = self.border();
         let mut body = self.clustered(edge, &border);
-        for times in 1..=TIMES {
+        for times in 1..=MAX_WIDENINGS {
             if body.triangles.len() <= most {
                 break;
             }
-            body = self.clustered(edge * WIDER.powi(times as i32), &border);
+            body = self.clustered(edge * WIDER.powi(times), &border);
         }
         body
     }
 
     fn area(&self) -> f64 {
-        let corners = |triangle: &[u32; 3]| triangle.map(|node| self.nodes[node as usize]);
-        let twice = (self.triangles.iter().map(corners)).map(|[a, b, c]| (b - a).cross(&(c - a)));
-        twice.map(|normal| normal.norm() / 2.0).sum()
+        let normals = self.triangles.iter().map(|triangle| self.normal(triangle));
+        normals.map(|normal| normal.norm() / 2.0).sum()
     }
 
-    /// Of each node, whether it is on an edge of one triangle alone, or of two that meet at an angle.
+    /// The normal of a triangle, twice its area long.
+    fn normal(&self, triangle: &[u32; 3]) -> Vec3 {
+        let [a, b, c] = triangle.map(|node| self.nodes[node as usize]);
+        (b - a).cross(&(c - a))
+    }
+
+    /// For each node, whether it is on an edge of a single triangle or on a sharp edge.
     fn border(&self) -> Vec<bool> {
         let of_triangle = |triangle: &[u32; 3]| {
             let [a, b, c] = *triangle;
-            let normal = self.normal(triangle);
+            let normal = self.normal(triangle).normalize();
             [(a, b), (b, c), (c, a)].map(|(from, to)| ((from.min(to), from.max(to)), normal))
         };
-        let mut edges: Vec<((u32, u32), Vec3)> =
-            self.triangles.iter().flat_map(of_triangle).collect();
+        let mut edges: Vec<_> = self.triangles.iter().flat_map(of_triangle).collect();
         edges.sort_by_key(|(edge, _)| *edge);
         let mut border = vec![false; self.nodes.len()];
         for same in edges.chunk_by(|one, next| one.0 == next.0) {
@@ -70,49 +76,40 @@ impl SceneBody {
         border
     }
 
-    fn normal(&self, triangle: &[u32; 3]) -> Vec3 {
-        let [a, b, c] = triangle.map(|node| self.nodes[node as usize]);
-        (b - a).cross(&(c - a)).normalize()
-    }
-
     fn clustered(&self, edge: f64, border: &[bool]) -> Self {
         let cell = |(node, is_border): (u32, &bool)| match is_border {
             true => Cell::Border(node),
-            false => Cell::Cube(
-                <[f64; 3]>::from(self.nodes[node as usize] / edge).map(|at| at.floor() as i64),
-            ),
+            false => {
+                let place = <[f64; 3]>::from(self.nodes[node as usize] / edge);
+                Cell::Cube(place.map(|at| at.floor() as i64))
+            }
         };
         let cells: Vec<Cell> = (0..).zip(border).map(cell).collect();
-        let mut members: BTreeMap<Cell, Vec<u32>> = BTreeMap::new();
-        for (node, cell) in (0..).zip(&cells) {
-            members.entry(*cell).or_default().push(node);
+        // Sorted cells give the same order of nodes on every machine.
+        let mut members: BTreeMap<Cell, Vec<Vec3>> = BTreeMap::new();
+        for (node, cell) in self.nodes.iter().zip(&cells) {
+            members.entry(*cell).or_default().push(*node);
         }
         let place: BTreeMap<Cell, u32> = members.keys().copied().zip(0..).collect();
-        let nodes = members.values().map(|members| self.middle(members));
         let renumbered = |triangle: &[u32; 3]| triangle.map(|node| place[&cells[node as usize]]);
-        let mut body = Self {
-            nodes: nodes.collect(),
-            triangles: self.triangles.iter().map(renumbered).collect(),
-        };
-        body.triangles
-            .retain(|[a, b, c]| a != b && b != c && c != a);
-        body.triangles = unpaired(body.triangles);
-        body
-    }
-
-    /// The node nearest to the mean of some.
-    fn middle(&self, members: &[u32]) -> Vec3 {
-        let at = |member: &u32| self.nodes[*member as usize];
-        let sum: Vec3 = members.iter().map(at).sum();
-        let mean = sum / members.len() as f64;
-        let away = |node: &Vec3| (node - mean).norm_squared();
-        let nearest = members.iter().map(at);
-        let nearest = nearest.min_by(|a, b| away(a).total_cmp(&away(b)));
-        nearest.unwrap_or(mean)
+        let mut triangles: Vec<_> = self.triangles.iter().map(renumbered).collect();
+        triangles.retain(|[a, b, c]| a != b && b != c && c != a);
+        Self {
+            nodes: members.values().map(|nodes| middle(nodes)).collect(),
+            triangles: unpaired(triangles),
+        }
     }
 }
 
-/// Triangles without those that lie on one another, which face both ways: a closed surface stays closed.
+/// The node nearest to the mean of some.
+fn middle(nodes: &[Vec3]) -> Vec3 {
+    let mean = nodes.iter().sum::<Vec3>() / nodes.len() as f64;
+    let away = |node: &Vec3| (node - mean).norm_squared();
+    let nearest = nodes.iter().min_by(|a, b| away(a).total_cmp(&away(b)));
+    nearest.copied().unwrap_or(mean)
+}
+
+/// Removes pairs of coincident triangles, which face both ways: a closed surface stays closed.
 fn unpaired(mut triangles: Vec<[u32; 3]>) -> Vec<[u32; 3]> {
     triangles.sort_by_key(|triangle| sorted(*triangle));
     let same = triangles.chunk_by(|one, next| sorted(*one) == sorted(*next));

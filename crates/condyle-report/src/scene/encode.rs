@@ -1,49 +1,19 @@
 //! A scene as bytes.
 
 use condyle_fem::Vec3;
-use condyle_results::NeutralPose;
-use serde::Serialize;
+use serde_json::{Value, json};
 
-use super::{
-    Scene, SceneBody, SceneCycle,
-    arrays::{Arrays, range},
-};
-use crate::results::table::Table;
+use super::{Scene, SceneBody, SceneCycle, arrays::Arrays};
+use crate::figure::{Curve, Panel, finite_range};
+use crate::results::ARTICULATING;
 
 /// Triangles of the femur in a picture: with more, a processor does not draw thirty pictures a second.
 const FEMUR_TRIANGLES: usize = 3000;
-/// The same of the insert's walls and backside, which nothing is read from.
+/// Triangles of the insert's walls and backside, on which no field is shown.
 const SKIN_TRIANGLES: usize = 1200;
 
-/// What is said of a scene beside its arrays.
-#[derive(Serialize)]
-struct Facts<'a> {
-    updates: Vec<f64>,
-    fields: Vec<&'a str>,
-    cycles: Vec<CycleFacts>,
-    neutral_pose: Option<NeutralPose>,
-    has_femur: bool,
-    tables: Vec<TableFacts<'a>>,
-    missing: &'a [String],
-}
-
-#[derive(Serialize)]
-struct CycleFacts {
-    name: &'static str,
-    cycles: f64,
-    increments: usize,
-    has_pressure: bool,
-}
-
-#[derive(Serialize)]
-struct TableFacts<'a> {
-    name: &'a str,
-    columns: &'a [String],
-}
-
 impl Scene {
-    /// The scene as the page's programs read it: a list of arrays, then the arrays, places and fields in 16 bits of
-    /// their range.
+    /// Encodes the scene as the page's programs read it; places and fields have 16 bits of their range.
     pub fn to_bytes(&self) -> Vec<u8> {
         let mut arrays = Arrays::default();
         self.add_insert(&mut arrays);
@@ -54,32 +24,33 @@ impl Scene {
         for cycle in &self.cycles {
             self.add_cycle(&mut arrays, cycle);
         }
-        for (name, table) in &self.tables {
-            add_table(&mut arrays, name, table);
+        for panel in &self.charts {
+            for (number, curve) in panel.curves.iter().enumerate() {
+                let name = |axis| format!("chart.{}.{number}.{axis}", panel.id);
+                arrays.exact(&name('x'), curve.points.iter().map(|point| point.0));
+                arrays.exact(&name('y'), curve.points.iter().map(|point| point.1));
+            }
         }
-        arrays.to_bytes(&self.facts(fields))
-    }
-
-    fn facts<'a>(&'a self, fields: Vec<&'a str>) -> Facts<'a> {
-        let of_cycle = |cycle: &SceneCycle| CycleFacts {
-            name: cycle.name,
-            cycles: cycle.cycles,
-            increments: cycle.percents.len(),
-            has_pressure: cycle.pressures.iter().any(|pressed| !pressed.is_empty()),
+        let updates: Vec<f64> = self.updates.iter().map(|update| update.cycles).collect();
+        let of_cycle = |cycle: &SceneCycle| {
+            json!({
+                "name": cycle.name,
+                "cycles": cycle.cycles,
+                "increments": cycle.percents.len(),
+                "has_pressure": cycle.pressures.iter().any(|pressed| !pressed.is_empty()),
+            })
         };
-        let of_table = |(name, table): &'a (&'static str, Table)| TableFacts {
-            name,
-            columns: table.names(),
-        };
-        Facts {
-            updates: self.updates.iter().map(|update| update.cycles).collect(),
-            fields,
-            cycles: self.cycles.iter().map(of_cycle).collect(),
-            neutral_pose: self.neutral_pose,
-            has_femur: self.femur.is_some(),
-            tables: self.tables.iter().map(of_table).collect(),
-            missing: &self.missing,
-        }
+        let cycles: Vec<Value> = self.cycles.iter().map(of_cycle).collect();
+        let charts: Vec<Value> = self.charts.iter().map(chart).collect();
+        arrays.to_bytes(&json!({
+            "updates": updates,
+            "fields": fields,
+            "cycles": cycles,
+            "neutral_pose": self.neutral_pose,
+            "has_femur": self.femur.is_some(),
+            "charts": charts,
+            "missing": self.missing,
+        }))
     }
 
     fn add_insert(&self, arrays: &mut Arrays) {
@@ -96,30 +67,32 @@ impl Scene {
         let all = 0..self.updates.len();
         let of_all = range(all.clone().flat_map(moved));
         for update in all {
-            arrays.quantised(format!("surface.moved.{update}"), moved(update), of_all);
+            arrays.quantised(&format!("surface.moved.{update}"), moved(update), of_all);
         }
     }
 
-    /// Adds the fields that every update has, and gives their names.
+    /// Adds the fields that every update has, and returns their names.
     fn add_fields(&self, arrays: &mut Arrays) -> Vec<&str> {
-        let Some(last) = self.updates.last() else {
-            return Vec::new();
-        };
-        let names = last.fields.iter().map(|(name, _)| name.as_str());
+        let fields = self.updates.last().map(|last| last.fields.as_slice());
+        let names = fields.unwrap_or_default().iter();
+        let names = names.map(|(name, _)| name.as_str());
         let mut kept = Vec::new();
-        for name in names.filter(|name| *name != "articulating") {
-            let of_update = |(_, values): &(String, Vec<f64>)| values.clone();
-            let found = self.updates.iter().map(|update| {
-                let own = update.fields.iter().find(|(known, _)| known == name);
-                own.map(of_update)
-            });
-            let Some(found) = found.collect::<Option<Vec<_>>>() else {
+        for name in names.filter(|name| *name != ARTICULATING) {
+            let of_update = |update: &'_ super::SceneUpdate| {
+                let mut fields = update.fields.iter();
+                fields
+                    .find(|(known, _)| known == name)
+                    .map(|(_, values)| values.clone())
+            };
+            let found: Option<Vec<_>> = self.updates.iter().map(of_update).collect();
+            let Some(found) = found else {
                 continue;
             };
+            // One range for all updates: the colours keep their meaning from one to the next.
             let of_all = range(found.iter().flatten().copied());
-            for (update, values) in found.iter().enumerate() {
-                let values = values.iter().copied();
-                arrays.quantised(format!("field.{name}.{update}"), values, of_all);
+            for (update, values) in found.into_iter().enumerate() {
+                let name = format!("field.{name}.{update}");
+                arrays.quantised(&name, values.into_iter(), of_all);
             }
             kept.push(name);
         }
@@ -127,39 +100,47 @@ impl Scene {
     }
 
     fn add_cycle(&self, arrays: &mut Arrays, cycle: &SceneCycle) {
-        let name = cycle.name;
-        arrays.exact(format!("cycle.{name}.percents"), cycle.percents.clone());
-        let poses = cycle.poses.iter().flatten().copied();
-        arrays.exact(format!("cycle.{name}.poses"), poses);
+        let name = |array: &str| format!("cycle.{}.{array}", cycle.name);
+        arrays.exact(&name("percents"), cycle.percents.iter().copied());
+        arrays.exact(&name("poses"), cycle.poses.iter().flatten().copied());
         let Some(insert) = &self.insert else {
             return;
         };
-        let place = |node: u32| insert.articulating.nodes.binary_search(&node).ok();
         let (mut starts, mut nodes, mut pressures) = (vec![0], Vec::new(), Vec::new());
         for pressed in &cycle.pressures {
-            for &(node, pressure_mpa) in pressed {
-                if let Some(node) = place(node) {
-                    nodes.push(node as u32);
-                    pressures.push(pressure_mpa);
+            for (node, pressure_mpa) in pressed {
+                if let Ok(place) = insert.articulating.nodes.binary_search(node) {
+                    nodes.push(place as u32);
+                    pressures.push(*pressure_mpa);
                 }
             }
             starts.push(nodes.len() as u32);
         }
-        arrays.whole(format!("cycle.{name}.starts"), &starts);
-        arrays.whole(format!("cycle.{name}.nodes"), &nodes);
+        arrays.whole(&name("starts"), &starts);
+        arrays.whole(&name("nodes"), &nodes);
         let [_, highest] = range(pressures.iter().copied());
-        let pressures = pressures.iter().copied();
-        arrays.quantised(
-            format!("cycle.{name}.pressure_mpa"),
-            pressures,
-            [0.0, highest],
-        );
+        arrays.quantised(&name("pressure_mpa"), pressures.into_iter(), [0.0, highest]);
     }
+}
+
+fn chart(panel: &Panel) -> Value {
+    let curve = |curve: &Curve| json!({ "name": curve.name, "style": curve.class, "has_dots": curve.has_dots });
+    let curves: Vec<Value> = panel.curves.iter().map(curve).collect();
+    json!({
+        "id": panel.id,
+        "group": panel.group,
+        "title": panel.title,
+        "unit": panel.unit,
+        "x_title": panel.x_title,
+        "cycles_per_x": panel.cycles_per_x,
+        "curves": curves,
+    })
 }
 
 fn add_body(arrays: &mut Arrays, name: &str, body: &SceneBody) {
     add_places(arrays, &format!("{name}.nodes"), &body.nodes);
-    arrays.whole(format!("{name}.triangles"), body.triangles.as_flattened());
+    let triangles = body.triangles.as_flattened();
+    arrays.whole(&format!("{name}.triangles"), triangles);
 }
 
 fn add_places(arrays: &mut Arrays, name: &str, nodes: &[Vec3]) {
@@ -167,9 +148,7 @@ fn add_places(arrays: &mut Arrays, name: &str, nodes: &[Vec3]) {
     arrays.quantised(name, values.clone(), range(values));
 }
 
-fn add_table(arrays: &mut Arrays, name: &str, table: &Table) {
-    for column in table.names() {
-        let values = table.column(column).unwrap_or_default().iter().copied();
-        arrays.exact(format!("table.{name}.{column}"), values);
-    }
+/// Smallest and largest finite value; 0 twice where there is none.
+fn range(values: impl Iterator<Item = f64>) -> [f64; 2] {
+    finite_range(values).unwrap_or_default().into()
 }

@@ -1,7 +1,7 @@
-//! What the moving picture of a run shows: bodies, updates, and the cycles on the way.
+//! The scene of a run, which the page shows in 3-D: bodies, updates, cycles and charts.
 //!
-//! A [`Scene`] is made of a results folder, or of a march in memory; [`Scene::to_bytes`] is what the page's
-//! programs read, the same from both.
+//! A [`Scene`] is made from a results folder, or from a march in memory; [`Scene::to_bytes`] encodes it for the page's
+//! programs, with the same bytes from both.
 
 mod arrays;
 mod coarse;
@@ -11,35 +11,36 @@ mod read;
 use condyle_fem::{HexMesh, Vec3};
 use condyle_results::NeutralPose;
 
-use crate::results::{surface_of_mesh::Articulating, table::Table};
+use crate::charts;
+use crate::figure::Panel;
+use crate::results::{Articulating, Results};
 
-/// What the moving picture of a run shows; what is not there is left out and told in `missing`.
+/// The scene of a run; parts that are not there are left out and listed in `missing`.
 #[derive(Clone, Debug, Default)]
 pub struct Scene {
     insert: Option<SceneInsert>,
     updates: Vec<SceneUpdate>,
+    charts: Vec<Panel>,
     /// The femur in the insert frame at neutral.
     pub femur: Option<SceneBody>,
-    /// Where the femur is at neutral.
+    /// The pose of the femur at neutral.
     pub neutral_pose: Option<NeutralPose>,
     /// The cycles whose motion is kept.
     pub cycles: Vec<SceneCycle>,
-    /// Tables by name, for the plots.
-    pub tables: Vec<(&'static str, Table)>,
-    /// What could not be read, and why.
+    /// The files that could not be read, with reasons.
     pub missing: Vec<String>,
 }
 
 /// Triangles of a body.
 #[derive(Clone, Debug, Default)]
 pub struct SceneBody {
-    /// Where its nodes are, mm.
+    /// Positions of the nodes, mm.
     pub nodes: Vec<Vec3>,
     /// Nodes of each triangle, from 0.
     pub triangles: Vec<[u32; 3]>,
 }
 
-/// The insert: which nodes of its mesh articulate, and the rest of its skin.
+/// The insert: its articulating surface and the rest of its skin.
 #[derive(Clone, Debug)]
 struct SceneInsert {
     articulating: Articulating,
@@ -55,7 +56,7 @@ struct SceneUpdate {
     fields: Vec<(String, Vec<f64>)>,
 }
 
-/// The motion of a cycle, and where it presses.
+/// The motion and the pressures of a cycle.
 #[derive(Clone, Debug, Default)]
 pub struct SceneCycle {
     /// "first" or "last".
@@ -71,7 +72,7 @@ pub struct SceneCycle {
 }
 
 impl Scene {
-    /// A scene of an unworn insert; none where no face of it has nodes that are all marked 1.
+    /// Makes the scene of an unworn insert; none where no face has nodes that are all marked 1.
     pub fn of_insert(mesh: &HexMesh, articulating: &[f64]) -> Option<Self> {
         let articulating = Articulating::of(mesh, articulating)?;
         let insert = SceneInsert {
@@ -85,8 +86,8 @@ impl Scene {
         })
     }
 
-    /// Adds the insert after an update, with its fields at the nodes of its mesh. Says whether the mesh is one of
-    /// the same nodes; of another nothing is added.
+    /// Adds the insert after an update, with fields at the nodes of its mesh. Returns false, and adds nothing, if the mesh
+    /// has other nodes than that of the scene.
     pub fn add_update<'a>(
         &mut self,
         cycles: f64,
@@ -96,31 +97,39 @@ impl Scene {
         let Some(insert) = &self.insert else {
             return false;
         };
-        let kept = &insert.articulating.nodes;
+        let count = insert.nodes_of_mesh;
         let fields: Vec<_> = fields.into_iter().collect();
-        let fits = |values: &&[f64]| values.len() == insert.nodes_of_mesh;
-        if nodes.len() != insert.nodes_of_mesh || !fields.iter().all(|(_, values)| fits(values)) {
+        let fits = fields.iter().all(|(_, values)| values.len() == count);
+        if nodes.len() != count || !fits {
             return false;
         }
-        let pick = |values: &[f64]| kept.iter().map(|&node| values[node as usize]).collect();
+        let surface = &insert.articulating;
+        let field = |(name, values): (&str, &[f64])| (name.to_owned(), surface.pick(values));
         self.updates.push(SceneUpdate {
             cycles,
-            nodes: kept.iter().map(|&node| nodes[node as usize]).collect(),
-            fields: fields
-                .into_iter()
-                .map(|(name, values)| (name.to_owned(), pick(values)))
-                .collect(),
+            nodes: surface.pick(nodes),
+            fields: fields.into_iter().map(field).collect(),
         });
         true
     }
 
-    /// Whether there is something to show in three dimensions.
+    /// Adds the charts of the tables of a run.
+    pub fn add_charts(&mut self, results: &Results) {
+        self.charts = charts::all(results);
+    }
+
+    /// Returns whether there is a surface to show in 3-D.
     pub fn has_surface(&self) -> bool {
         !self.updates.is_empty()
     }
+
+    /// Returns whether there is nothing to show.
+    pub(crate) fn is_empty(&self) -> bool {
+        !self.has_surface() && self.charts.is_empty()
+    }
 }
 
-/// The skin of a mesh but its articulating surface, as triangles.
+/// The skin of a mesh without its articulating surface, as triangles.
 fn skin(mesh: &HexMesh, articulating: &Articulating) -> SceneBody {
     let mut is_articulating = vec![false; mesh.nodes.len()];
     for &node in &articulating.nodes {

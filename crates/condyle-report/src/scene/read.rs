@@ -6,26 +6,17 @@ use std::{
     path::{Path, PathBuf},
 };
 
-use condyle_mesh::formats::{VtuFile, parse_vtu_triangles, read_vtu_points};
+use condyle_mesh::formats::parse_vtu_triangles;
 use condyle_results::{KeptCycle, catalogue::UPDATES, check_file, cycle_pressure_file};
 
 use super::{Scene, SceneBody, SceneCycle};
-use crate::{
-    error::ReportError,
-    results::{
-        contents::Results,
-        read::{meshes, table, without_folder},
-        table::Table,
-    },
-};
+use crate::error::ReportError;
+use crate::results::{ARTICULATING, Results, Table, meshes, read_mesh, table, without_folder};
 
-/// Point data that is 1 on nodes of the articulating surface.
-const ARTICULATING: &str = "articulating";
-
-/// Files that only what moves needs, and what is so without each.
+/// Files that only the 3-D view needs, and the consequence of the lack of each.
 const MOVING_FILES: [(&str, &str); 4] = [
     ("femur.vtu", "the femur is not shown"),
-    ("femur_pose.csv", "nothing moves through the cycle"),
+    ("femur_pose.csv", "the bodies do not move through the cycle"),
     (
         "cycle_first_pressure.csv",
         "the first cycle has no pressures",
@@ -33,35 +24,25 @@ const MOVING_FILES: [(&str, &str); 4] = [
     ("cycle_last_pressure.csv", "the last cycle has no pressures"),
 ];
 
-/// Increments of a cycle by the text of their percent.
-type ByPercent = BTreeMap<u64, usize>;
-
 impl Scene {
-    /// What a results folder has to show; what is missing, damaged or of another version is left out, and told.
+    /// Reads the scene of a results folder; parts that are missing, damaged or from another version are left out and
+    /// listed in `missing`.
     pub fn read(folder: &Path, results: &Results) -> Self {
         let mut scene = of_meshes(folder, results);
         scene.femur = femur(folder, &mut scene.missing);
         let summary = results.summary.as_ref();
         scene.neutral_pose = summary.and_then(|summary| summary.neutral_pose);
         scene.cycles = cycles(folder, &mut scene.missing);
-        let is_gone = |(name, _): &&(&str, &str)| !folder.join(name).exists();
-        let gone = MOVING_FILES.iter().filter(is_gone);
-        scene
-            .missing
-            .extend(gone.map(|(name, without)| format!("{name} is not in the folder: {without}.")));
-        let tables = [
-            ("wear", &results.wear),
-            ("kinematics", &results.kinematics),
-            ("measured_wear", &results.measured_wear),
-            ("measured_kinematics", &results.measured_kinematics),
-        ];
-        let tables = tables.into_iter();
-        scene.tables = tables
-            .filter_map(|(name, table)| Some((name, table.clone()?)))
-            .collect();
-        scene.missing = (scene.missing.iter())
-            .map(|why| without_folder(why, folder))
-            .collect();
+        scene.add_charts(results);
+        for (name, without) in MOVING_FILES {
+            if !folder.join(name).exists() {
+                let why = format!("{name} is not in the folder: {without}.");
+                scene.missing.push(why);
+            }
+        }
+        for why in &mut scene.missing {
+            *why = without_folder(why, folder);
+        }
         scene
     }
 }
@@ -69,13 +50,13 @@ impl Scene {
 /// The insert at every update that can be read.
 fn of_meshes(folder: &Path, results: &Results) -> Scene {
     let wear = results.wear.as_ref();
-    let cycles = wear
-        .and_then(|wear| wear.column("cycles"))
-        .unwrap_or_default();
+    let cycles = wear.and_then(|wear| wear.column("cycles"));
+    let cycles = cycles.unwrap_or_default();
     let mut scene = Scene::default();
     let meshes = meshes(folder).unwrap_or_default();
-    let not_there = not_there(&meshes, results);
+    let gone = not_there(&meshes, results);
     for (update, path) in meshes {
+        // Row 0 of wear.csv is the first update; the unworn insert has no row.
         let cycles = match update.checked_sub(1) {
             None => 0.0,
             Some(row) => cycles.get(row as usize).copied().unwrap_or(f64::NAN),
@@ -84,59 +65,45 @@ fn of_meshes(folder: &Path, results: &Results) -> Scene {
             scene.missing.push(why);
         }
     }
-    scene.missing.extend(not_there);
+    scene.missing.extend(gone);
     scene
 }
 
-/// Updates without a mesh, where others have one: up to the last that the summary tells of.
+/// The meshes that are missing, up to the last update that the summary states.
 fn not_there(meshes: &[(u32, PathBuf)], results: &Results) -> Option<String> {
     let (last, _) = meshes.last()?;
     let summary = results.summary.as_ref();
-    let told = summary.and_then(|summary| summary.get(&UPDATES));
-    let all = 0..=told.map_or(*last, |updates| updates as u32).max(*last);
-    let is_there = |update: &u32| meshes.iter().any(|(there, _)| there == update);
-    let gone: Vec<String> = all
-        .filter(|update| !is_there(update))
-        .map(|update| format!("insert_{update:04}.vtu"))
-        .collect();
-    let (first, rest) = gone.split_first()?;
-    Some(match rest {
-        [] => format!("{first} is not in the folder."),
-        [.., last] => format!(
-            "{} files from {first} to {last} are not in the folder.",
-            gone.len()
-        ),
+    let stated = summary.and_then(|summary| summary.get(&UPDATES));
+    let last = stated.map_or(*last, |updates| (updates as u32).max(*last));
+    let is_gone = |update: &u32| meshes.iter().all(|(there, _)| there != update);
+    let gone: Vec<u32> = (0..=last).filter(is_gone).collect();
+    let name = |update: &u32| format!("insert_{update:04}.vtu");
+    let first = name(gone.first()?);
+    Some(match gone.as_slice() {
+        [.., last] if gone.len() > 1 => {
+            let (count, last) = (gone.len(), name(last));
+            format!("{count} files from {first} to {last} are not in the folder.")
+        }
+        _ => format!("{first} is not in the folder."),
     })
 }
 
-/// Adds the mesh of an update, or says why not.
+/// Adds the mesh of an update, or returns the reason why it cannot be added.
 fn add_mesh(scene: &mut Scene, cycles: f64, path: &Path) -> Result<(), String> {
+    let left_out = |why: &str| format!("{} {why}, and is left out.", path.display());
     let file = read_mesh(path).map_err(|error| error.to_string())?;
     if scene.insert.is_none() {
         let marks = file.values(ARTICULATING);
         let begun = marks.and_then(|marks| Scene::of_insert(&file.mesh, marks));
-        let missing = std::mem::take(&mut scene.missing);
-        *scene = begun.ok_or_else(|| without(path, "has no articulating surface"))?;
-        scene.missing = missing;
+        let begun = begun.ok_or_else(|| left_out("has no articulating surface"))?;
+        scene.insert = begun.insert;
     }
     let fields = file.point_data.iter();
     let fields = fields.map(|(name, values)| (name.as_str(), values.as_slice()));
     if scene.add_update(cycles, &file.mesh.nodes, fields) {
         return Ok(());
     }
-    Err(without(
-        path,
-        "is of another insert than the file before it",
-    ))
-}
-
-fn without(path: &Path, why: &str) -> String {
-    format!("{} {why}, and is left out.", path.display())
-}
-
-fn read_mesh(path: &Path) -> Result<VtuFile, ReportError> {
-    check_file(path)?;
-    Ok(read_vtu_points(path)?)
+    Err(left_out("has another mesh than the insert before it"))
 }
 
 fn femur(folder: &Path, missing: &mut Vec<String>) -> Option<SceneBody> {
@@ -144,85 +111,69 @@ fn femur(folder: &Path, missing: &mut Vec<String>) -> Option<SceneBody> {
     let bytes = fs::read(&path).ok()?;
     let checked = check_file(&path).map_err(ReportError::from);
     let read = checked.and_then(|()| Ok(parse_vtu_triangles(&path, &bytes)?));
-    match read {
-        Ok(mesh) => Some(SceneBody {
-            nodes: mesh.vertices,
-            triangles: mesh.triangles,
-        }),
-        Err(error) => {
-            missing.push(error.to_string());
-            None
-        }
-    }
+    let mesh = or_missing(read.map(Some), missing)?;
+    Some(SceneBody {
+        nodes: mesh.vertices,
+        triangles: mesh.triangles,
+    })
 }
 
 /// The cycles of `femur_pose.csv`, with their pressures where the folder has them.
 fn cycles(folder: &Path, missing: &mut Vec<String>) -> Vec<SceneCycle> {
-    let Some(poses) = read_table(&folder.join("femur_pose.csv"), missing) else {
-        return Vec::new();
-    };
-    let mut cycles = SceneCycle::of_poses(&poses);
+    let mut read = |name: &str| or_missing(table(&folder.join(name)), missing);
+    let poses = read("femur_pose.csv");
+    let mut cycles = poses.map_or_else(Vec::new, |poses| SceneCycle::of_poses(&poses));
     for (cycle, kept) in cycles.iter_mut().zip(KeptCycle::BOTH) {
-        let file: PathBuf = folder.join(cycle_pressure_file(kept));
-        if let Some(pressures) = read_table(&file, missing) {
+        if let Some(pressures) = read(&cycle_pressure_file(kept)) {
             cycle.add_pressures(&pressures);
         }
     }
     cycles
 }
 
-fn read_table(path: &Path, missing: &mut Vec<String>) -> Option<Table> {
-    table(path).unwrap_or_else(|error| {
+fn or_missing<T>(read: Result<Option<T>, ReportError>, missing: &mut Vec<String>) -> Option<T> {
+    read.unwrap_or_else(|error| {
         missing.push(error.to_string());
         None
     })
 }
 
 impl SceneCycle {
-    /// The cycles whose poses a table like `femur_pose.csv` has, the first and the last.
+    /// Makes the first and the last cycle of a table like `femur_pose.csv`; none where it has other columns.
     pub fn of_poses(poses: &Table) -> Vec<Self> {
-        let columns: Option<Vec<&[f64]>> = poses
-            .names()
-            .iter()
-            .map(|name| poses.column(name))
-            .collect();
+        let names = poses.names().iter();
+        let columns: Option<Vec<&[f64]>> = names.map(|name| poses.column(name)).collect();
         let Some([cycles, percents, numbers @ ..]) = columns.as_deref() else {
             return Vec::new();
         };
-        let mut found: Vec<Self> = Vec::new();
-        for row in 0..poses.rows() {
-            let Ok(pose) =
-                <[f64; 12]>::try_from(numbers.iter().map(|column| column[row]).collect::<Vec<_>>())
-            else {
-                return Vec::new();
-            };
-            if found.last().is_none_or(|last| last.cycles != cycles[row]) {
-                found.push(Self {
-                    name: if found.is_empty() { "first" } else { "last" },
-                    cycles: cycles[row],
-                    ..Self::default()
-                });
-            }
-            if let Some(last) = found.last_mut() {
-                last.percents.push(percents[row]);
-                last.poses.push(pose);
-            }
-        }
-        found.truncate(2);
-        found
+        let Ok(numbers) = <[&[f64]; 12]>::try_from(numbers) else {
+            return Vec::new();
+        };
+        let rows = Vec::from_iter(0..poses.rows());
+        let of_rows = |(rows, name): (&[usize], &'static str)| Self {
+            name,
+            cycles: cycles[rows[0]],
+            percents: rows.iter().map(|&row| percents[row]).collect(),
+            poses: rows
+                .iter()
+                .map(|&row| numbers.map(|column| column[row]))
+                .collect(),
+            pressures: Vec::new(),
+        };
+        let parts = rows.chunk_by(|&one, &next| cycles[one] == cycles[next]);
+        parts.zip(["first", "last"]).map(of_rows).collect()
     }
 
-    /// Adds the pressures of a table like `cycle_last_pressure.csv`; what names no increment is left out.
+    /// Adds the pressures of a table like `cycle_last_pressure.csv`; rows of unknown increments are left out.
     pub fn add_pressures(&mut self, table: &Table) {
         let column = |name| table.column(name).unwrap_or_default();
-        let (percents, nodes) = (column("percent"), column("node"));
-        let by_percent: ByPercent = (self.percents.iter().enumerate())
-            .map(|(increment, percent)| (percent.to_bits(), increment))
-            .collect();
+        // Both files write the same percent with the same digits: its bits are a key.
+        let increments = self.percents.iter().map(|percent| percent.to_bits());
+        let increments: BTreeMap<u64, usize> = increments.zip(0..).collect();
         self.pressures = vec![Vec::new(); self.percents.len()];
-        let rows = percents.iter().zip(nodes).zip(column("pressure_mpa"));
-        for ((percent, node), pressure_mpa) in rows {
-            if let Some(&increment) = by_percent.get(&percent.to_bits()) {
+        let rows = column("percent").iter().zip(column("node"));
+        for ((percent, node), pressure_mpa) in rows.zip(column("pressure_mpa")) {
+            if let Some(&increment) = increments.get(&percent.to_bits()) {
                 self.pressures[increment].push((*node as u32, *pressure_mpa));
             }
         }

@@ -1,6 +1,6 @@
 //! Horizontal bars: tornado, indices, ranking.
 
-use crate::figure::{Axis, alone, escape};
+use crate::figure::{Axis, escape, svg_file, titled};
 use crate::number::significant;
 
 const WIDTH: f64 = 760.0;
@@ -41,10 +41,7 @@ pub struct Bars {
 pub fn bars_svg(bars: &Bars) -> String {
     let axis = axis(bars);
     let bottom = TOP + PITCH * bars.bars.len() as f64;
-    let mut title = escape(&bars.title);
-    if !bars.unit.is_empty() {
-        title += &format!(r#"<tspan class="unit">, {}</tspan>"#, escape(&bars.unit));
-    }
+    let title = titled(&bars.title, &bars.unit);
     let mut body = format!(r#"<text x="0" y="16" class="title">{title}</text>"#);
     for tick in axis.ticks() {
         let (x, label) = (to_x(&axis, tick), axis.label(tick));
@@ -65,7 +62,7 @@ pub fn bars_svg(bars: &Bars) -> String {
         format!("{}: {low} to {high}", bar.name)
     });
     let described = described.collect::<Vec<_>>().join("; ");
-    alone(&bars.title, &described, (WIDTH, bottom + 26.0), &body)
+    svg_file(&bars.title, &described, (WIDTH, bottom + 26.0), &body)
 }
 
 fn axis(bars: &Bars) -> Axis {

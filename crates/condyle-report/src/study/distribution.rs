@@ -42,20 +42,10 @@ fn panel((index, one): (usize, &Distribution)) -> Panel {
     let (low, high) = ends(one);
     let outline = outline(&one.sorted);
     let most = outline.iter().map(|point| point.1).fold(0.0, f64::max);
-    let upright = |class, at: &f64| Curve {
-        class,
-        points: vec![(*at, 0.0), (*at, most)],
-        dots: false,
-        end: None,
-    };
+    let upright = |class, at: &f64| Curve::new(class, vec![(*at, 0.0), (*at, most)]);
     let mut curves: Vec<Curve> = one.limits.iter().map(|at| upright("first", at)).collect();
     curves.extend(one.marks.iter().map(|at| upright("specimen", at)));
-    curves.push(Curve {
-        class: "last",
-        points: outline,
-        dots: false,
-        end: None,
-    });
+    curves.push(Curve::new("last", outline));
     let desc = format!("Percent of the tests in slices of {}.", one.title);
     Panel {
         id: format!("distribution-{index}"),
@@ -65,16 +55,13 @@ fn panel((index, one): (usize, &Distribution)) -> Panel {
             format!("{}, {}", one.title, one.unit)
         },
         unit: "% of tests".to_owned(),
-        positive: String::new(),
         x: Axis::covering(low, high, 1e-9 * high.abs().max(1e-9), MAX_INTERVALS),
-        x_marks: Vec::new(),
-        x_unit: "",
-        x_title: String::new(),
         size: SIZE,
         from_zero: true,
-        least_span: 1e-6,
+        min_span: 1e-6,
         curves,
         desc,
+        ..Panel::default()
     }
 }
 

@@ -32,6 +32,7 @@ pub fn write_study_page(folder: &Path, page: &StudyPage) -> Result<PathBuf, Repo
         title: &page.title,
         lede: &page.lede,
         notes: &[],
+        body: "",
         tables: &page.tables,
         pictures: &page.pictures,
     };

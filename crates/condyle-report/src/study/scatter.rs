@@ -74,19 +74,18 @@ fn panel(index: usize, cloud: &Cloud, span: f64, size: (f64, f64)) -> Panel {
         id: format!("cloud-{index}"),
         title: cloud.title.clone(),
         unit: cloud.unit.clone(),
-        positive: String::new(),
         x: across(cloud, low, high),
         x_marks: cloud.marks.clone(),
-        x_unit: "",
         x_title: short(&cloud.across),
         size,
         from_zero: false,
-        least_span: span.max(1e-6 * up.max(1e-6)),
+        min_span: span.max(1e-6 * up.max(1e-6)),
         curves: vec![
-            curve("specimen", &apart(&cloud.points), true),
-            curve("last", &cloud.line, true),
+            Curve::new("specimen", apart(&cloud.points)).dotted(),
+            Curve::new("last", cloud.line.clone()).dotted(),
         ],
         desc: format!("{} over {}.", cloud.title, cloud.across),
+        ..Panel::default()
     }
 }
 
@@ -120,15 +119,6 @@ fn across(cloud: &Cloud, low: f64, high: f64) -> Axis {
         low: low - room,
         high: high + room,
         step: high - low + 2.0 * room,
-    }
-}
-
-fn curve(class: &'static str, points: &[(f64, f64)], dots: bool) -> Curve {
-    Curve {
-        class,
-        points: points.to_vec(),
-        dots,
-        end: None,
     }
 }
 

@@ -4,9 +4,7 @@ use crate::fixture;
 
 use std::path::Path;
 
-use condyle_report::{
-    ReportError, kinematics_svg, wear_curve_svg, wear_map_svg, write_report, write_wear_curve,
-};
+use condyle_report::{ReportError, picture_svg, write_pictures, write_report};
 
 /// What is said about a whole folder after one file in it was replaced.
 fn said_after(name: &str, text: &str) -> String {
@@ -55,7 +53,7 @@ fn a_summary_that_is_no_json() {
 fn a_cell_that_is_no_number() {
     let said = said_after("wear.csv", "cycles,mass_loss_mg\n0,0\n500000,much\n");
     let expected =
-        "Line 3 of DIR/wear.csv: column `mass_loss_mg` holds `much`, which is not a number.";
+        "Line 3 of DIR/wear.csv holds `much` in column `mass_loss_mg`, which is not a number.";
     assert_eq!(said, expected);
 }
 
@@ -103,9 +101,9 @@ fn pictures_of_files_that_are_not_there() {
     let folder = tempfile::tempdir().expect("a folder can be made");
     std::fs::write(folder.path().join("summary.json"), "{}").expect("can be written");
     for (result, name) in [
-        (wear_map_svg(folder.path()), "insert_0000.vtu"),
-        (wear_curve_svg(folder.path()), "wear.csv"),
-        (kinematics_svg(folder.path()), "kinematics.csv"),
+        (picture_svg(folder.path(), "wear_map"), "insert_*.vtu"),
+        (picture_svg(folder.path(), "wear"), "wear.csv"),
+        (picture_svg(folder.path(), "kinematics"), "kinematics.csv"),
     ] {
         let said = said(folder.path(), result);
         assert!(
@@ -120,12 +118,13 @@ fn pictures_of_tables_without_their_columns() {
     let folder = tempfile::tempdir().expect("a folder can be made");
     std::fs::write(folder.path().join("wear.csv"), "cycles,colour\n0,1\n").expect("can be written");
     std::fs::write(folder.path().join("kinematics.csv"), "cycles\n0\n").expect("can be written");
-    let wear = said(folder.path(), write_wear_curve(folder.path()));
-    let expected = "DIR/wear.csv has no rows with the columns cycles, mass_loss_mg, max_depth_mm, which the wear curve needs.";
+    let wear = said(folder.path(), picture_svg(folder.path(), "wear"));
+    let expected =
+        "The file DIR/wear.csv has no rows of cycles, mass_loss_mg, which the picture wear needs.";
     assert_eq!(wear, expected);
-    let kinematics = said(folder.path(), kinematics_svg(folder.path()));
+    let kinematics = said(folder.path(), picture_svg(folder.path(), "kinematics"));
     assert!(
-        kinematics.contains("has no rows with the columns percent, flexion_deg"),
+        kinematics.contains("has no rows of percent, flexion_deg"),
         "{kinematics}"
     );
 }
@@ -136,9 +135,9 @@ fn a_map_of_a_mesh_without_wear() {
     let mut surface = fixture::surface();
     surface.fields.retain(|(name, _)| name != "wear_depth_mm");
     fixture::write_mesh(&folder.path().join("insert_0000.vtu"), &surface);
-    let said = said(folder.path(), wear_map_svg(folder.path()));
+    let said = said(folder.path(), write_pictures(folder.path()));
     assert_eq!(
         said,
-        "The mesh DIR/insert_*.vtu has no point data `wear_depth_mm`."
+        "The file DIR/insert_*.vtu has no point data of its field, such as `wear_depth_mm`, which the picture wear_map needs."
     );
 }

@@ -1,0 +1,79 @@
+//! SVG files: their style, escaping, and parts that several pictures have.
+
+/// The style of all pictures; its colours are variables of the page.
+pub(crate) const STYLE: &str = include_str!("figure.css");
+
+/// Name, colour on white, colour on black.
+const COLOURS: [(&str, &str, &str); 8] = [
+    ("paper", "#ffffff", "#14171a"),
+    ("panel", "#f6f7f8", "#1c2024"),
+    ("ink", "#16191d", "#e9ecef"),
+    ("soft", "#5d666f", "#a3adb6"),
+    ("rule", "#d8dde2", "#343b42"),
+    ("grid", "#e7eaed", "#2a3036"),
+    ("last", "#0b4f7d", "#7cc4f5"),
+    ("first", "#f3b562", "#a8701f"),
+];
+
+/// Margin around a picture that is a file of its own, px.
+const MARGIN: f64 = 16.0;
+
+/// Declarations of the colours as CSS variables: (on white, on black).
+pub(crate) fn colour_variables() -> (String, String) {
+    let light = COLOURS.map(|(name, light, _)| format!("--{name}:{light};"));
+    let dark = COLOURS.map(|(name, _, dark)| format!("--{name}:{dark};"));
+    (light.concat(), dark.concat())
+}
+
+/// The style with the colours of white paper filled in: readers of SVG files have no CSS variables.
+fn style_on_white() -> String {
+    let fill = |css: String, (name, light, _): (&str, &str, &str)| {
+        css.replace(&format!("var(--{name})"), light)
+    };
+    COLOURS.into_iter().fold(STYLE.to_owned(), fill)
+}
+
+/// An SVG file of a drawing of `size` (width, height) px, on white.
+pub(crate) fn svg_file(title: &str, desc: &str, size: (f64, f64), body: &str) -> String {
+    let (width, height) = (size.0 + 2.0 * MARGIN, size.1 + 2.0 * MARGIN);
+    let (title, desc, style) = (escape(title), escape(desc), style_on_white());
+    format!(
+        r##"<svg xmlns="http://www.w3.org/2000/svg" class="fig" role="img" aria-labelledby="t d" viewBox="0 0 {width} {height}" width="{width}" height="{height}"><title id="t">{title}</title><desc id="d">{desc}</desc><style>{style}</style><rect width="{width}" height="{height}" fill="#fff"/><g transform="translate({MARGIN} {MARGIN})">{body}</g></svg>
+"##
+    )
+}
+
+/// Text made safe inside SVG and HTML.
+pub(crate) fn escape(text: &str) -> String {
+    let text = text.replace('&', "&amp;").replace('<', "&lt;");
+    text.replace('>', "&gt;").replace('"', "&quot;")
+}
+
+/// A title with its unit, for a `<text>` element.
+pub(crate) fn titled(title: &str, unit: &str) -> String {
+    let title = escape(title);
+    if unit.is_empty() {
+        return title;
+    }
+    format!(r#"{title}<tspan class="unit">, {}</tspan>"#, escape(unit))
+}
+
+/// A bar of 10 mm that ends at `(end, y)`, with its length below.
+pub(crate) fn scale_bar((end, y): (f64, f64), px_per_mm: f64) -> String {
+    const LENGTH_MM: f64 = 10.0;
+    let start = end - LENGTH_MM * px_per_mm;
+    let (tick, middle, below) = (y - 3.5, f64::midpoint(start, end), y + 14.0);
+    format!(
+        r#"<path class="leader" d="M{start:.1} {tick:.1}v7M{start:.1} {y:.1}H{end:.1}M{end:.1} {tick:.1}v7"/><text x="{middle:.1}" y="{below:.1}" text-anchor="middle">{LENGTH_MM} mm</text>"#
+    )
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn pictures_on_white_need_no_variables() {
+        assert!(!style_on_white().contains("var("));
+    }
+}

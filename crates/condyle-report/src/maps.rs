@@ -1,0 +1,233 @@
+//! The maps of a run: fields of the last mesh, and the slip paths.
+
+use colorous::{CIVIDIS, Gradient, MAGMA, VIRIDIS};
+use condyle_results::{MAP_PICTURES, SLIP_PATHS_PICTURE, Side};
+
+use crate::figure::{ColourRange, Map, MapStyle, Path, finite_range};
+use crate::results::{Results, SurfaceFields, Table};
+
+/// A field that has a map.
+pub(crate) struct MappedField {
+    /// Name of the point data.
+    pub(crate) field: &'static str,
+    /// Name of the picture as a file, without an ending.
+    pub(crate) file: &'static str,
+    pub(crate) style: MapStyle,
+    pub(crate) caption: &'static str,
+}
+
+const fn style([id, title, unit, largest]: [&'static str; 4], shades: Gradient) -> MapStyle {
+    MapStyle {
+        id,
+        title,
+        unit,
+        largest,
+        shades,
+    }
+}
+
+const fn mapped(
+    field: &'static str,
+    file: &'static str,
+    style: MapStyle,
+    caption: &'static str,
+) -> MappedField {
+    MappedField {
+        field,
+        file,
+        style,
+        caption,
+    }
+}
+
+/// All fields that have a map, in the order of the page; wear depth is the first.
+pub(crate) static MAPS: [MappedField; 6] = [
+    mapped(
+        "wear_depth_mm",
+        MAP_PICTURES[0],
+        style(["map-wear", "Wear depth", "mm", "Deepest"], MAGMA),
+        "",
+    ),
+    mapped(
+        "peak_pressure_mpa",
+        MAP_PICTURES[1],
+        style(["map-pressure", "Peak pressure", "MPa", "Highest"], VIRIDIS),
+        "Largest contact pressure of each node in one gait cycle, averaged over its share of the surface, at the last update.",
+    ),
+    mapped(
+        "sliding_distance_mm",
+        MAP_PICTURES[2],
+        style(
+            ["map-sliding", "Sliding distance", "mm", "Highest"],
+            CIVIDIS,
+        ),
+        "Distance that the femur slides over each place while it presses on it, in one gait cycle, at the last update.",
+    ),
+    mapped(
+        "cross_shear",
+        MAP_PICTURES[3],
+        style(
+            ["map-cross-shear", "Cross-shear ratio", "", "Highest"],
+            MAGMA,
+        ),
+        "The part of pressure times sliding that goes across the main direction of each place, at the last update: 0 where the femur slides to and fro along a line, 0.5 where it slides around a circle.",
+    ),
+    mapped(
+        "creep_depth_mm",
+        MAP_PICTURES[4],
+        style(["map-creep", "Creep", "mm", "Deepest"], VIRIDIS),
+        "Depth of the surface by creep under load, at the last update; creep loses no mass.",
+    ),
+    mapped(
+        "permanent_set_mm",
+        MAP_PICTURES[5],
+        style(["map-set", "Permanent set", "mm", "Deepest"], VIRIDIS),
+        "Permanent depth of the surface by yielding, at the last update, without wear.",
+    ),
+];
+
+impl MappedField {
+    /// The map of a surface; `None` without the field.
+    pub(crate) fn of<'a>(
+        &self,
+        surface: &'a SurfaceFields,
+        side: Side,
+        px_per_mm: f64,
+    ) -> Option<Map<'a>> {
+        Some(Map {
+            style: self.style,
+            surface,
+            values: surface.field(self.field)?,
+            side,
+            range: ColourRange::Own,
+            px_per_mm,
+        })
+    }
+}
+
+/// A map as it is drawn on a page or into a file.
+pub(crate) struct DrawnMap {
+    /// Name of the picture as a file, without an ending.
+    pub(crate) file: &'static str,
+    pub(crate) caption: &'static str,
+    pub(crate) svg: String,
+}
+
+/// Draws the maps of those of the fields that a run has, then the slip paths; `draw` makes a picture of a map, its
+/// description and what is drawn over it.
+pub(crate) fn drawn(
+    fields: &[MappedField],
+    results: &Results,
+    px_per_mm: f64,
+    draw: impl Fn(&Map<'_>, &str, &str) -> String,
+) -> Vec<DrawnMap> {
+    let Some(surface) = &results.surface else {
+        return Vec::new();
+    };
+    let map = |field: &MappedField| {
+        let map = field.of(surface, results.side, px_per_mm)?;
+        Some(DrawnMap {
+            file: field.file,
+            caption: field.caption,
+            svg: draw(&map, &map.desc(), ""),
+        })
+    };
+    let mut maps: Vec<_> = fields.iter().filter_map(map).collect();
+    let paths = results.slip_paths.as_ref().and_then(slip_paths);
+    let bare = vec![0.0; surface.nodes.len()];
+    maps.extend(paths.filter(|paths| !paths.is_empty()).map(|paths| {
+        let map = Map {
+            style: style(["map-slip", "Slip paths", "", ""], MAGMA),
+            surface,
+            values: &bare,
+            side: results.side,
+            range: ColourRange::Own,
+            px_per_mm,
+        };
+        let over: String = paths.iter().map(|path| path.svg(&map)).collect();
+        let desc = format!(
+            "Paths of the femur past {} places of the articulating surface from above, anterior up, shortened and widened.",
+            paths.len()
+        );
+        DrawnMap {
+            file: SLIP_PATHS_PICTURE,
+            caption: "Slip of the femur past the deepest place of each side and past four places around it, while they are loaded, in one gait cycle, at the last update. Each path is drawn about the dot of its place at 0.4 of its length and 1.6 of its width, so four times as wide as it is: the wider, the more cross-shear.",
+            svg: draw(&map, &desc, &over),
+        }
+    }));
+    maps
+}
+
+/// Factors on length and width with which a slip path is drawn: neighbours stay apart, and its width shows.
+const DRAWN: [f64; 2] = [0.4, 1.6];
+/// Radius of the dot at a place, px.
+const DOT_PX: f64 = 2.2;
+
+/// The slip past one place of the insert.
+struct SlipPath {
+    /// x and z of the place, mm.
+    place: (f64, f64),
+    /// Slip of each increment, anterior and to the right, mm.
+    slips: Vec<(f64, f64)>,
+}
+
+/// The paths of `slip_paths.csv`; `None` if it lacks a column.
+fn slip_paths(table: &Table) -> Option<Vec<SlipPath>> {
+    let column = |name| table.column(name);
+    let (numbers, x, z) = (column("path")?, column("x_mm")?, column("z_mm")?);
+    let (anterior, right) = (column("slip_anterior_mm")?, column("slip_right_mm")?);
+    let rows = Vec::from_iter(0..table.rows());
+    let paths = rows.chunk_by(|&one, &next| numbers[one] == numbers[next]);
+    let path = |rows: &[usize]| SlipPath {
+        place: (x[rows[0]], z[rows[0]]),
+        slips: rows
+            .iter()
+            .map(|&row| (anterior[row], right[row]))
+            .collect(),
+    };
+    Some(paths.map(path).collect())
+}
+
+impl SlipPath {
+    /// The path with its middle at its place, and a dot there.
+    fn svg(&self, map: &Map<'_>) -> String {
+        let mut at = (0.0, 0.0);
+        let mut points = vec![at];
+        for slip in &self.slips {
+            at = (at.0 + DRAWN[0] * slip.0, at.1 + DRAWN[1] * slip.1);
+            points.push(at);
+        }
+        let middle = |values: &mut dyn Iterator<Item = f64>| {
+            finite_range(values).map_or(0.0, |(low, high)| f64::midpoint(low, high))
+        };
+        let across = middle(&mut points.iter().map(|point| point.0));
+        let along = middle(&mut points.iter().map(|point| point.1));
+        let (x, z) = self.place;
+        let mut line = Path::default();
+        line.open(
+            points
+                .iter()
+                .map(|point| map.place()(x + point.0 - across, z + point.1 - along)),
+        );
+        let (line, (x, y)) = (line.data(), map.place()(x, z));
+        format!(
+            r#"<path class="slip" d="{line}"/><circle class="slip-place" cx="{x:.1}" cy="{y:.1}" r="{DOT_PX}"/>"#
+        )
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn rows_of_one_number_are_one_path() {
+        let text = "path,x_mm,z_mm,percent,pressure_mpa,slip_anterior_mm,slip_right_mm\n\
+            1,2,3,0.5,4,1,0\n1,2,3,1,4,0,1\n2,5,6,1,4,-1,0\n";
+        let table = Table::parse(text, "slip_paths.csv".as_ref()).unwrap();
+        let paths = slip_paths(&table).unwrap();
+        assert_eq!(paths.len(), 2);
+        assert_eq!(paths[0].slips, [(1.0, 0.0), (0.0, 1.0)]);
+        assert_eq!(paths[1].place, (5.0, 6.0));
+    }
+}

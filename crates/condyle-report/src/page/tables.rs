@@ -1,0 +1,237 @@
+//! The tables of the page that are computed from the results.
+
+use serde::Serialize;
+
+use super::key_words::first_letter_large;
+use super::numbers::unit_of;
+use super::sentences::{not_estimated, reached};
+use condyle_results::{ErrorParts, Part, Side, catalogue::VOLUME_LOSS_MM3};
+
+use crate::charts::{CHANNELS, Cycle, first_and_last};
+use crate::number::{fixed, significant};
+use crate::results::{Region, Results, SurfaceFields, Table};
+
+/// Depth above which a place counts as part of the scar, as a share of the largest depth.
+const SCAR_SHARE: f64 = 0.05;
+
+/// A quantity with its values on the medial side, the lateral side and both.
+#[derive(Serialize)]
+pub(super) struct Comparison {
+    name: &'static str,
+    unit: &'static str,
+    values: [String; 3],
+}
+
+/// The two sides compared on the last mesh; empty without a mesh that has the wear depth.
+pub(super) fn compartments(results: &Results) -> Vec<Comparison> {
+    let surface = results.surface.as_ref();
+    let worn = surface.and_then(|surface| surface.field("wear_depth_mm"));
+    let Some((surface, depth)) = surface.zip(worn) else {
+        return Vec::new();
+    };
+    let regions = medial_lateral_both(results.side);
+    let deepest = surface.largest(depth, Region::Whole);
+    let scar_mm = SCAR_SHARE * deepest.map_or(0.0, |found| found.value);
+    let compare = |name, unit, value: &dyn Fn(Region) -> Option<String>| Comparison {
+        name,
+        unit,
+        values: regions.map(|region| value(region).unwrap_or_default()),
+    };
+    let largest = |name, unit, values: &[f64]| {
+        compare(name, unit, &|region| {
+            let found = surface.largest(values, region)?;
+            Some(significant(found.value, 3))
+        })
+    };
+    let mut rows = vec![
+        largest("Maximum wear depth", "mm", depth),
+        compare("at x, z", "mm", &|region| {
+            deepest_place(surface, depth, region)
+        }),
+        compare(
+            "Volume loss, from depth, shared out by depth and area",
+            "mm\u{b3}",
+            &|region| Some(significant(volume_mm3(results, surface, depth, region), 3)),
+        ),
+        compare(
+            "Area of the wear scar, deeper than 5\u{a0}% of the maximum",
+            "mm\u{b2}",
+            &|region| Some(fixed(surface.area_above(depth, scar_mm, region), 0)),
+        ),
+    ];
+    for (field, name, unit) in [
+        (
+            "peak_pressure_mpa",
+            "Highest pressure of a node in the last cycle",
+            "MPa",
+        ),
+        (
+            "sliding_distance_mm",
+            "Longest sliding distance in a cycle",
+            "mm",
+        ),
+    ] {
+        rows.extend(
+            surface
+                .field(field)
+                .map(|values| largest(name, unit, values)),
+        );
+    }
+    for (name, values) in thickness(surface, depth, scar_mm) {
+        rows.push(compare(name, "mm", &|region| {
+            Some(significant(surface.smallest_positive(&values, region)?, 3))
+        }));
+    }
+    rows
+}
+
+fn medial_lateral_both(side: Side) -> [Region; 3] {
+    match side {
+        Side::Right => [Region::Left, Region::Right, Region::Whole],
+        Side::Left => [Region::Right, Region::Left, Region::Whole],
+    }
+}
+
+/// x and z of the deepest place, mm; none where nothing is worn.
+fn deepest_place(surface: &SurfaceFields, depth: &[f64], region: Region) -> Option<String> {
+    let found = surface.largest(depth, region)?;
+    let (x, z) = (fixed(found.position.x, 1), fixed(found.position.z, 1));
+    (found.value > 0.0).then(|| format!("{x}, {z}"))
+}
+
+/// The thickness under the scar, where thinness matters, and anywhere, where the thinnest place may be the rim.
+fn thickness(
+    surface: &SurfaceFields,
+    depth: &[f64],
+    scar_mm: f64,
+) -> Vec<(&'static str, Vec<f64>)> {
+    let Some(thickness) = surface.field("thickness_mm") else {
+        return Vec::new();
+    };
+    let is_scar = |worn: f64| scar_mm > 0.0 && worn > scar_mm;
+    let under = thickness.iter().zip(depth);
+    let under = under.map(|(&left, &worn)| if is_scar(worn) { left } else { f64::NAN });
+    vec![
+        (
+            "Thinnest polyethylene left, under the scar",
+            under.collect(),
+        ),
+        ("Thinnest polyethylene left, anywhere", thickness.to_vec()),
+    ]
+}
+
+/// A region's part of the volume loss that the run states.
+///
+/// Depth times area on the last mesh alone would be a little more: the surface of a dish grows as it is worn, and the run
+/// counts the depth of every update on the area that it wore.
+fn volume_mm3(results: &Results, surface: &SurfaceFields, depth: &[f64], region: Region) -> f64 {
+    let on_last_mesh = |region| surface.integral(depth, region);
+    let whole = on_last_mesh(Region::Whole);
+    match reached(results, &VOLUME_LOSS_MM3) {
+        Some(stated) if whole > 0.0 => stated * on_last_mesh(region) / whole,
+        _ => on_last_mesh(region),
+    }
+}
+
+/// The range of a channel in the first and in the last cycle.
+#[derive(Serialize)]
+pub(super) struct ChannelRange {
+    title: &'static str,
+    unit: &'static str,
+    /// For each cycle: the smallest value, its percent of the cycle, the largest value, its percent.
+    ends: Vec<[f64; 4]>,
+}
+
+/// The range of every channel that the folder holds.
+pub(super) fn ranges(results: &Results) -> Vec<ChannelRange> {
+    let Some(table) = &results.kinematics else {
+        return Vec::new();
+    };
+    let ends = first_and_last(table);
+    let rows = CHANNELS.iter().filter_map(|channel| {
+        let ends = ends.iter().map(|cycle| range(table, channel.column, cycle));
+        Some(ChannelRange {
+            title: channel.title,
+            unit: channel.unit,
+            ends: ends.collect::<Option<_>>()?,
+        })
+    });
+    rows.collect()
+}
+
+fn range(table: &Table, column: &str, cycle: &Cycle) -> Option<[f64; 4]> {
+    let (percent, values) = (table.column("percent")?, table.column(column)?);
+    let rows = cycle.rows.iter().copied();
+    let finite = rows.filter(|&row| values[row].is_finite());
+    let by_value = |a: &usize, b: &usize| values[*a].total_cmp(&values[*b]);
+    let low = finite.clone().min_by(by_value)?;
+    let high = finite.max_by(by_value)?;
+    Some([values[low], percent[low], values[high], percent[high]])
+}
+
+/// The estimated discretisation errors: a row for each quantity, a column for each part.
+#[derive(Serialize)]
+pub(super) struct Accuracy {
+    parts: Vec<String>,
+    rows: Vec<QuantityError>,
+    /// How each part is reduced, in a sentence.
+    remedies: String,
+    /// Why parts have no estimate, a sentence each.
+    missing: Vec<String>,
+}
+
+#[derive(Serialize)]
+struct QuantityError {
+    name: String,
+    unit: String,
+    values: Vec<String>,
+}
+
+/// The remedy for a part of the error.
+fn remedy(part: Part) -> &'static str {
+    match part {
+        Part::Increments => "finer increments of the gait cycle",
+        Part::Updates => "more updates of the shape",
+        Part::Mesh => "shorter edges of the mesh",
+        Part::SlipTolerance => "friction that sticks rather than creeps",
+    }
+}
+
+/// The errors that the summary estimates; none where it estimates nothing.
+pub(super) fn accuracy(results: &Results) -> Option<Accuracy> {
+    let error = results.summary.as_ref()?.error.as_ref()?;
+    let parts = ErrorParts::default().parts().map(|(part, _)| part);
+    let rows = error.quantities().iter().flat_map(|quantity| {
+        let name = first_letter_large(quantity.scalar.label);
+        [
+            row(name.clone(), "%".to_owned(), &quantity.percent),
+            row(name, unit_of(quantity.scalar), &quantity.in_unit),
+        ]
+    });
+    let name = |part: Part| part.name().replace('_', " ");
+    let names = parts
+        .map(|part| first_letter_large(&name(part)))
+        .into_iter();
+    let remedies = parts.map(|part| format!("{} by {}", name(part), remedy(part)));
+    Some(Accuracy {
+        rows: rows.collect(),
+        parts: names.chain(["Together".to_owned()]).collect(),
+        remedies: remedies.join(", "),
+        missing: not_estimated(results),
+    })
+}
+
+fn row(name: String, unit: String, error: &ErrorParts) -> QuantityError {
+    let digits = |value: f64| match unit.as_str() {
+        "%" => fixed(value, 2),
+        _ => significant(value, 2),
+    };
+    let parts = error.parts().into_iter().map(|(_, part)| part);
+    let values = parts.chain([Some(error.total)]);
+    let values = values.map(|value| value.map_or_else(|| String::from("unknown"), digits));
+    QuantityError {
+        name,
+        values: values.collect(),
+        unit,
+    }
+}

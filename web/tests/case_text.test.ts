@@ -1,0 +1,47 @@
+import assert from "node:assert/strict";
+import test from "node:test";
+import { numberOf, tableAt, valueAt, withValue } from "../src/page/case_text";
+
+const CASE = `side = "left" # of the patient
+
+[insert]
+shape = "generic"
+thickness_mm = 9.0           # where it is thinnest
+
+[machine.axial_force]
+knots_n = [
+  [0, 167],
+  [50, 2600]
+]
+
+[march]
+cycles = 5_000_000
+
+[[activity]]
+name = "gait"
+cycles = 3
+`;
+const thickness = { table: "insert", key: "thickness_mm" };
+const cycles = { table: "march", key: "cycles" };
+const scale = { table: "machine.axial_force", key: "scale" };
+
+test("values are found by table and key", () => {
+  assert.equal(numberOf(CASE, thickness), 9);
+  assert.equal(numberOf(CASE, cycles), 5e6);
+  assert.equal(numberOf(CASE, { table: "activity", key: "cycles" }), 3);
+  assert.equal(numberOf(CASE, scale), undefined);
+  assert.equal(valueAt(CASE, { table: "", key: "side" }), "left");
+  assert.equal(valueAt(CASE, { table: "insert", key: "shape" }), "generic");
+  assert.equal(tableAt(CASE.split("\n"), 9), "machine.axial_force");
+});
+
+test("only the number changes, and a remark stays in its column", () => {
+  assert.equal(withValue(CASE, thickness, "10.5"), CASE.replace("9.0           #", "10.5          #"));
+  assert.equal(withValue(CASE, cycles, "1000000"), CASE.replace("5_000_000", "1000000"));
+});
+
+test("a missing key is added to its table, after values of several lines, or with a new table", () => {
+  assert.equal(withValue(CASE, scale, "1.2"), CASE.replace("2600]\n]\n", "2600]\n]\nscale = 1.2\n"));
+  const friction = withValue(CASE, { table: "contact", key: "friction" }, "0.1");
+  assert.equal(friction, `${CASE.trimEnd()}\n\n[contact]\nfriction = 0.1\n`);
+});

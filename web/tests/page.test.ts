@@ -1,0 +1,39 @@
+import assert from "node:assert/strict";
+import test from "node:test";
+import { femurByName } from "../src/page/dropped";
+import { CaseSchema } from "../src/page/schema";
+import { zip } from "../src/page/zip";
+
+test("the femur is the file whose name fits, if only one way fits", () => {
+  const named = (name: string) => ({ name });
+  const [femur, insert] = [named("Femur_left.stl"), named("tibial_insert.stl")];
+  assert.equal(femurByName(femur, insert), femur);
+  assert.equal(femurByName(insert, femur), femur);
+  assert.equal(femurByName(named("a.stl"), named("b.stl")), undefined);
+});
+
+test("the schema offers tables, keys and words", () => {
+  const law = { enum: ["linear", "log"], description: "The pressure law." };
+  const schema = new CaseSchema({ properties: { contact: { properties: { law, friction: { type: "number" } } } } });
+  assert.deepEqual(
+    schema.tables().map(({ word }) => word),
+    ["contact"],
+  );
+  assert.deepEqual(
+    schema.keys("contact").map(({ word }) => word),
+    ["law", "friction"],
+  );
+  assert.deepEqual(
+    schema.values("contact", "law").map(({ word }) => word),
+    ['"linear"', '"log"'],
+  );
+  assert.equal(schema.about("contact", "law"), "The pressure law.");
+});
+
+test("the same files give the same zip", async () => {
+  const files = { "results/wear.csv": new TextEncoder().encode("cycles\n1\n") };
+  const [one, two] = await Promise.all([zip(files), zip(files)]);
+  const bytes = new Uint8Array(await one.arrayBuffer());
+  assert.deepEqual(bytes, new Uint8Array(await two.arrayBuffer()));
+  assert.deepEqual([...bytes.subarray(0, 4)], [0x50, 0x4b, 3, 4]);
+});
