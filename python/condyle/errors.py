@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
-from typing import NamedTuple
+from collections.abc import Iterable
+from typing import NamedTuple, TypeAlias
 
 __all__ = ["BadInput", "CondyleError", "Interrupted", "NotSolved", "Problem", "StudyInterrupted"]
 
@@ -25,6 +25,15 @@ class Problem(NamedTuple):
     """Column in it, from 1."""
 
 
+# Cause; remedy, key and file; line and column: as the compiled module passes a problem.
+_Fields: TypeAlias = "tuple[str, tuple[str | None, str | None, str | None], tuple[int, int] | None]"
+
+
+def _problem(reason: str, texts: tuple[str | None, str | None, str | None], place: tuple[int, int] | None) -> Problem:
+    line, column = place or (None, None)
+    return Problem(reason, *texts, line, column)
+
+
 class CondyleError(Exception):
     """The base class of all errors of condyle; the message is that of the command."""
 
@@ -32,9 +41,9 @@ class CondyleError(Exception):
 class _WithProblems(CondyleError):
     problems: tuple[Problem, ...]
 
-    def __init__(self, message: str, problems: Iterable[tuple[str, Sequence[str | None], tuple[int, int] | None]] = ()) -> None:
+    def __init__(self, message: str, problems: Iterable[_Fields] = ()) -> None:
         super().__init__(message, problems)
-        self.problems = tuple(Problem(cause, *texts, *(place or (None, None))) for cause, texts, place in problems)
+        self.problems = tuple(_problem(*fields) for fields in problems)
 
     def __str__(self) -> str:
         return self.args[0]
