@@ -110,7 +110,7 @@ impl RawStudy {
     fn run_rows(&self, py: Python<'_>, rows: Vec<u64>) -> PyResult<Vec<(u64, Found)>> {
         let found = rows.into_iter().map(|row| {
             py.check_signals()?;
-            let test = self.test(row)?;
+            let test = self.plan.row(row, None).map_err(errors::of_study)?;
             let found = py.detach(|| self.bench.run(&self.plan, &test));
             Ok((row, found.map_or_else(Found::Reason, Found::Outputs)))
         });
@@ -139,25 +139,12 @@ impl RawStudy {
 
     /// The changes of the case in the test of a row, as `key=value`; those of a search are read from the folder `out`.
     fn changes(&self, row: u64, out: Option<PathBuf>) -> PyResult<Vec<String>> {
-        let test = match out.filter(|_| self.plan.is_search()) {
-            None => self.test(row)?,
-            Some(out) => Store::existing(&out, &self.plan)
-                .and_then(|store| store.test(row, &self.plan))
-                .map_err(errors::of_study)?,
-        };
+        let test = self
+            .plan
+            .row(row, out.as_deref())
+            .map_err(errors::of_study)?;
         let changes = self.plan.assignments(&test);
         Ok(changes.iter().map(Assignment::to_string).collect())
-    }
-}
-
-impl RawStudy {
-    fn test(&self, row: u64) -> PyResult<Test> {
-        let tests = self.plan.tests();
-        if row >= tests {
-            return Err(errors::of_study(StudyError::NoRow { row, tests }));
-        }
-        let test = self.plan.test(row);
-        test.ok_or_else(|| errors::of_study(StudyError::NotYet { row }))
     }
 }
 
@@ -188,7 +175,8 @@ impl RawHeldStudy {
                 }
                 Found::Reason(reason) => Err(reason),
             };
-            Ok((study.test(row)?, found))
+            let test = study.plan.row(row, None).map_err(errors::of_study)?;
+            Ok((test, found))
         };
         let found: Vec<_> = found.into_iter().map(tested).collect::<PyResult<_>>()?;
         self.with(|held| held.keep(&study.plan, &found))

@@ -215,15 +215,9 @@ fn export(arguments: &StudyExport) -> Result<ExitCode, StudyError> {
 
 fn run_row(arguments: &RunRow) -> Result<ExitCode, StudyError> {
     let plan = Plan::read(&arguments.study)?;
-    let (row, tests) = (arguments.row, plan.tests());
-    if row >= tests {
-        return Err(StudyError::NoRow { row, tests });
-    }
+    let row = arguments.row;
     let folder = || default_folder(&arguments.study, Shard::WHOLE);
-    let test = match plan.test(row) {
-        Some(test) => test,
-        None => Store::existing(&folder(), &plan)?.test(row, &plan)?,
-    };
+    let test = plan.row(row, Some(&folder()))?;
     let out = arguments.out.clone();
     let options = RunOptions {
         out: out.unwrap_or_else(|| folder().join(format!("row-{row}"))),

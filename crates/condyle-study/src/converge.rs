@@ -168,7 +168,7 @@ pub fn converge(
 fn plan(case_path: &Path, over: &str) -> Result<Plan, StudyError> {
     let no_key = || {
         let problem = format!("`{over}` is no key with values; write them as `updates=1,2,5,10`");
-        StudyError::Values(problem)
+        StudyError::Plan(problem)
     };
     let (key, written) = over.split_once('=').ok_or_else(no_key)?;
     let key = key.trim();
@@ -179,7 +179,7 @@ fn plan(case_path: &Path, over: &str) -> Result<Plan, StudyError> {
     let written: Vec<&str> = written.filter(|value| !value.is_empty()).collect();
     if written.len() < 2 {
         let found = ["no value", "one value"][written.len()];
-        return Err(StudyError::Values(format!(
+        return Err(StudyError::Plan(format!(
             "`{key}` has {found} where two or more are needed to compare; write them as `{key}=10,20,40`"
         )));
     }
@@ -201,7 +201,7 @@ fn plan(case_path: &Path, over: &str) -> Result<Plan, StudyError> {
     });
     if let Some(pair) = values.windows(2).find(|pair| pair[0] == pair[1]) {
         let value = pair[0];
-        return Err(StudyError::Values(format!(
+        return Err(StudyError::Plan(format!(
             "`{key}` has the value {value} twice; write each once"
         )));
     }

@@ -77,7 +77,7 @@ pub fn run_study(
 ) -> Result<(), StudyError> {
     let StudyOptions { shard, threads, .. } = *options;
     if plan.is_search() && !shard.is_whole() {
-        return Err(StudyError::NoShards);
+        return Err(StudyError::no_shards());
     }
     let store = Store::take_shard(plan, shard, &options.out)?;
     let bench = TestBench::default();

@@ -21,35 +21,9 @@ pub enum StudyError {
     /// A key or a value to converge over that the case cannot take.
     #[error(transparent)]
     Assignment(#[from] AssignmentError),
-    /// Values to converge over that cannot be compared.
+    /// Tests that cannot be planned or run as asked, with the remedy.
     #[error("{0}")]
-    Values(String),
-    /// A design with more inputs than its points have axes.
-    #[error(
-        "a {design} design takes {most} inputs at most, and the study has {inputs}; use kind = \"latin-hypercube\", or \
-         let fewer inputs vary"
-    )]
-    TooManyInputs {
-        /// The `kind` of the design.
-        design: &'static str,
-        /// Inputs that it takes.
-        most: usize,
-        /// Inputs of the study.
-        inputs: usize,
-    },
-    /// More tests than can be numbered or finished.
-    #[error(
-        "the study has {tests:.3e} tests, and {most:.0e} are the most; take fewer levels, points or inputs"
-    )]
-    TooManyTests {
-        /// Tests of the study.
-        tests: f64,
-        /// The largest number allowed.
-        most: f64,
-    },
-    /// Correlations whose matrix is not positive definite.
-    #[error("the correlations cannot all hold at once; make them weaker, or leave one out")]
-    Contradiction,
+    Plan(String),
     /// A folder that the study cannot use.
     #[error("{}: {problem}", folder.display())]
     Folder {
@@ -58,25 +32,6 @@ pub enum StudyError {
         /// Its content, and the remedy.
         problem: &'static str,
     },
-    /// A row that the study does not have.
-    #[error("the study has no row {row}; its rows are 0 to {}", tests - 1)]
-    NoRow {
-        /// The row asked for.
-        row: u64,
-        /// Tests of the study.
-        tests: u64,
-    },
-    /// A row of a search, whose inputs depend on the earlier rows.
-    #[error("row {row} of a search is known once it has been tried; run the study first")]
-    NotYet {
-        /// The row asked for.
-        row: u64,
-    },
-    /// A search cannot be divided.
-    #[error(
-        "a search goes from test to test, and cannot be cut into shards; run it on one machine"
-    )]
-    NoShards,
     /// The listener stopped the study; stored tests are kept.
     #[error("interrupted")]
     Interrupted,
@@ -119,6 +74,12 @@ impl StudyError {
     pub(crate) fn folder(folder: &Path, problem: &'static str) -> Self {
         let folder = folder.to_path_buf();
         Self::Folder { folder, problem }
+    }
+
+    pub(crate) fn no_shards() -> Self {
+        let problem =
+            "a search goes from test to test, and cannot be cut into shards; run it on one machine";
+        Self::Plan(problem.to_owned())
     }
 
     /// The error for a file or folder that the system refuses to read or write.

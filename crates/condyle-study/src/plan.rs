@@ -17,6 +17,7 @@ use crate::{
     },
     distribution::{Place, level_along, level_at_share},
     error::StudyError,
+    store::Store,
 };
 
 const MAX_TESTS: f64 = 1e9;
@@ -62,8 +63,9 @@ impl Plan {
         // As a real number, since a factorial design may exceed any integer.
         let tests = tests(&study);
         if tests * designs(&study) as f64 > MAX_TESTS {
-            let most = MAX_TESTS;
-            return Err(StudyError::TooManyTests { tests, most });
+            return Err(StudyError::Plan(format!(
+                "the study has {tests:.3e} tests, and {MAX_TESTS:.0e} are the most; take fewer levels, points or inputs"
+            )));
         }
         let inputs = study.inputs.len();
         let most = match &study.design {
@@ -74,16 +76,19 @@ impl Plan {
         };
         if inputs > most {
             let design = study.design.word();
-            return Err(StudyError::TooManyInputs {
-                design,
-                most,
-                inputs,
-            });
+            return Err(StudyError::Plan(format!(
+                "a {design} design takes {most} inputs at most, and the study has {inputs}; use kind = \"latin-hypercube\", \
+                 or let fewer inputs vary"
+            )));
         }
         let mut copula = None;
         if !study.correlations.is_empty() {
             let correlated = Copula::new(inputs, &study.correlations);
-            copula = Some(correlated.ok_or(StudyError::Contradiction)?);
+            copula = Some(correlated.ok_or_else(|| {
+                let problem =
+                    "the correlations cannot all hold at once; make them weaker, or leave one out";
+                StudyError::Plan(problem.to_owned())
+            })?);
         }
         Ok(Self {
             copula,
@@ -114,7 +119,7 @@ impl Plan {
     }
 
     /// Test `row`; none beyond the last, and none of a search, where it depends on the results of earlier tests.
-    pub fn test(&self, row: u64) -> Option<Test> {
+    pub(crate) fn test(&self, row: u64) -> Option<Test> {
         if row >= self.tests() {
             return None;
         }
@@ -132,6 +137,29 @@ impl Plan {
             row,
             alternative,
             values,
+        })
+    }
+
+    /// Test `row`; that of a search as it is stored in `folder`.
+    ///
+    /// # Errors
+    /// A row that the study does not have, or a search has not reached.
+    pub fn row(&self, row: u64, folder: Option<&Path>) -> Result<Test, StudyError> {
+        let tests = self.tests();
+        if row >= tests {
+            let last = tests - 1;
+            return Err(StudyError::Plan(format!(
+                "the study has no row {row}; its rows are 0 to {last}"
+            )));
+        }
+        let mut test = self.test(row);
+        if let (None, Some(folder)) = (&test, folder) {
+            test = Store::existing(folder, self)?.test(row, self)?;
+        }
+        test.ok_or_else(|| {
+            StudyError::Plan(format!(
+                "row {row} of a search is known once it has been tried; run the study first"
+            ))
         })
     }
 

@@ -88,10 +88,7 @@ impl Store {
     }
 
     /// Opens the database of `plan` in `folder`.
-    ///
-    /// # Errors
-    /// A folder without a study, or with another one than `plan`.
-    pub fn existing(folder: &Path, plan: &Plan) -> Result<Self, StudyError> {
+    pub(crate) fn existing(folder: &Path, plan: &Plan) -> Result<Self, StudyError> {
         let store = Self::read(folder)?;
         store.check_tests(folder, plan)?;
         Ok(store)
@@ -193,7 +190,7 @@ impl Store {
     /// A search, whose tests are unknown before they are due.
     pub fn missing(&self, plan: &Plan) -> Result<Vec<u64>, StudyError> {
         if plan.is_search() {
-            return Err(StudyError::NoShards);
+            return Err(StudyError::no_shards());
         }
         let mut stored = vec![false; plan.tests() as usize];
         self.checked(|connection| {
@@ -257,21 +254,18 @@ impl Store {
         found.collect()
     }
 
-    /// Test `row` with its stored inputs, which for a search are stored nowhere else.
-    ///
-    /// # Errors
-    /// A test that is not stored.
-    pub fn test(&self, row: u64, plan: &Plan) -> Result<Test, StudyError> {
+    /// Test `row` with its stored inputs, which for a search are stored nowhere else; none if it is not stored.
+    pub(crate) fn test(&self, row: u64, plan: &Plan) -> Result<Option<Test>, StudyError> {
         let (inputs, _) = plan.columns();
         let values = self.first_row(&select(&inputs, ""), row as i64, |cells| {
             let values = (0..inputs.len()).map(|place| cells.get(place).map(Level::Number));
             values.map(|value| value.map(Some)).collect()
         })?;
-        Ok(Test {
+        Ok(values.map(|values| Test {
             row,
             alternative: 0,
-            values: values.ok_or(StudyError::NotYet { row })?,
-        })
+            values,
+        }))
     }
 
     /// Adds the tests of another database; tests that are stored here already stay.

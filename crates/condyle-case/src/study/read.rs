@@ -100,9 +100,13 @@ fn read_study(
         folder: absolute.unwrap_or_else(|_| folder.to_path_buf()),
         cases,
     };
-    check_twice(&study.inputs, log);
     let mut left = MAX_TRIED;
-    for input in &study.inputs {
+    for (place, input) in study.inputs.iter().enumerate() {
+        let before = &study.inputs[..place];
+        if before.iter().any(|one| one.key == input.key) {
+            let key = input.key.clone();
+            log.problem(input.span.clone(), StudyReason::Twice { key });
+        }
         study.check_input(input, &mut left, log);
     }
     for alternative in &study.alternatives {
@@ -212,15 +216,6 @@ fn correlation(section: &Section<'_>, inputs: &[Input], log: &mut Log<'_>) -> Op
         inputs: [one?, other?],
         coefficient: keys.coefficient,
     })
-}
-
-fn check_twice(inputs: &[Input], log: &mut Log<'_>) {
-    for (place, input) in inputs.iter().enumerate() {
-        if inputs[..place].iter().any(|before| before.key == input.key) {
-            let key = input.key.clone();
-            log.problem(input.span.clone(), StudyReason::Twice { key });
-        }
-    }
 }
 
 impl Study {

@@ -89,13 +89,11 @@ pub(crate) fn compare(
     });
     let specimens: Vec<Rate> = specimens.collect();
     let all = Rate::of_line("all weighings", &all_losses(&weighings), confidence);
-    let all = all.ok_or(CompareError::NoColumn { column: "cycles" })?;
+    let all = all.ok_or_else(|| CompareError::no_column("cycles"))?;
     let predicted =
         counted(&weighings).filter_map(|one| Some((one.cycles, one.predicted_loss_mg?)));
     let predicted: Vec<(f64, f64)> = predicted.collect();
-    let too_short = CompareError::RunTooShort {
-        weighings: predicted.len(),
-    };
+    let too_short = CompareError::run_too_short(predicted.len());
     let predicted = Rate::of_line("predicted", &predicted, confidence).ok_or(too_short)?;
     let rates: Vec<f64> = specimens
         .iter()
@@ -198,7 +196,10 @@ fn at(curve: &[(f64, f64)], cycles: f64) -> Option<f64> {
 }
 
 fn weighings(measured: &Gravimetric, run: &Table) -> Result<Vec<Weighing>, CompareError> {
-    let column = |column| run.column(column).ok_or(CompareError::NoColumn { column });
+    let column = |column| {
+        let found = run.column(column);
+        found.ok_or_else(|| CompareError::no_column(column))
+    };
     let (cycles, masses) = (column("cycles")?, column("mass_loss_mg")?);
     let points = cycles.iter().copied().zip(masses.iter().copied());
     let predicted: Vec<(f64, f64)> = std::iter::once((0.0, 0.0)).chain(points).collect();

@@ -100,13 +100,14 @@ fn rows_of(run: &Table, cycle: CycleWord) -> Result<(f64, Vec<usize>), CompareEr
         .filter(|&row| cycles[row] == chosen)
         .collect();
     if rows.is_empty() {
-        return Err(CompareError::NoColumn { column: "cycles" });
+        return Err(CompareError::no_column("cycles"));
     }
     Ok((chosen, rows))
 }
 
 fn column_of<'a>(run: &'a Table, column: &'static str) -> Result<&'a [f64], CompareError> {
-    run.column(column).ok_or(CompareError::NoColumn { column })
+    run.column(column)
+        .ok_or_else(|| CompareError::no_column(column))
 }
 
 fn column(
@@ -129,10 +130,11 @@ fn column(
         })
         .collect();
     if points.is_empty() {
-        return Err(CompareError::NothingMeasured {
-            column: curve.column,
-            gap: measured.keys.largest_gap_percent,
-        });
+        let (column, gap) = (curve.column, measured.keys.largest_gap_percent);
+        return Err(CompareError::NotComparable(format!(
+            "the measured points of `{column}` are all more than {gap} % of the cycle apart, so nothing is compared; raise \
+             largest_gap_percent in [kinematics], or leave the column out"
+        )));
     }
     let mean_difference = mean(&points.iter().map(|[_, p, m]| p - m).collect::<Vec<_>>());
     if measured.keys.align == AlignWord::Mean {
@@ -153,7 +155,7 @@ fn column(
     Ok(ColumnComparison {
         column: curve.column,
         mean_difference,
-        errors: errors(&points).ok_or(CompareError::NoColumn { column: "percent" })?,
+        errors: errors(&points).ok_or_else(|| CompareError::no_column("percent"))?,
         phases: phases.collect(),
         predicted_range: range(rows.iter().map(|&row| values[row])),
         measured_range: range(curve.samples.iter().map(|sample| sample.value)),

@@ -53,7 +53,7 @@ pub fn compare(results: &Path, measured: &Path) -> Result<Comparison, CompareErr
         let path = results.join(file);
         table
             .clone()
-            .ok_or(CompareError::MissingFile { path, table: key })
+            .ok_or_else(|| CompareError::missing_file(&path, key))
     };
     let kinematics = measured.kinematics.as_ref().map(|measured| {
         let run = table(&run.kinematics, "kinematics.csv", "kinematics")?;

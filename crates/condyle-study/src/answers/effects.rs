@@ -23,7 +23,6 @@ const MAX_POINTS: usize = 400;
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub(crate) struct Effect {
     pub output: &'static str,
-    /// The key of the input.
     pub input: String,
     pub name: String,
     /// Spearman's; none for words.
@@ -132,10 +131,8 @@ fn span_by_chance(slices: &[&[(f64, f64)]]) -> f64 {
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub(crate) struct Elementary {
     pub output: &'static str,
-    /// The key of the input.
     pub input: String,
     pub mu: f64,
-    /// Mean magnitude.
     pub mu_star: f64,
     /// Standard deviation: large for nonlinear effects and interactions.
     pub sigma: f64,

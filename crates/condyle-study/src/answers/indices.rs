@@ -18,7 +18,6 @@ const SEED: u64 = 20_080_101;
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub(crate) struct Indices {
     pub output: &'static str,
-    /// The key of the input.
     pub input: String,
     /// By the input alone.
     pub first: f64,

@@ -21,7 +21,6 @@ pub(crate) struct Ranking {
     pub unit: &'static str,
     /// Disturbances under which the tests of all designs are done.
     pub disturbances: usize,
-    /// The best first.
     pub designs: Vec<RankedDesign>,
 }
 
@@ -136,9 +135,7 @@ pub(crate) struct Best {
     pub minimised: &'static str,
     /// The best test that keeps every limit; none where none does.
     pub row: Option<u64>,
-    /// Its inputs, by their keys.
     pub inputs: Vec<(String, f64)>,
-    /// Its outputs, by their keys.
     pub outputs: Vec<(&'static str, f64)>,
     pub generations: u64,
     /// The largest step at the end, as a part of the ranges.

@@ -106,7 +106,11 @@ impl<'a> Search<'a> {
     ) -> Result<Self, CalibrateError> {
         let (tests, constants) = (observations.len(), start.at.len());
         if tests < constants {
-            return Err(CalibrateError::TooFewTests { tests, constants });
+            let s = if tests == 1 { "" } else { "s" };
+            return Err(CalibrateError::Unsuitable(format!(
+                "{tests} measured rate{s} cannot tell {constants} constants; give as many tests as constants, or fewer \
+                 --constant"
+            )));
         }
         let rates = model(&start.at)?;
         let mut search = Self {
@@ -192,11 +196,11 @@ impl<'a> Search<'a> {
             let better = self.go(model, &(part * step))?;
             part = if better { 1.0 } else { 0.5 * part };
         }
-        let (steps, left_percent) = (MAX_STEPS, 100.0 * change);
-        Err(CalibrateError::NotFound {
-            steps,
-            left_percent,
-        })
+        let left_percent = 100.0 * change;
+        Err(CalibrateError::Unsuitable(format!(
+            "after {MAX_STEPS} steps the rates would still change by {left_percent:.2} %; use more updates or increments in \
+             the cases, or start from other constants"
+        )))
     }
 
     /// The Gauss-Newton step.
@@ -204,10 +208,10 @@ impl<'a> Search<'a> {
         let parts = self.slopes.clone().svd(true, true);
         let [most, least] = [parts.singular_values.max(), parts.singular_values.min()];
         if least.is_nan() || least <= MIN_SINGULAR * most {
-            return Err(CalibrateError::NotTold);
+            return Err(undetermined());
         }
         let step = parts.solve(&-self.residuals(&self.rates), 0.0);
-        step.map_err(|_| CalibrateError::NotTold)
+        step.map_err(|_| undetermined())
     }
 
     /// The largest relative change of a rate in a step.
@@ -268,7 +272,7 @@ impl<'a> Search<'a> {
         };
         let variance = (inside + between) / freedom as f64;
         let inverse = (self.slopes.transpose() * &self.slopes).try_inverse();
-        let covariance = inverse.ok_or(CalibrateError::NotTold)? * variance;
+        let covariance = inverse.ok_or_else(undetermined)? * variance;
         let half = |number: usize| {
             let wide = quantile * covariance[(number, number)].sqrt();
             wide.clamp(0.01 * size(self.at[number]), 0.3 * size(self.at[number]))
@@ -298,6 +302,13 @@ impl<'a> Search<'a> {
             ..fine
         }))
     }
+}
+
+/// The error for constants whose effects on the rates cannot be separated.
+fn undetermined() -> CalibrateError {
+    let problem = "these tests do not tell the constants apart: some change of them leaves every rate as it is; give tests \
+                   that differ more in what the law goes by, or fewer --constant";
+    CalibrateError::Unsuitable(problem.to_owned())
 }
 
 /// The scale of changes of a parameter; 1 for one that is 0.
@@ -433,14 +444,12 @@ fn place(law: &Wear, name: &str) -> Result<usize, CalibrateError> {
     let found = parameters
         .iter()
         .position(|parameter| parameter.name == name);
-    found.ok_or_else(|| CalibrateError::UnknownConstant {
-        law: law.kind().word,
-        name: name.to_owned(),
-        known: parameters
-            .iter()
-            .map(|parameter| format!("`{}`", parameter.name))
-            .collect::<Vec<_>>()
-            .join(", "),
+    found.ok_or_else(|| {
+        let known = parameters.iter().map(|one| format!("`{}`", one.name));
+        let (law, known) = (law.kind().word, known.collect::<Vec<_>>().join(", "));
+        CalibrateError::Unsuitable(format!(
+            "the wear law \"{law}\" has no constant `{name}`; it has {known}"
+        ))
     })
 }
 
@@ -613,7 +622,7 @@ mod tests {
         let alike = |at: &[f64]| Ok(vec![at[0] * at[1], 2.0 * at[0] * at[1]]);
         let two = [exact(3.0), exact(5.0)];
         let error = fit(&mut { alike }, start(2), &two, 0.95).unwrap_err();
-        assert!(matches!(error, CalibrateError::NotTold), "{error}");
+        assert_eq!(error.to_string(), undetermined().to_string());
         let error = fit(&mut { alike }, start(2), &two[..1], 0.95).unwrap_err();
         assert_eq!(
             error.to_string(),
@@ -624,7 +633,7 @@ mod tests {
         let error = fit(&mut noise, start(1), &two[1..], 0.95).unwrap_err();
         assert!(
             error.to_string().starts_with("after 12 steps")
-                || matches!(error, CalibrateError::NotTold),
+                || error.to_string() == undetermined().to_string(),
             "{error}"
         );
     }

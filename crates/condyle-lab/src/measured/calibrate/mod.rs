@@ -46,8 +46,7 @@ impl CalibrationRequest {
     pub fn pairs(paths: &[PathBuf]) -> Result<Vec<(PathBuf, PathBuf)>, CalibrateError> {
         let pairs = paths.chunks_exact(2);
         if paths.is_empty() || !pairs.remainder().is_empty() {
-            let given = paths.len();
-            return Err(CalibrateError::NoPairs { given });
+            return Err(no_pairs(paths.len()));
         }
         Ok(pairs
             .map(|pair| (pair[0].clone(), pair[1].clone()))
@@ -192,27 +191,35 @@ pub fn calibrate(
     Ok(results(&tests, &free, &fit, predictions, trials))
 }
 
+fn no_pairs(given: usize) -> CalibrateError {
+    CalibrateError::Unsuitable(format!(
+        "give a results folder and a file of measured data for each test: {given} paths are no pairs"
+    ))
+}
+
 fn read(pairs: &[(PathBuf, PathBuf)]) -> Result<Vec<Test>, CalibrateError> {
     let tests = pairs
         .iter()
         .map(|(results, measured)| Test::read(results, measured));
     let tests: Vec<Test> = tests.collect::<Result<_, _>>()?;
     let Some(first) = tests.first() else {
-        return Err(CalibrateError::NoPairs { given: 0 });
+        return Err(no_pairs(0));
     };
     for test in &tests {
         let [law, own] = [test, first].map(|test| test.case.wear.kind().word);
         if law != own {
-            let (results, first) = (test.results.clone(), own);
-            return Err(CalibrateError::OtherLaw {
-                results,
-                law,
-                first,
-            });
+            return Err(CalibrateError::Unsuitable(format!(
+                "{}: this run has the wear law \"{law}\", and the first one has \"{own}\"; run all with one law (--set \
+                 wear.law={own})",
+                test.results.display()
+            )));
         }
         if !test.weighed.has_intervals_like(&first.weighed) {
-            let measured = test.measured.clone();
-            return Err(CalibrateError::OtherInterval { measured });
+            return Err(CalibrateError::Unsuitable(format!(
+                "{}: [gravimetric] interval and confidence_percent are not those of the first test; tests that are fitted \
+                 together need one kind of interval",
+                test.measured.display()
+            )));
         }
     }
     Ok(tests)
@@ -387,7 +394,11 @@ impl Test {
     pub(crate) fn read(results: &Path, measured: &Path) -> Result<Self, CalibrateError> {
         let comparison = compare(results, measured)?;
         Ok(Self {
-            weighed: comparison.gravimetric.ok_or(CalibrateError::NotWeighed)?,
+            weighed: comparison.gravimetric.ok_or_else(|| {
+                let problem =
+                    "the measured data have no [gravimetric] table, which a wear law is calibrated by";
+                CalibrateError::Unsuitable(problem.to_owned())
+            })?,
             case: Case::read(&results.join("case.toml"))?,
             results: results.to_owned(),
             measured: measured.to_owned(),
@@ -398,15 +409,18 @@ impl Test {
     pub(crate) fn check(&self) -> Result<(), CalibrateError> {
         let mg_per_million_cycles = self.weighed.aim().mg_per_million_cycles;
         if mg_per_million_cycles <= 0.0 || !mg_per_million_cycles.is_finite() {
-            return Err(CalibrateError::NoWear {
-                mg_per_million_cycles,
-            });
+            return Err(CalibrateError::Unsuitable(format!(
+                "the measured wear rate is {mg_per_million_cycles:.3} mg per million cycles: there are no constants that \
+                 make a prediction of it; check the masses and the soak controls"
+            )));
         }
         if self.weighed.predicted.mg_per_million_cycles <= 0.0 {
-            return Err(CalibrateError::RunWithoutWear {
-                results: self.results.clone(),
-                constants: in_words(&self.case.wear),
-            });
+            return Err(CalibrateError::Unsuitable(format!(
+                "{}: the run wears nothing with {}, so its wear cannot be scaled; if that is a wear factor of 0, give it one \
+                 above 0, and run it again",
+                self.results.display(),
+                in_words(&self.case.wear)
+            )));
         }
         Ok(())
     }
@@ -417,7 +431,7 @@ impl Test {
             return Ok(self.weighed.predicted.mg_per_million_cycles);
         }
         let rate = self.weighed.rate_of(&losses(&self.case, law)?);
-        Ok(rate.ok_or(CompareError::RunTooShort { weighings: 0 })?)
+        Ok(rate.ok_or_else(|| CompareError::run_too_short(0))?)
     }
 }
 

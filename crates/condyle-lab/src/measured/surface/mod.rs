@@ -56,18 +56,17 @@ fn first_and_last(folder: &Path) -> Result<(SurfaceFields, SurfaceFields), Compa
     if unworn.nodes.len() == worn.nodes.len() {
         Ok((unworn, worn))
     } else {
-        Err(CompareError::OtherMesh {
-            first: unworn.nodes.len(),
-            last: worn.nodes.len(),
-        })
+        let [first, last] = [&unworn, &worn].map(|surface| surface.nodes.len());
+        Err(CompareError::NotComparable(format!(
+            "the first and the last mesh of the results have {first} and {last} nodes on the surface; run the case again"
+        )))
     }
 }
 
 fn surface(folder: &Path, update: usize) -> Result<SurfaceFields, CompareError> {
     let path = folder.join(insert_file_name(update));
     if !path.is_file() {
-        let table = "surface";
-        return Err(CompareError::MissingFile { path, table });
+        return Err(CompareError::missing_file(&path, "surface"));
     }
     check_file(&path)?;
     let file = read_vtu_points(&path)?;
@@ -162,10 +161,13 @@ pub(crate) fn summarised(
     let all: Vec<NodeDepths> = nodes.iter().map(place).collect();
     let largest = |of: fn(&NodeDepths) -> f64| {
         let found = all.iter().max_by(|a, b| of(a).total_cmp(&of(b)));
-        let farthest_mm = scan.keys.farthest_mm;
-        found
-            .copied()
-            .ok_or(CompareError::NothingScanned { farthest_mm })
+        found.copied().ok_or_else(|| {
+            let farthest_mm = scan.keys.farthest_mm;
+            CompareError::NotComparable(format!(
+                "the registered scan covers no node of the insert within {farthest_mm} mm; raise farthest_mm in [surface], \
+                 or scan more of the insert"
+            ))
+        })
     };
     let deepest_predicted = largest(|place| place.predicted_mm)?;
     let scar = SCAR_SHARE * deepest_predicted.predicted_mm;

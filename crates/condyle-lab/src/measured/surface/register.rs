@@ -32,6 +32,8 @@ const TUKEY: f64 = 4.685;
 const SCALE_OF_MEDIAN: f64 = 1.4826;
 /// Smallest scale of residuals, mm: round-off of a scan without noise.
 const MIN_SCALE_MM: f64 = 1e-7;
+const SCAN_SLIDES: &str = "the surface that the scan is laid onto does not fix its place: it can slide or turn along \
+    itself; scan more of the insert, or fit all of it (fit = \"all\" in [surface])";
 /// A motion with a smaller eigenvalue, relative to the largest, is not determined by the surface.
 const MIN_RESISTANCE: f64 = 1e-7;
 
@@ -83,11 +85,15 @@ pub(crate) fn register(
     let mut step_mm = f64::INFINITY;
     for steps in 1..=MAX_STEPS {
         let pairs = places.pairs(&motion, target, reach, |foot| fits(&scan.keys, foot, depth));
-        let fit = Fit::of(&pairs).ok_or(CompareError::ScanElsewhere {
-            near: pairs.len(),
-            points: places.points.len(),
+        let fit = Fit::of(&pairs).ok_or_else(|| {
+            let (near, points) = (pairs.len(), places.points.len());
+            CompareError::NotComparable(format!(
+                "only {near} of {points} points of the scan come near the insert where they are to be laid onto it; check \
+                 length_unit, axes, start_mm and the fit region in [surface]"
+            ))
         })?;
-        let step = fit.step().ok_or(CompareError::ScanSlides)?;
+        let slides = || CompareError::NotComparable(SCAN_SLIDES.to_owned());
+        let step = fit.step().ok_or_else(slides)?;
         motion = step * motion;
         step_mm = fit.length_of(&step);
         let is_last = reach <= scan.keys.farthest_mm && step_mm < REST_MM;
@@ -96,10 +102,10 @@ pub(crate) fn register(
         }
         reach = (reach * REACH_SHRINKS).max(scan.keys.farthest_mm);
     }
-    Err(CompareError::ScanRestless {
-        iterations: MAX_STEPS,
-        step_mm,
-    })
+    Err(CompareError::NotComparable(format!(
+        "the scan does not come to rest on the insert within {MAX_STEPS} steps: the last moved it by {step_mm:.4} mm; start \
+         it nearer with axes and start_mm in [surface]"
+    )))
 }
 
 /// Whether a place of the prediction is used for the registration.
@@ -417,8 +423,7 @@ mod tests {
     fn a_plane_leaves_the_scan_free_to_slide() {
         let fit = Fit::of(&pairs(|_, _| Vec3::y())).unwrap();
         assert!(fit.step().is_none());
-        let said = CompareError::ScanSlides.to_string();
-        assert!(said.contains("it can slide or turn along itself"), "{said}");
+        assert!(SCAN_SLIDES.contains("it can slide or turn along itself"));
     }
 
     #[test]
