@@ -8,7 +8,7 @@ use condyle_case::case::Assignment;
 use condyle_case::study::Study;
 use condyle_results::catalogue;
 use condyle_study::{
-    Plan, Shard, Store, StudyError, StudyEvent, StudyOptions, Test, TestBench, TestResult, merge,
+    Plan, Shard, Store, StudyError, StudyEvent, StudyOptions, TestBench, TestResult, merge,
     run_study, write_answers,
 };
 use pyo3::prelude::*;
