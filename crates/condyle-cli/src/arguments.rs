@@ -254,7 +254,7 @@ pub struct Uncertainty {
 pub struct Study {
     #[command(subcommand)]
     pub command: Option<StudyCommand>,
-    /// The study file: the case, the varied inputs, the design and the answers. The same command goes on with a study
+    /// The study file: the case, the varied inputs, the design and the answers. The same command continues a study
     /// that was stopped.
     #[arg(required = true)]
     pub study: Option<PathBuf>,

@@ -20,7 +20,7 @@ pub struct ActivitySummary {
     pub share_of_cycles: f64,
     /// Its motions and loads, in the columns of `kinematics.csv`.
     pub kinematics_file: String,
-    /// Its part of the mass worn, mg: each place's wear is shared out by pressure times sliding there.
+    /// Its part of the mass worn, mg: the wear of each place is divided by pressure times sliding there.
     pub mass_loss_mg: f64,
     /// Its part of the volume worn, mm3.
     pub volume_loss_mm3: f64,

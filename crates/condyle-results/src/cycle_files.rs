@@ -1,5 +1,5 @@
-//! The first and the last cycle as ParaView plays them: at every increment the insert with its pressure,
-//! and the femur where it is.
+//! The first and the last cycle for ParaView: at every increment the insert with its pressure, and the
+//! femur in its pose.
 
 use std::fmt::Write;
 
@@ -16,7 +16,7 @@ use condyle_mesh::formats::{
 
 use super::side::{Side, point_on_side, quad_on_side, triangle_on_side};
 
-/// Which of the two cycles whose motions are kept.
+/// The two cycles whose motions are kept.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum KeptCycle {
     /// On the unworn insert.
@@ -37,7 +37,7 @@ impl KeptCycle {
         }
     }
 
-    /// Those that a march has just solved: after one update the first, after all of them the last.
+    /// The kept cycles that a march has just solved: after one update the first, after all of them the last.
     pub fn solved_by(march: &March) -> impl Iterator<Item = Self> {
         let is_first = march.state().updates.len() == 1;
         let first = is_first.then_some(Self::First);

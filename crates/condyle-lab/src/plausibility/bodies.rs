@@ -198,7 +198,7 @@ pub(crate) fn thin_polyethylene(finished: &Finished<'_>) -> Option<PlausibilityW
             "under the scar {thinnest:.2} mm of polyethylene are left at the thinnest; below {MIN_THICKNESS_MM:.0} mm stresses \
              rise steeply"
         ),
-        advice: "See that the insert's mesh reaches down to its tray and is in the unit that the case says.".to_owned(),
+        advice: "Check that the insert's mesh reaches down to its tray and that its `unit` in the case is right.".to_owned(),
     })
 }
 

@@ -1,4 +1,4 @@
-//! From a case to a march that is ready to go.
+//! Builds a case and starts its march.
 
 use std::path::Path;
 
@@ -123,15 +123,15 @@ fn check_holes(
     Err(RunError::of_build(case, source))
 }
 
-/// What the program takes whatever the case, MB.
+/// Memory of the program without a case, MB.
 const PROGRAM_MB: f64 = 6.0;
 /// Bytes of a touched node at an increment: the histories of a cycle and of the one before.
 const BYTES_A_TOUCH: f64 = 230.0;
 /// The estimate of the error keeps histories of twice the increments in addition.
 const WITH_ESTIMATE: f64 = 2.1;
-/// To so many times the nodes that it is near at rest the femur comes near in the life of an insert, about.
+/// Nodes that the femur comes near in the life of an insert, over those near it at rest; approximate.
 const EVER_NEAR: f64 = 4.0;
-/// Parts of a cycle at which the load is looked at.
+/// Samples of the load in a cycle.
 const LOOKED_AT: usize = 50;
 
 /// Memory that a march of `case` needs at its highest, about, MB.

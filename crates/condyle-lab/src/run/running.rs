@@ -238,22 +238,22 @@ pub(crate) fn march_watched(
         out: None,
         wear_law: None,
     };
-    let nobody = &mut |_: RunEvent<'_>| ControlFlow::Continue(());
-    Run::begin(case, means, Start::Fresh, String::new(), nobody)?.marched(watch)
+    let ignore = &mut |_: RunEvent<'_>| ControlFlow::Continue(());
+    Run::begin(case, means, Start::Fresh, String::new(), ignore)?.marched(watch)
 }
 
-/// How a case is run in memory.
+/// Options of a run in memory.
 #[derive(Clone, Debug)]
 pub struct InMemory {
     /// Threads for the one-time work on a mesh; results do not depend on it.
     pub threads: usize,
-    /// Where the one-time work on a mesh is kept for the next run; results do not depend on it.
+    /// The cache of the one-time work on a mesh; results do not depend on it.
     pub cache: Cache,
-    /// A law of wear that takes the place of the case's; the hash of the inputs does not know it.
+    /// A wear law in place of that of the case; the hash of the inputs does not include it.
     pub wear_law: Option<NamedLaw>,
 }
 
-/// Hears of a run as it is kept.
+/// Receives the states of a run that are kept.
 pub trait RunKeeper {
     /// The femur has settled, and nothing is worn; `femur` is its triangles in the femoral frame, those of its
     /// mesh, or about [`FEMUR_TRIANGLES`].
@@ -263,7 +263,7 @@ pub trait RunKeeper {
     fn updated(&mut self, march: &March);
 }
 
-/// Runs a case, and writes no file: `keeper` takes what is wanted of it. The numbers are those of
+/// Runs a case without writing a file: `keeper` receives the states to keep. The numbers are those of
 /// [`run_case`](crate::run_case).
 ///
 /// # Errors

@@ -247,7 +247,7 @@ impl Scalar {
         self.sentences().0
     }
 
-    /// The definition; empty where the description says all.
+    /// The definition; empty if the description is enough.
     pub fn definition(&self) -> &'static str {
         self.sentences().1
     }
