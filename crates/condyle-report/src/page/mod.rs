@@ -75,7 +75,7 @@ fn page_of(results: &Results, scene: Option<&Scene>) -> String {
             "disagreements": sentences::disagreements(results),
             "wear_map": large_map(results),
             "compartments": tables::compartments(results),
-            "wear_laws": summary.map(|summary| &summary.wear_laws),
+            "wear_laws": summary.map_or(&[][..], |summary| &summary.wear_laws),
             "wear_over_conventional": times.map(|times| significant(times, 3)),
             "activities": activities,
             "activity_charts": activity_charts(results),
