@@ -36,7 +36,8 @@ export class Plot {
     private readonly options: PlotOptions = {},
   ) {
     this.height = options.height ?? 190;
-    const heading = element("figcaption", {}, withUnit(chart));
+    const positive = chart.positive && element("span", { class: "positive" }, `+ ${chart.positive}`);
+    const heading = element("figcaption", {}, withUnit(chart), positive);
     this.box = element("figure", { class: "curves" }, heading, this.shown, this.saves());
     // The final height, so that nothing moves when the plot is drawn.
     const lines = chart.curves.length > 1 ? chart.curves.length + 1 : 1;
@@ -116,6 +117,11 @@ export function aligned({ curves }: Chart): uPlot.AlignedData {
   return uPlot.join(curves.map(column));
 }
 
+function yRange({ from_zero, min_span }: Chart, low: number, high: number): uPlot.Range.MinMax {
+  const from = from_zero ? Math.min(0, low) : low;
+  return uPlot.rangeNum(from, Math.max(high, from + min_span), 0.1, true);
+}
+
 function settings(chart: Chart): Omit<uPlot.Options, "width" | "height"> {
   const style = (name: string) => () => getComputedStyle(document.body).getPropertyValue(name).trim();
   const font = "11px sans-serif";
@@ -124,7 +130,7 @@ function settings(chart: Chart): Omit<uPlot.Options, "width" | "height"> {
   const values = (_: uPlot, all: number[]) => all.map(inDigits);
   const known = (unit: string) => (_: uPlot, value: number | null) => (value === null ? "–" : `${inDigits(value)} ${unit}`.trim());
   return {
-    scales: { x: { time: false } },
+    scales: { x: { time: false }, y: { range: (_, low, high) => yRange(chart, low, high) } },
     axes: [
       { ...axis, label: acrossTitle(chart), size: 26, values },
       { ...axis, size: 48, values },

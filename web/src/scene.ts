@@ -29,6 +29,11 @@ interface ChartFacts {
   group: string;
   title: string;
   unit: string;
+  // The positive direction in words; may be empty.
+  positive: string;
+  from_zero: boolean;
+  // The smallest span of the vertical axis, so that noise does not fill the picture.
+  min_span: number;
   x_title: string;
   // Cycles for one unit of the horizontal axis; 0 where it shows no cycles.
   cycles_per_x: number;

@@ -10,6 +10,9 @@ const CHART: Chart = {
   group: "wear",
   title: "Mass <loss>",
   unit: "mg",
+  positive: "",
+  from_zero: true,
+  min_span: 0,
   x_title: "million cycles",
   cycles_per_x: 1e6,
   curves: [
