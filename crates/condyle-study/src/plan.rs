@@ -17,7 +17,6 @@ use crate::{
     },
     distribution::{Place, level_along, level_at_share},
     error::StudyError,
-    store::Store,
 };
 
 const MAX_TESTS: f64 = 1e9;
@@ -137,29 +136,6 @@ impl Plan {
             row,
             alternative,
             values,
-        })
-    }
-
-    /// Test `row`; that of a search as it is stored in `folder`.
-    ///
-    /// # Errors
-    /// A row that the study does not have, or a search has not reached.
-    pub fn row(&self, row: u64, folder: Option<&Path>) -> Result<Test, StudyError> {
-        let tests = self.tests();
-        if row >= tests {
-            let last = tests - 1;
-            return Err(StudyError::Plan(format!(
-                "the study has no row {row}; its rows are 0 to {last}"
-            )));
-        }
-        let mut test = self.test(row);
-        if let (None, Some(folder)) = (&test, folder) {
-            test = Store::existing(folder, self)?.test(row, self)?;
-        }
-        test.ok_or_else(|| {
-            StudyError::Plan(format!(
-                "row {row} of a search is known once it has been tried; run the study first"
-            ))
         })
     }
 

@@ -376,6 +376,31 @@ impl Store {
     }
 }
 
+impl Plan {
+    /// Test `row`; that of a search as it is stored in `folder`.
+    ///
+    /// # Errors
+    /// A row that the study does not have, or a search has not reached.
+    pub fn row(&self, row: u64, folder: Option<&Path>) -> Result<Test, StudyError> {
+        let tests = self.tests();
+        if row >= tests {
+            let last = tests - 1;
+            return Err(StudyError::Plan(format!(
+                "the study has no row {row}; its rows are 0 to {last}"
+            )));
+        }
+        let mut test = self.test(row);
+        if let (None, Some(folder)) = (&test, folder) {
+            test = Store::existing(folder, self)?.test(row, self)?;
+        }
+        test.ok_or_else(|| {
+            StudyError::Plan(format!(
+                "row {row} of a search is known once it has been tried; run the study first"
+            ))
+        })
+    }
+}
+
 /// A column of the table, a value for each test; NaN for a test that failed or is missing.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(crate) struct Column {

@@ -15,6 +15,9 @@ const NORMAL_REACH: f64 = 4.0;
 /// Up to this many levels, all are tried on the case.
 const FEW_LEVELS: usize = 64;
 
+/// Inputs of a study, and designs that it compares: each costs a reading of the case.
+const MAX_LISTED: usize = 256;
+
 /// One input of a study.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Input {
@@ -215,6 +218,21 @@ fn check_order(variation: &Variation, section: &Section<'_>, log: &mut Log<'_>) 
     None
 }
 
+/// Reports a list that is too long.
+pub(super) fn check_count(
+    what: &'static str,
+    count: usize,
+    span: Range<usize>,
+    log: &mut Log<'_>,
+) -> Option<()> {
+    if count <= MAX_LISTED {
+        return Some(());
+    }
+    let most = MAX_LISTED;
+    log.problem(span, StudyReason::TooMany { what, count, most });
+    None
+}
+
 /// Reads the inputs and the values of each test from the CSV file that `section` names.
 pub(super) fn read_rows(
     section: &Section<'_>,
@@ -225,7 +243,7 @@ pub(super) fn read_rows(
     let source = file.source(section, "file", log)?;
     let (keys, rows) = log.noted(&source, split(source.inner()))?;
     let span = section.value_span("file");
-    super::read::check_count("inputs", keys.len(), span.clone(), log)?;
+    check_count("inputs", keys.len(), span.clone(), log)?;
     let input = |(place, key): (usize, &String)| {
         let levels = decisive(rows.iter().map(|row: &Vec<Level>| row[place].clone()));
         let levels = Levels(levels);

@@ -1,13 +1,12 @@
 //! Reading of a study file.
 
-use std::ops::Range;
 use std::path::Path;
 use std::sync::Arc;
 
 use super::answers::{Answers, output};
 use super::contents::{Alternative, Correlation, Study};
 use super::declared::{AlternativeKeys, CorrelationKeys, Design, HeadingKeys, Variation};
-use super::input::{Input, read_rows};
+use super::input::{Input, check_count, read_rows};
 use super::reason::StudyReason;
 use crate::case::{Assignment, Case, CaseReader, ChangeError};
 use crate::config::{
@@ -18,9 +17,6 @@ use condyle_mesh::files::{Disk, Files};
 /// Values that are tried on the case before the first test: thousands of files would take a while, and values beyond
 /// these fail as rows.
 const MAX_TRIED: usize = 512;
-
-/// Inputs of a study, and designs that it compares: each costs a reading of the case.
-const MAX_LISTED: usize = 256;
 
 const TABLES: &[&str] = &[
     "case",
@@ -130,21 +126,6 @@ fn listed<T>(
     let listed = root.list(name, log)?;
     let read: Vec<Option<T>> = listed.iter().map(|one| read(one, log)).collect();
     read.into_iter().collect()
-}
-
-/// Reports a list that is too long.
-pub(super) fn check_count(
-    what: &'static str,
-    count: usize,
-    span: Range<usize>,
-    log: &mut Log<'_>,
-) -> Option<()> {
-    if count <= MAX_LISTED {
-        return Some(());
-    }
-    let most = MAX_LISTED;
-    log.problem(span, StudyReason::TooMany { what, count, most });
-    None
 }
 
 /// Reads every `[[vary]]`, or the columns of a file of rows.

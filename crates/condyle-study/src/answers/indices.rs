@@ -4,7 +4,7 @@ use condyle_case::study::Design;
 use serde::Serialize;
 
 use crate::{
-    answers::Data,
+    answers::data::Data,
     random::Random,
     statistics::{central_interval, mean},
 };

@@ -1,16 +1,17 @@
 //! The answers of a study, computed from its stored tests.
 
+mod data;
 pub(crate) mod effects;
 pub(crate) mod indices;
 pub(crate) mod ranking;
 pub(crate) mod spread;
 
 use condyle_lab::aligned;
-use condyle_results::catalogue::Scalar;
 use serde::Serialize;
 
 use crate::{
     answers::{
+        data::Data,
         effects::{Effect, Elementary},
         indices::Indices,
         ranking::{Best, Front, Ranking},
@@ -18,7 +19,7 @@ use crate::{
     },
     error::StudyError,
     plan::Plan,
-    store::{Column, Store},
+    store::Store,
 };
 
 /// The answers of a study; serialised, they are `answers.json`.
@@ -43,41 +44,6 @@ pub struct Answers {
 pub(crate) struct FailedTests {
     reason: String,
     pub(crate) tests: u64,
-}
-
-/// The table of a study that answers are computed from.
-pub(crate) struct Data<'a> {
-    pub plan: &'a Plan,
-    pub inputs: Vec<Column>,
-    /// The outputs asked about, with a value for each test.
-    pub outputs: Vec<(&'static Scalar, Vec<f64>)>,
-    /// Whether each test is done and within every limit.
-    pub within: Vec<bool>,
-}
-
-impl<'a> Data<'a> {
-    fn read(plan: &'a Plan, store: &Store) -> Result<Self, StudyError> {
-        let study = plan.study();
-        let values = |output: &Scalar| -> Result<Vec<f64>, StudyError> {
-            Ok(store.column(plan, output.key)?.values)
-        };
-        let mut within = vec![true; plan.tests() as usize];
-        for bound in &study.answers.bounds {
-            for (within, value) in within.iter_mut().zip(values(bound.output)?) {
-                *within &= bound.excess(value) == 0.0 && value.is_finite();
-            }
-        }
-        let inputs = study.inputs.iter();
-        let inputs = inputs.map(|input| store.column(plan, &input.key));
-        let outputs = study.answers.outputs.iter();
-        let outputs = outputs.map(|output| values(output).map(|values| (*output, values)));
-        Ok(Self {
-            plan,
-            inputs: inputs.collect::<Result<_, _>>()?,
-            outputs: outputs.collect::<Result<_, _>>()?,
-            within,
-        })
-    }
 }
 
 impl Answers {

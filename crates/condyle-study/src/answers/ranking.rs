@@ -5,7 +5,7 @@ use condyle_results::catalogue::{self, Scalar};
 use serde::Serialize;
 
 use crate::{
-    answers::Data,
+    answers::data::Data,
     error::StudyError,
     plan::designs,
     search::search,
