@@ -21,7 +21,7 @@ export class Wasi {
     this.root = new PreopenDirectory("/", new Map(all));
     const decoder = new TextDecoder();
     const errors = new ConsoleStdout((bytes) => (this.errors += decoder.decode(bytes, { stream: true })));
-    this.wasi = new WASI(words, [], [new NoInput(), ConsoleStdout.lineBuffered(heard), errors, this.root]);
+    this.wasi = new WASI(words, [], [new NoInput(), ConsoleStdout.lineBuffered(heard), errors, this.root], { debug: false });
   }
 
   // Runs a program to its end and returns its exit code; throws if the program stops in the middle.
