@@ -1,6 +1,7 @@
 //! Studies: many tests of one case, in this process or row by row on the workers of an executor.
 
 use std::collections::BTreeMap;
+use std::ops::ControlFlow;
 use std::path::PathBuf;
 use std::sync::Mutex;
 
@@ -91,9 +92,11 @@ impl RawStudy {
         let mut last = (0, 0);
         let ended = py.detach(|| {
             run_study(&self.plan, &options, &mut |event| {
-                if let StudyEvent::Progress(now) = event {
-                    last = (now.kept, now.tests);
-                }
+                // Other events come with every increment, too often for a call into Python.
+                let StudyEvent::Progress(now) = event else {
+                    return ControlFlow::Continue(());
+                };
+                last = (now.kept, now.tests);
                 callback.call("StudyProgress", last)
             })
         });
