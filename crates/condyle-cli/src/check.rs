@@ -34,7 +34,7 @@ pub fn check(arguments: &Check) -> ExitCode {
     }
 }
 
-/// A name and what is said of it.
+/// A name and its value.
 type Row = (&'static str, String);
 
 fn in_words(arguments: &Check, preview: &Preview) -> String {
@@ -98,7 +98,6 @@ fn size([along, up, across]: [f64; 3]) -> String {
     format!("{along:.1} x {up:.1} x {across:.1} mm")
 }
 
-/// What was found in a file; a shape by measures has none.
 fn row_of_defects(has_file: bool, defects: &[String]) -> Option<Row> {
     let said = match defects.len() {
         0 => "none".to_owned(),

@@ -13,7 +13,7 @@ use condyle_lab::Preview;
 
 use crate::{arguments::New, exit, output, standard_error::tell};
 
-/// The file, beside the case, that the first line of a case names.
+/// The schema file next to a case, which the case names in its first line.
 const SCHEMA: &str = "condyle.schema.json";
 
 pub fn new(arguments: &New) -> ExitCode {
@@ -41,7 +41,7 @@ pub fn new(arguments: &New) -> ExitCode {
     ))
 }
 
-/// The schema for editors, unless one is there; a case runs without it.
+/// Writes the schema for editors, unless it exists; a case runs without it.
 fn write_schema(path: &Path) {
     let written =
         File::create_new(path).and_then(|mut file| file.write_all(Case::json_schema().as_bytes()));
@@ -53,7 +53,7 @@ fn write_schema(path: &Path) {
     }
 }
 
-/// A picture of the bodies in place, beside the case; where there is none, why is told.
+/// Draws the bodies in place into a file next to the case, or warns why it cannot.
 fn drawn(case: &Path) -> Option<PathBuf> {
     let threads = thread::available_parallelism().map_or(1, usize::from);
     let picture = case.with_extension("svg");
@@ -69,7 +69,7 @@ fn drawn(case: &Path) -> Option<PathBuf> {
     drawn.is_ok().then_some(picture)
 }
 
-/// The case to write: of two meshes if they are given, and else of the generic implant.
+/// Returns the case to write: of two meshes if they are given, else of the generic implant.
 fn text(arguments: &New) -> Result<String, DraftError> {
     let (Some(femur), Some(insert)) = (&arguments.femur, &arguments.insert) else {
         return Ok(template(arguments.preset));

@@ -181,9 +181,14 @@ pub struct Waveforms {
 impl Preset {
     /// Returns the drive of a freedom that the case does not give.
     fn drive(self, freedom: &str) -> DriveWord {
-        match (self, freedom) {
-            (_, "flexion") | (Self::StanmoreDisplacement, "ap" | "ie") => DriveWord::Prescribed,
-            _ => DriveWord::Loaded,
+        let prescribed: &[&str] = match self {
+            Self::StanmoreForce => &["flexion"],
+            Self::StanmoreDisplacement => &["ap", "ie", "flexion"],
+        };
+        if prescribed.contains(&freedom) {
+            DriveWord::Prescribed
+        } else {
+            DriveWord::Loaded
         }
     }
 }

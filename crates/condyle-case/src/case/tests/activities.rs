@@ -154,7 +154,7 @@ fn double_and_odd_names_are_refused() {
         &named("gait", "gait"),
         &[
             "two activities are called \"gait\"",
-            "give each a name of its own",
+            "give each its own name",
         ],
     );
     assert_shows(

@@ -85,7 +85,7 @@ fn it_is_written_and_reads_back() {
         &text,
         &[
             "[wear]\nlaw = \"threshold\"  ",
-            " # Which law.\n",
+            " # Wear law.\n",
             "factor_mm3_per_nm = 3e-7  ",
             " # Factor a on the work of friction.\n",
             "from_n_per_mm = 40.0  ",
@@ -125,7 +125,7 @@ fn its_keys_are_on_the_page() {
     assert_shows(
         &schema_markdown(LAWS),
         &[
-            "| `law` |  | \"archard\" or \"threshold\" | `\"archard\"` | Which law. |",
+            "| `law` |  | \"archard\" or \"threshold\" | `\"archard\"` | Wear law. |",
             "With `law = \"threshold\"`:",
             "| `from_n_per_mm` | N/mm | a number, 0 to 1000 | `20.0` | Work b below which",
             "- `threshold`: Depth per cycle = a (sum of p |ds| - b). Its constants are from: choice, choice.",
@@ -157,7 +157,7 @@ fn it_is_told_beside_the_law_of_a_case_that_takes_another() {
 }
 
 #[test]
-fn what_is_remembered_rather_than_read_is_called_approximate() {
+fn constants_quoted_from_memory_are_called_approximate() {
     let kang = Case::parse("[wear]\nlaw = \"kang\"\n", "case.toml", Path::new("")).unwrap();
     assert_shows(
         &kang.to_toml(),
@@ -170,7 +170,7 @@ fn what_is_remembered_rather_than_read_is_called_approximate() {
         &schema_markdown(WEAR_LAWS),
         &[
             "[kang2008] (approximate)",
-            "The formula is approximate: remembered",
+            "The formula is approximate: quoted from memory",
         ],
     );
 }
