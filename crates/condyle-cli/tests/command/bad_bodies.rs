@@ -329,7 +329,7 @@ fn a_load_that_presses_a_yielding_insert_flat_is_physics() {
     let words = [
         "update 1",
         "the load presses the insert flat at",
-        "check the load, and [contact] yield_stress_mpa and its hardening",
+        "check the load, and [contact.deformable] yield_stress_mpa and its hardening",
         "kept in out",
     ];
     said.assert_refused(3, &words);

@@ -139,7 +139,7 @@ fn ctrl_c_keeps_what_is_done_and_resume_reaches_the_same_numbers() {
 fn a_march_that_finds_its_updates_is_refined_by_its_tolerance() {
     let bench = Bench::with_case(&TINY.replace("updates = 1", "update = \"auto\""));
     let said = bench.say(&["converge", "case.toml", "--out", "out"]);
-    let words = ["finds its updates itself", "depth_tolerance_fraction=0.1,"];
+    let words = ["determines its updates", "depth_tolerance_fraction=0.1,"];
     said.assert_refused(2, &words);
     let by_path = [
         "converge",
