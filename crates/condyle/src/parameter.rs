@@ -31,13 +31,13 @@ pub enum Known {
 }
 
 impl Parameter {
-    /// Whether `value` is within the limits; NaN never is.
+    /// Returns whether `value` is within the limits; NaN never is.
     pub fn allows(&self, value: f64) -> bool {
         (self.least..=self.most).contains(&value)
     }
 }
 
-/// Every unit that ends a name, with how a person writes it.
+/// The units with which names may end, each with its usual notation.
 const UNITS: &[(&str, &str)] = &[
     ("_mg_per_mm3", "mg/mm3"),
     ("_mm3_per_nm", "mm3/(N m)"),
@@ -64,7 +64,7 @@ const UNITS: &[(&str, &str)] = &[
     ("_s", "s"),
 ];
 
-/// A key's name without its unit, and the unit in words.
+/// Returns a key's name without its unit, and the unit in words.
 pub fn split_unit(name: &str) -> (&str, Option<&'static str>) {
     UNITS
         .iter()
@@ -72,7 +72,7 @@ pub fn split_unit(name: &str) -> (&str, Option<&'static str>) {
         .unwrap_or((name, None))
 }
 
-/// The unit that `name` ends in, in words.
+/// Returns the unit that `name` ends in, in words.
 pub fn unit_of(name: &str) -> Option<&'static str> {
     split_unit(name).1
 }

@@ -61,7 +61,7 @@ use body::{Body, Femur, Insert};
 
 /// Six numbers: three angular ones or a moment, then three linear ones or a force.
 pub type Vec6 = nalgebra::Vector6<f64>;
-/// A derivative of six numbers by six others.
+/// The derivative of six numbers by six others.
 pub type Mat6 = nalgebra::Matrix6<f64>;
 
 /// The position of the body `Of` in the frame of the body `In`: a point p of its frame is at R p + t.
@@ -75,7 +75,7 @@ pub struct Pose<In: Body = Insert, Of: Body = Femur> {
 }
 
 impl<In: Body, Of: Body> Pose<In, Of> {
-    /// A pose from R, a rotation, and t, mm.
+    /// Creates a pose from R, a rotation, and t, mm.
     pub fn new(rotation: Mat3, translation: Vec3) -> Self {
         Self {
             rotation,
@@ -84,7 +84,7 @@ impl<In: Body, Of: Body> Pose<In, Of> {
         }
     }
 
-    /// The pose of coincident frames.
+    /// Creates the pose of coincident frames.
     pub fn identity() -> Self {
         Self::new(Mat3::identity(), Vec3::zeros())
     }
@@ -94,7 +94,7 @@ impl<In: Body, Of: Body> Pose<In, Of> {
         self.rotation * point + self.translation
     }
 
-    /// The pose after a motion of `Of` in its own frame: this one, then `inner`.
+    /// Returns the pose after a motion of `Of` in its own frame: this one, then `inner`.
     pub fn then(&self, inner: &Pose<Of, Of>) -> Self {
         Self::new(
             self.rotation * inner.rotation,
@@ -126,7 +126,7 @@ pub struct RelativeMotion {
 }
 
 impl RelativeMotion {
-    /// A femur at rest at a pose.
+    /// Creates a femur at rest at a pose.
     pub fn at_rest(pose: Pose) -> Self {
         let twist = Twist::zero();
         Self { pose, twist }
@@ -147,17 +147,17 @@ pub struct Twist<Of: Body = Femur, In: Body = Insert> {
 }
 
 impl<Of: Body, In: Body> Twist<Of, In> {
-    /// The screw of a rotation about an axis with a unit `direction` through `centre`, mm.
+    /// Creates the screw of a rotation about an axis with a unit `direction` through `centre`, mm.
     pub fn about(direction: Vec3, centre: Vec3) -> Self {
         Self::new(direction, centre.cross(&direction))
     }
 
-    /// The screw of a translation along a unit `direction`.
+    /// Creates the screw of a translation along a unit `direction`.
     pub fn along(direction: Vec3) -> Self {
         Self::new(Vec3::zeros(), direction)
     }
 
-    /// The Lie bracket: the derivative of `other`, which this screw carries, by its position.
+    /// Returns the Lie bracket: the derivative of `other`, which this screw carries, by its position.
     pub fn bracket(&self, other: &Self) -> Self {
         Self::new(
             self.angular.cross(&other.angular),
@@ -165,7 +165,7 @@ impl<Of: Body, In: Body> Twist<Of, In> {
         )
     }
 
-    /// The finite motion along a screw by `position`, rad or mm: its exponential.
+    /// Returns the finite motion along a screw by `position`, rad or mm: its exponential.
     pub fn exponential(&self, position: f64) -> Pose<Of, Of> {
         // A screw without rotation has no centre.
         if self.angular == Vec3::zeros() {
@@ -187,7 +187,7 @@ impl<Of: Body, In: Body> Twist<Of, In> {
 }
 
 impl Twist<Femur, Insert> {
-    /// The small motion from one pose to another.
+    /// Returns the small motion from one pose to another.
     pub fn between(from: &Pose, to: &Pose) -> Self {
         let turned = to.rotation * from.rotation.transpose();
         // The antisymmetric part of the rotation: exact to second order in the angle.
@@ -237,8 +237,8 @@ impl<On: Body, In: Body> Wrench<On, In> {
         twist.numbers().dot(&self.numbers())
     }
 
-    /// The wrench whose power on any screw is this one's power on the bracket of `carrying` with that screw: the
-    /// derivative of the load on a joint by the position of the joint that carries it.
+    /// Returns the wrench whose power on any screw is this one's power on the bracket of `carrying` with that screw:
+    /// the derivative of the load on a joint by the position of the joint that carries it.
     ///
     /// W . \[a, b\] = (m x a_w + f x a_v) . b_w + (f x a_w) . b_v.
     pub fn on_bracket_with(&self, carrying: &Twist<On, In>) -> Self {
@@ -261,7 +261,7 @@ macro_rules! six_numbers {
                 }
             }
 
-            /// All six numbers zero.
+            /// Returns six zeros.
             pub fn zero() -> Self {
                 Self::new(Vec3::zeros(), Vec3::zeros())
             }
@@ -303,7 +303,7 @@ pub struct WrenchByTwist<In: Body = Insert> {
 }
 
 impl<In: Body> WrenchByTwist<In> {
-    /// A derivative from its matrix.
+    /// Creates a derivative from its matrix.
     pub fn new(matrix: Mat6) -> Self {
         Self {
             matrix,
@@ -311,7 +311,7 @@ impl<In: Body> WrenchByTwist<In> {
         }
     }
 
-    /// The derivative of a constant wrench.
+    /// Creates the derivative of a constant wrench.
     pub fn zero() -> Self {
         Self::new(Mat6::zeros())
     }
@@ -336,7 +336,7 @@ pub(crate) struct FrameChange {
 }
 
 impl FrameChange {
-    /// The change at a pose of the femur.
+    /// Creates the change at a pose of the femur.
     pub fn to_femur(pose: &Pose) -> Self {
         let turn = pose.rotation.transpose();
         let mut matrix = Mat6::zeros();
@@ -371,7 +371,7 @@ pub(crate) struct Pose4 {
 }
 
 impl Pose4 {
-    /// The same pose for every point.
+    /// Creates the same pose for every point.
     pub fn new(pose: &Pose) -> Self {
         let column = |axis: usize| Vec3::from(pose.rotation.column(axis)).map(F64x4::splat);
         Self {
@@ -408,7 +408,7 @@ pub(crate) struct Twist4 {
 }
 
 impl Twist4 {
-    /// The same twist for every point.
+    /// Creates the same twist for every point.
     pub fn new(twist: &Twist<Femur, Femur>) -> Self {
         Self {
             angular: twist.angular.map(F64x4::splat),
@@ -416,7 +416,7 @@ impl Twist4 {
         }
     }
 
-    /// The angular part.
+    /// Returns the angular part.
     pub fn angular(&self) -> &Vector<F64x4> {
         &self.angular
     }

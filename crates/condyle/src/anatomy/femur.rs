@@ -22,13 +22,14 @@ pub(super) fn fit(views: &Views, orientation: &Orientation) -> (f64, bool) {
     let below = views.picture(superior.reversed(), anterior, right);
     let front = views.picture(anterior, superior, right);
     let behind = views.picture(anterior.reversed(), superior, right);
-    // Share of it without a mirror image on the other side.
+    // Mean share of each view without a mirror image on the other side.
     let asymmetry = [&below, &front, &behind]
         .map(|seen| seen.asymmetry(LEVEL))
         .iter()
         .sum::<f64>()
         / 3.0;
-    // Amount by which its silhouette from the side, a box open above, holds more water than in other rotations, -1 to 1.
+    // Amount by which the silhouette from the side, a box open above, holds more water than in other rotations, -1 to
+    // 1.
     let side = |up, along| views.picture(right, up, along).water();
     let others = [
         side(superior.reversed(), anterior),
@@ -42,11 +43,12 @@ pub(super) fn fit(views: &Views, orientation: &Orientation) -> (f64, bool) {
     let open_above = (water - other) / water.max(other).max(MIN_WATER);
     // Depth between the condyles where they are lowest.
     let two_condyles = at_the_lowest(&below);
-    // Amount by which it is deeper between them behind, at the notch, than in front, at the trochlea, -1 to 1.
+    // Amount by which the recess between the condyles is deeper behind, at the notch, than in front, at the trochlea,
+    // -1 to 1.
     let from_below = recess(&below, 0.0, 0.4) - recess(&below, 0.6, 1.0);
     let from_the_ends = recess(&behind, 0.0, 0.6) - recess(&front, 0.0, 0.6);
     let notch_behind = (from_below + from_the_ends) / 2.0;
-    // Where neither end is bridged, amount by which the condyles rise more steeply behind than in front.
+    // Amount by which the condyles rise more steeply behind than in front; used where neither end is bridged.
     let unbridged = least_recess(&below, 0.0, 0.4).min(least_recess(&below, 0.6, 1.0));
     let curl_behind =
         beyond(unbridged, MIN_UNBRIDGED) / (1.0 - MIN_UNBRIDGED) * curl_behind(&below);
@@ -63,7 +65,7 @@ const MIN_UNBRIDGED: f64 = 0.7;
 /// Smallest share of the silhouette's area that counts as held water.
 const MIN_WATER: f64 = 0.02;
 
-/// Depth of the middle of a row, seen from below, relative to both sides.
+/// Returns the depth of the middle of a row, seen from below, relative to both sides.
 fn recess_of(below: &Picture, row: usize) -> Option<f64> {
     let highest = |from, to| below.across(row, from, to).reduce(f64::max);
     let sides = highest(0.05, 0.4)?.min(highest(0.6, 0.95)?);
@@ -71,13 +73,13 @@ fn recess_of(below: &Picture, row: usize) -> Option<f64> {
     Some(deep.clamp(-DEEPEST_RECESS, DEEPEST_RECESS))
 }
 
-/// The recess over a part of the length, as a share of the deepest.
+/// Returns the recess over a part of the length, as a share of the deepest.
 fn recess(below: &Picture, from: f64, to: f64) -> f64 {
     let rows = part(below.rows, from, to);
     mean(rows.filter_map(|row| recess_of(below, row))) / DEEPEST_RECESS
 }
 
-/// The shallowest recess over a part of the length, as a share of the deepest.
+/// Returns the shallowest recess over a part of the length, as a share of the deepest.
 fn least_recess(below: &Picture, from: f64, to: f64) -> f64 {
     let rows = part(below.rows, from, to);
     let least = rows
@@ -86,7 +88,7 @@ fn least_recess(below: &Picture, from: f64, to: f64) -> f64 {
     least.unwrap_or(0.0).max(0.0) / DEEPEST_RECESS
 }
 
-/// The recess where the body reaches lowest.
+/// Returns the recess where the body reaches lowest.
 fn at_the_lowest(below: &Picture) -> f64 {
     let lowest_of = |row: usize| below.across(row, 0.0, 1.0).reduce(f64::max);
     let lowest = (0..below.rows).filter_map(lowest_of).reduce(f64::max);
@@ -160,7 +162,7 @@ struct Line {
 }
 
 impl Line {
-    /// Through the lowest place along `axis` on either side of the middle.
+    /// Creates the line through the lowest place along `axis` on each side of the middle.
     fn across(femur: &TriangleMesh, axis: usize, middle_z: f64) -> Self {
         let lowest = |is_right: bool| {
             let side = femur
@@ -198,7 +200,7 @@ mod tests {
         GenericFemur::new(GenericFemurShape::default()).surface_mesh(1.0)
     }
 
-    /// The front of the right half further ahead.
+    /// Returns the front of the right half further ahead.
     fn with_a_flange(by_mm: f64) -> TriangleMesh {
         symmetric().mapped(|v| {
             let is_flange = v.x > 15.0 && v.z > 0.0;

@@ -41,7 +41,7 @@ pub(super) fn fit(views: &Views, orientation: &Orientation) -> (f64, bool) {
     (score, is_insert)
 }
 
-/// Height of the middle over both sides of it, in the middle half of the length.
+/// Returns the height of the middle over both sides of it, in the middle half of the length.
 fn eminence(above: &Picture) -> f64 {
     let rows = part(above.rows, 0.25, 0.75);
     mean(rows.filter_map(|row| {
@@ -68,13 +68,13 @@ fn dish_heights(above: &Picture, below: Option<&Picture>) -> (f64, f64, f64) {
     (at(0.85, 1.0), at(0.0, 0.15), at(0.35, 0.65))
 }
 
-/// The first row that is seen in a column, and one past the last.
+/// Returns the first row that is seen in a column, and one past the last.
 fn seen_rows(picture: &Picture, column: usize) -> Option<(usize, usize)> {
     let first = (0..picture.rows).find(|&row| picture.height(row, column).is_some())?;
     Some((first, picture.top(column)))
 }
 
-/// Depth of the cut-out in the middle over that of the dishes, from the front or from the back.
+/// Returns the depth of the cut-out in the middle over that of the dishes, from the front or from the back.
 fn cut_out(above: &Picture, from_front: bool) -> f64 {
     let empty = |column: usize| {
         let (first, end) = seen_rows(above, column).unwrap_or((above.rows, 0));

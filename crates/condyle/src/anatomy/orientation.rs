@@ -7,7 +7,7 @@ use crate::{Mat3, Vec3};
 pub(super) struct AxisDirection {
     /// 0 for x, 1 for y, 2 for z.
     pub axis: usize,
-    /// Along the axis, and not against it.
+    /// Whether the direction points along the axis rather than against it.
     pub is_forward: bool,
 }
 

@@ -39,7 +39,7 @@ impl Recognition {
         Self::new(mesh, insert::fit)
     }
 
-    /// None if the best is not plausible.
+    /// Scores all orientations; none if the best is not plausible.
     fn new(mesh: &TriangleMesh, fit: impl Fn(&Views, &Orientation) -> (f64, bool)) -> Option<Self> {
         let views = Views::new(mesh)?;
         let mut fits: Vec<_> = Orientation::all()

@@ -36,8 +36,8 @@ pub fn start_over_the_dishes_mm(
     Some((dish_x - condyle_x, middle_z(insert) - middle_z(&femur)))
 }
 
-/// The row at which both sides are highest towards the viewer, or lowest (`sign` -1); the ends do not count, where an
-/// insert may be bevelled.
+/// Returns the row at which both sides are highest towards the viewer, or lowest (`sign` -1); the ends do not count,
+/// where an insert may be bevelled.
 fn farthest_row(picture: &Picture, sign: f64) -> f64 {
     let side = |from, to| {
         let height = |row: usize| median(picture.across(row, from, to)).map(|height| sign * height);

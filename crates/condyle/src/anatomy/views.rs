@@ -22,7 +22,7 @@ pub(super) struct Views {
 }
 
 impl Views {
-    /// None of a mesh without extent.
+    /// Creates the views of a mesh; none for a mesh without extent.
     pub(super) fn new(mesh: &TriangleMesh) -> Option<Self> {
         let (low, high) = mesh.bounds();
         let size = (high - low).max();
@@ -69,7 +69,7 @@ impl Views {
         }
     }
 
-    /// Position along an axis, mm, at a number of cells from the low end.
+    /// Returns the position along an axis, mm, at a number of cells from the low end.
     pub(super) fn place(&self, axis: usize, cells: f64) -> f64 {
         self.low[axis] + cells / CELLS * self.size
     }
@@ -78,7 +78,7 @@ impl Views {
         self.cells[direction.axis] as f64
     }
 
-    /// The view against `toward`: rows along `rows`, columns along `columns`.
+    /// Returns the view against `toward`: rows along `rows`, columns along `columns`.
     pub(super) fn picture(
         &self,
         toward: AxisDirection,
@@ -111,7 +111,7 @@ impl Views {
     }
 }
 
-/// Number along the axis of cell `at` in a direction.
+/// Returns the number along the axis of cell `at` in a direction.
 fn place(direction: AxisDirection, at: usize, count: usize) -> usize {
     if direction.is_forward {
         at
@@ -120,12 +120,12 @@ fn place(direction: AxisDirection, at: usize, count: usize) -> usize {
     }
 }
 
-/// Twice the area of a triangle, with its sign.
+/// Returns twice the area of a triangle, with its sign.
 fn cross(a: (f64, f64), b: (f64, f64), c: (f64, f64)) -> f64 {
     (b.0 - a.0) * (c.1 - a.1) - (b.1 - a.1) * (c.0 - a.0)
 }
 
-/// The whole numbers below `count` that lie between the smallest and the largest of three.
+/// Returns the whole numbers below `count` that lie between the smallest and the largest of three.
 fn between(ends: [f64; 3], count: usize) -> std::ops::Range<usize> {
     let low = ends.iter().copied().fold(f64::INFINITY, f64::min);
     let high = ends.iter().copied().fold(f64::NEG_INFINITY, f64::max);
@@ -155,7 +155,7 @@ impl Picture {
         part(self.rows, from, to).filter_map(move |row| self.height(row, column))
     }
 
-    /// Share of the cells without a match in the mirror image, left for right, within `off`.
+    /// Returns the share of the cells without a match in the mirror image, left for right, within `off`.
     pub(super) fn asymmetry(&self, off: f64) -> f64 {
         let (mut seen, mut unmatched) = (0.0, 0.0);
         for row in 0..self.rows {
@@ -173,8 +173,8 @@ impl Picture {
         unmatched / f64::max(seen, 1.0)
     }
 
-    /// Share of the picture's area that water would fill in rain along the columns: cells
-    /// above the silhouette and below parts of it on both sides.
+    /// Returns the share of the picture's area that water would fill in rain along the columns: cells above the
+    /// silhouette and below parts of it on both sides.
     pub(super) fn water(&self) -> f64 {
         let tops: Vec<usize> = (0..self.columns).map(|column| self.top(column)).collect();
         let highest = |tops: &[usize]| tops.iter().copied().max().unwrap_or(0);
@@ -193,26 +193,26 @@ impl Picture {
     }
 }
 
-/// The numbers below `count` from one share of it to another.
+/// Returns the numbers below `count` from one share of it to another.
 pub(super) fn part(count: usize, from: f64, to: f64) -> std::ops::Range<usize> {
     let at = |share: f64| (share * count as f64).round() as usize;
     at(from)..at(to).max(at(from) + 1).min(count)
 }
 
-/// The mean, zero of none.
+/// Returns the mean, or zero if there are no values.
 pub(super) fn mean(values: impl Iterator<Item = f64>) -> f64 {
     let (sum, count) = values.fold((0.0, 0.0), |(sum, count), value| (sum + value, count + 1.0));
     sum / f64::max(count, 1.0)
 }
 
-/// The median, none of none.
+/// Returns the median, or none if there are no values.
 pub(super) fn median(values: impl Iterator<Item = f64>) -> Option<f64> {
     let mut sorted: Vec<f64> = values.collect();
     sorted.sort_by(f64::total_cmp);
     sorted.get(sorted.len() / 2).copied()
 }
 
-/// The part of a value beyond a band about zero.
+/// Returns the part of a value beyond a band about zero.
 pub(super) fn beyond(value: f64, band: f64) -> f64 {
     value - value.clamp(-band, band)
 }

@@ -13,7 +13,7 @@ pub struct Moment {
 }
 
 impl Moment {
-    /// Distance slid, mm.
+    /// Returns the distance slid, mm.
     #[inline]
     pub fn distance_mm(&self) -> f64 {
         let [anterior, lateral] = self.slip_mm;
@@ -41,8 +41,8 @@ pub struct NodeSums {
     pub summed_pressure_mpa: f64,
     /// Distance slid while any of the node's share is in contact, sum of |ds|, mm.
     pub sliding_distance_mm: f64,
-    /// Area in contact times distance slid, sum of A' |ds|, mm3; over the area of the share, the mean distance that a place
-    /// of the share slides under pressure.
+    /// Area in contact times distance slid, sum of A' |ds|, mm3; divided by the area of the share, the mean distance
+    /// that a place of the share slides under pressure.
     pub pressed_area_slip_mm3: f64,
     /// Pressure times slip, sum of p |ds|, MPa mm.
     pub pressure_slip_mpa_mm: f64,
@@ -67,8 +67,9 @@ impl NodeSums {
 
 /// The contact history of all nodes of an articulating surface over one cycle.
 ///
-/// It is recorded instant by instant and then sorted by node: the records stay in place, and every node gets the numbers of
-/// its own. A history takes a megabyte or more, and allocating that costs more than filling it: clearing keeps the memory.
+/// It is recorded instant by instant and then sorted by node: the records stay in place, and every node gets a list
+/// of the numbers of its records. A history takes a megabyte or more, and allocating that costs more than filling it:
+/// clearing keeps the memory.
 #[derive(Clone, Debug, Default)]
 pub struct CycleHistory {
     /// The expected number of instants.
@@ -82,7 +83,7 @@ pub struct CycleHistory {
 }
 
 impl CycleHistory {
-    /// Removes all records; about so many instants are to come.
+    /// Removes all records; `expected` is the approximate number of instants to come.
     pub fn clear(&mut self, expected: usize) {
         self.expected = expected;
         self.records.clear();

@@ -31,8 +31,8 @@ pub trait ContactLaw: Debug + Send + Sync {
     /// flattens the pressure.
     fn stiffness_mpa_per_mm(&self, insert: &Insert, node: usize) -> f64;
 
-    /// Estimates the memory that the law keeps of an insert, besides that of a contact, if the femur comes near so many
-    /// nodes, bytes.
+    /// Estimates the memory that the law keeps for an insert in addition to that of a contact, bytes, from the number
+    /// of nodes that come near the femur.
     fn memory_bytes(&self, _insert: &Insert, _nodes_near: f64) -> f64 {
         0.0
     }
@@ -86,7 +86,8 @@ impl KnownCompliance {
         size_of::<f64>() * (numbers + 2 * self.pairs())
     }
 
-    /// Removes and returns the compliance between two tiles of so many nodes: row-major, a row for each node of `one`.
+    /// Removes and returns the compliance between two tiles with the given numbers of nodes: row-major, a row for
+    /// each node of `one`.
     pub(crate) fn take(&mut self, one: usize, other: usize, nodes: [usize; 2]) -> Option<Vec<f64>> {
         let [rows, columns] = nodes;
         let key = [one.min(other), one.max(other)].map(|tile| tile as u32);

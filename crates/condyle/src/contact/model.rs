@@ -96,10 +96,10 @@ pub enum Settled {
     RespondAgain,
 }
 
-/// A load that the insert does not bear.
+/// The insert cannot bear the load.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum NotBorne {
-    /// The material yields without finding a balance.
+    /// The material yields, and no equilibrium is found.
     Flattened {
         /// The largest plastic strain when the search was given up.
         plastic_strain: f64,
@@ -138,16 +138,17 @@ pub trait ContactModel {
     /// responses are with that history.
     ///
     /// # Errors
-    /// A load that the insert does not bear.
+    /// The insert cannot bear the load.
     fn settle(&mut self, _motion: &RelativeMotion) -> Result<Settled, NotBorne> {
         Ok(Settled::Yes)
     }
 
-    /// Drops the trial history: the step is not continued from.
+    /// Discards the trial history: no further step continues from this one.
     fn reject(&mut self) {}
 
     /// Returns the distance of the surface at rest from its place at the same increment a cycle before, mm, times the
-    /// factor by which it is to repeat itself more exactly than a motion. A cycle repeats itself once this is small.
+    /// factor by which its tolerance is tighter than the tolerance of a motion. A cycle repeats itself once this is
+    /// small.
     fn moved_in_a_cycle_mm(&self) -> f64 {
         0.0
     }

@@ -53,7 +53,7 @@ impl AccumulatedError {
     }
 }
 
-/// Depth of the exact march less this one at every node now, mm.
+/// Returns the depth of the exact march less this one at every node now, mm.
 ///
 /// The exact wear of the last step follows from the motion by which the femur sank, by the
 /// equation of [`super::step_rules::exponential`]. By the same equation earlier errors decay.
@@ -94,7 +94,7 @@ mod tests {
         }
     }
 
-    /// A step of 2 cycles that began with 3 mm a cycle and took `depth_mm`.
+    /// Returns a step of 2 cycles that began with 3 mm a cycle and took `depth_mm`.
     fn last(depth_mm: f64, error_mm: f64) -> StepRecord {
         let step = WearStep {
             interval: 2.0,

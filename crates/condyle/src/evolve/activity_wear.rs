@@ -39,7 +39,7 @@ pub(super) fn wear_of_each(law: &dyn WearLaw, interval: &SolvedStep<'_>) -> Vec<
     .collect()
 }
 
-/// The activity's part of the volume that the step takes, mm3.
+/// Returns the activity's part of the volume that the step takes, mm3.
 fn part_mm3(interval: &SolvedStep<'_>, (share, history): SharedCycle<'_>) -> f64 {
     let part = |node: usize| {
         let all = interval.mean[node].pressure_slip_mpa_mm;
@@ -51,7 +51,7 @@ fn part_mm3(interval: &SolvedStep<'_>, (share, history): SharedCycle<'_>) -> f64
     volume_mm3(&interval.rates.area_mm2, &depth_mm)
 }
 
-/// The volume that the activity's cycles would wear alone, mm3: their rate times the number of cycles by
+/// Returns the volume that the activity's cycles would wear alone, mm3: their rate times the number of cycles by
 /// which the step extrapolates the rate of all activities.
 fn alone_mm3(
     law: &dyn WearLaw,

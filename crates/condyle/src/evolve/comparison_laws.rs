@@ -41,7 +41,7 @@ impl ComparisonLaw {
         }
     }
 
-    /// Maximum depth of wear, mm.
+    /// Returns the maximum depth of wear, mm.
     pub fn max_depth_mm(&self) -> f64 {
         self.depth_mm.iter().copied().fold(0.0, f64::max)
     }
@@ -87,7 +87,8 @@ impl ComparisonLaw {
     }
 }
 
-/// Part of the volume of these depths outside the range to which their law was fitted, mm3; none if that is unknown.
+/// Returns the part of the volume of these depths outside the range to which their law was fitted, mm3; none if that
+/// is unknown.
 pub(super) fn outside_mm3(worn: &[NodeWear], area_mm2: &[f64], depth_mm: &[f64]) -> Option<f64> {
     let outside = |(worn, &depth_mm): (&NodeWear, &f64)| {
         if depth_mm == 0.0 {
@@ -111,7 +112,7 @@ mod tests {
         wear::WEAR_LAWS,
     };
 
-    /// A cycle of one node that slides 10 mm under so many MPa.
+    /// Returns a cycle of one node that slides 10 mm under so many MPa.
     fn history(pressure_mpa: f64) -> CycleHistory {
         let mut history = CycleHistory::default();
         let moment = Moment {

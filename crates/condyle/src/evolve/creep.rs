@@ -65,7 +65,7 @@ impl CreepState {
             .collect()
     }
 
-    /// Takes a step, and returns its depth at every node, mm; negative where load has gone.
+    /// Takes a step, and returns its depth at every node, mm; negative where the load has been removed.
     ///
     /// The pressure during the step is the predicted pressure at its end (Euler's implicit method in the
     /// superposition of loads): a node that goes down by x, by wear and creep, loses its stiffness times x, and
@@ -146,7 +146,7 @@ impl CreepState {
 }
 
 impl Node {
-    /// Depth of the step where the pressure rises by `more_mpa` as the femur sinks, mm.
+    /// Returns the depth of the step where the pressure rises by `more_mpa` as the femur sinks, mm.
     ///
     /// Solves x = d(e) - before, e = history + c (p + more - k x), p + more - k x >= 0, with d the depth of a
     /// recoverable depth e, which is linear on either side of the deepest so far.
@@ -171,7 +171,7 @@ impl Node {
         law.depth_mm(self.by_history_mm, self.deepest_mm) - self.before_mm
     }
 
-    /// Depth of the step at constant pressure, mm.
+    /// Returns the depth of the step at constant pressure, mm.
     fn unrelieved_mm(&self, law: &LeePienkowski) -> f64 {
         let recoverable_mm = self.by_history_mm + self.mm_per_mpa * self.pressure_mpa;
         law.depth_mm(recoverable_mm, self.deepest_mm) - self.before_mm
@@ -267,7 +267,7 @@ struct Side {
 }
 
 impl CreepContact {
-    /// The contact of one solved cycle of every activity.
+    /// Creates the contact of one solved cycle of every activity.
     pub fn new(test: &WearTest, insert: &Insert, cycles: &[Cycle]) -> Self {
         let all_s = test.cycle_seconds();
         let activities = test.activities.iter();
@@ -309,7 +309,7 @@ impl CreepContact {
         Self::sorted(mean_pressure_mpa, nodes, sides, pressing)
     }
 
-    /// The contact of loads given in the order of time, each with its node.
+    /// Creates the contact of loads given in the order of time, each with its node.
     fn sorted(
         mean_pressure_mpa: Vec<f64>,
         nodes: Vec<NodeStiffness>,
@@ -332,7 +332,7 @@ impl CreepContact {
         }
     }
 
-    /// Decrease of the mean pressure at a node as the node alone goes down, MPa/mm.
+    /// Returns the decrease of the mean pressure at a node as the node alone goes down, MPa/mm.
     fn stiffness_mpa_per_mm(&self, node: usize) -> f64 {
         let areas = self.pressing(node).map(|(side, pressed_mm2)| {
             let part_of_time = self.sides[side].part_of_time;
@@ -341,7 +341,8 @@ impl CreepContact {
         self.nodes[node].mpa_per_mm3 * areas.sum::<f64>()
     }
 
-    /// Increase of a node's mean pressure as the sides sink, MPa, from their motions times their parts of the time, mm.
+    /// Returns the increase of a node's mean pressure as the sides sink, MPa, from their motions times their parts of
+    /// the time, mm.
     fn rise_mpa(&self, node: usize, weighed_mm: &[f64]) -> f64 {
         let own = self.pressing(node);
         let volumes = own.map(|(side, pressed_mm2)| weighed_mm[side] * pressed_mm2);
@@ -356,7 +357,7 @@ impl CreepContact {
         }
     }
 
-    /// The motion by which each side sinks at each instant to restore the force that it lost, mm.
+    /// Returns the motion by which each side sinks at each instant to restore the force that it lost, mm.
     fn sunk_mm(&self, lost_n: &[f64]) -> Vec<f64> {
         let sides = lost_n.iter().zip(&self.sides);
         sides
@@ -375,7 +376,7 @@ impl CreepContact {
 mod tests {
     use super::*;
 
-    /// A flat punch on equal nodes, half of them on either side, under constant pressure.
+    /// Returns a flat punch on equal nodes, half of them on either side, under constant pressure.
     fn punch(pressure_mpa: f64, nodes: usize) -> CreepContact {
         let side = Side {
             part_of_time: 1.0,

@@ -51,7 +51,7 @@ impl Default for DepthFields {
 }
 
 impl DepthFields {
-    /// An unworn surface of `node_count` nodes.
+    /// Creates an unworn surface of `node_count` nodes.
     pub(super) fn none(node_count: usize) -> Self {
         let fields = vec![DepthField::wear(vec![0.0; node_count])];
         Self { node_count, fields }
@@ -93,12 +93,12 @@ impl DepthFields {
     }
 }
 
-/// The sum of some fields at every node, mm.
+/// Returns the sum of some fields at every node, mm.
 pub(super) fn total_mm(fields: &[DepthField], node_count: usize) -> Vec<f64> {
     summed(fields.iter(), node_count)
 }
 
-/// The sum of the fields that lose mass at every node, mm.
+/// Returns the sum of the fields that lose mass at every node, mm.
 pub(super) fn lost_mm(fields: &[DepthField], node_count: usize) -> Vec<f64> {
     summed(fields.iter().filter(|field| field.loses_mass), node_count)
 }

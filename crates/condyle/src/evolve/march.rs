@@ -206,7 +206,7 @@ impl March {
         self.state.cycles()
     }
 
-    /// Whether all cycles are done.
+    /// Returns whether all cycles are done.
     pub fn is_done(&self) -> bool {
         self.cycles() >= self.test.schedule.cycles
     }
@@ -325,7 +325,7 @@ impl March {
         }))
     }
 
-    /// The creep by the end of a step, and its memory then, if the insert creeps.
+    /// Returns the creep by the end of a step, and its memory then, if the insert creeps.
     fn creep(&self, solved: &SolvedCycles, wear: &WearStep) -> Option<(CreepState, DepthField)> {
         const SECONDS_PER_MINUTE: f64 = 60.0;
         let law = self.test.creep.as_ref()?;
@@ -340,7 +340,7 @@ impl March {
         Some((creep, DepthField::creep(crept_mm)))
     }
 
-    /// The stress below the surface at the increment with the highest pressure, if the insert is a solid.
+    /// Returns the stress below the surface at the increment with the highest pressure, if the insert is a solid.
     fn under_surface(&self, solved: &SolvedCycles) -> Option<(UnderSurface, UnderSurfaceRecord)> {
         let (activity, row) = solved.highest_pressure()?;
         let loads_n = solved.loads_n(activity, row);
@@ -486,7 +486,7 @@ impl March {
     }
 }
 
-/// The femur of a test prepared for the shares of its insert.
+/// Returns the femur of a test prepared for the shares of its insert.
 fn prepared(test: &WearTest) -> FemoralSurface {
     let spread_mm2 = test.insert.surface().mean_spread_mm2();
     test.femur.prepared_for(spread_mm2)

@@ -55,7 +55,7 @@ pub(super) fn next_step(start: StepStart<'_>, schedule: &Schedule) -> WearStep {
     }
 }
 
-/// The depth of an interval, mm, and the depth by a second rule, whose difference estimates the error.
+/// Returns the depth of an interval, mm, and the depth by a second rule, whose difference estimates the error.
 fn worn(start: StepStart<'_>, updates: Updates, interval: f64) -> (Vec<f64>, Vec<f64>) {
     let is_long = |last: &&StepRecord| last.interval > MIN_OBSERVED * interval;
     let (rates, last) = (start.rates, start.last.filter(is_long));
@@ -70,8 +70,8 @@ fn worn(start: StepStart<'_>, updates: Updates, interval: f64) -> (Vec<f64>, Vec
     }
 }
 
-/// The interval after `done` of a fixed number of updates: all are equal, but the first is shorter where the insert
-/// creeps.
+/// Returns the interval after `done` of a fixed number of updates: all are equal, but the first is shorter where the
+/// insert creeps.
 pub(super) fn fixed_interval(all_cycles: f64, updates: usize, done: usize, creeps: bool) -> f64 {
     let even = all_cycles / updates as f64;
     if !creeps || updates == 1 {
@@ -83,8 +83,8 @@ pub(super) fn fixed_interval(all_cycles: f64, updates: usize, done: usize, creep
     }
 }
 
-/// The longest interval whose estimated error of the maximum depth is within `tolerance` times
-/// the depth expected at the end, and that is stable.
+/// Returns the longest interval whose estimated error of the maximum depth is within `tolerance` times the depth
+/// expected at the end, and that is stable.
 fn adaptive_interval(start: StepStart<'_>, all_cycles: f64, tolerance: f64) -> f64 {
     let (left, rates_mm) = (all_cycles - start.cycles, &start.rates.depth_per_cycle_mm);
     let stable = LONGEST / start.rates.relaxation_per_cycle.max(f64::MIN_POSITIVE);
@@ -107,21 +107,21 @@ fn adaptive_interval(start: StepStart<'_>, all_cycles: f64, tolerance: f64) -> f
     interval.max(shortest)
 }
 
-/// Depth of a node after `interval` cycles, mm, its rate extrapolated from the last two.
+/// Returns the depth of a node after `interval` cycles, mm, its rate extrapolated from the last two.
 fn second_order(start: StepStart<'_>, node: usize, interval: f64) -> f64 {
     let rate = start.rates.depth_per_cycle_mm[node];
     let change = |last: &StepRecord| (rate - last.depth_per_cycle_mm[node]) / last.interval;
     rate * interval + start.last.map_or(0.0, change) * interval * interval / 2.0
 }
 
-/// The length of equal intervals, none longer than `longest`, that fill the cycles left.
+/// Returns the length of equal intervals, none longer than `longest`, that fill the cycles left.
 pub(super) fn equal_interval(left: f64, longest: f64) -> f64 {
     // Without it, rounding would make six intervals of 1 / 0.2 and not five.
     const ROUNDING: f64 = 1e-9;
     left / (left / longest - ROUNDING).ceil().max(1.0)
 }
 
-/// Maximum depth after `more` at every node, mm.
+/// Returns the maximum depth after `more` at every node, mm.
 fn deepest(start: StepStart<'_>, more: impl Fn(usize) -> f64) -> f64 {
     let worn = start.worn_mm.iter().enumerate();
     worn.map(|(node, worn)| worn + more(node))

@@ -47,7 +47,7 @@ pub(super) fn place(
     Ok(chain.zeroed_at(machine, &positions))
 }
 
-/// Positions with the rotations at the start of the cycle and all other joints at zero.
+/// Returns the positions with the rotations at the start of the cycle and all other joints at zero.
 fn driven(test: &WearTest) -> [f64; 6] {
     std::array::from_fn(|j| {
         let joint = &test.machine().joints[j];
@@ -62,7 +62,7 @@ fn driven(test: &WearTest) -> [f64; 6] {
     })
 }
 
-/// The pose lowered from far above until the first node touches; none if the femur passes the insert.
+/// Returns the pose lowered from far above until the first node touches; none if the femur passes the insert.
 ///
 /// The gap is a lower bound of the distance, so a step by the smallest gap cannot skip a touch.
 fn lowered(femur: &FemoralSurface, surface: &ArticulatingSurface, pose: Pose) -> Option<Pose> {

@@ -20,7 +20,7 @@ pub(super) struct Rates {
 }
 
 impl Rates {
-    /// The rates of nodes that wear by `worn` in each of their mean `cycles`.
+    /// Creates the rates of nodes that wear by `worn` in each of their mean `cycles`.
     pub fn new(
         contact: &dyn ContactLaw,
         insert: &Insert,
@@ -55,7 +55,7 @@ impl Rates {
         }
     }
 
-    /// Volume worn per cycle, mm3.
+    /// Returns the volume worn per cycle, mm3.
     pub fn volume_per_cycle_mm3(&self) -> f64 {
         volume_mm3(&self.area_mm2, &self.depth_per_cycle_mm)
     }
@@ -71,7 +71,7 @@ pub(super) fn mean_cycles<'a>(
         .collect()
 }
 
-/// The wear per mean cycle by a law at every node.
+/// Returns the wear per mean cycle by a law at every node.
 pub(super) fn worn(law: &dyn WearLaw, cycles: &[MeanCycle<'_>]) -> Vec<NodeWear> {
     let worn = |cycle: &MeanCycle<'_>| {
         // Most of a surface is never touched.

@@ -83,7 +83,7 @@ pub struct NodeFields {
 }
 
 impl NodeFields {
-    /// The fields before the first update.
+    /// Creates the fields before the first update.
     pub(super) fn unworn(insert: &Insert, depths: &DepthFields) -> Self {
         let none = vec![0.0; insert.surface_nodes().len()];
         Self {
@@ -143,7 +143,7 @@ pub struct CreepRecord {
 }
 
 impl CreepRecord {
-    /// The record for these depths at every surface node and the volume of creep; `left_mm` remains on an
+    /// Creates the record for these depths at every surface node and the volume of creep; `left_mm` remains on an
     /// unloaded insert.
     pub(super) fn new(volume_mm3: f64, wear_mm: &[f64], creep_mm: &[f64], left_mm: &[f64]) -> Self {
         let penetration = |node: usize| wear_mm[node] + creep_mm[node];
@@ -197,7 +197,7 @@ pub struct PlasticRecord {
 }
 
 impl UnderSurfaceRecord {
-    /// The record of the stresses at a place in the cycle of an activity.
+    /// Creates the record of the stresses at a place in the cycle of an activity.
     pub(super) fn new(
         under: &UnderSurface,
         insert: &Insert,

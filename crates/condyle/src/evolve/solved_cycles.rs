@@ -123,7 +123,7 @@ pub(super) fn solve(
     Ok(ControlFlow::Continue((cycles, counters)))
 }
 
-/// The cycles that the next step will likely take.
+/// Estimates the number of cycles of the next step.
 fn likely_interval(test: &WearTest, state: &MarchState) -> f64 {
     let schedule = &test.schedule;
     match schedule.updates {
@@ -140,26 +140,26 @@ fn likely_interval(test: &WearTest, state: &MarchState) -> f64 {
 }
 
 impl SolvedCycles {
-    /// Whether the bodies touch in any increment.
+    /// Returns whether the bodies touch in any increment.
     pub fn touch(&self) -> bool {
         let mut rows = self.cycles.iter().flat_map(|cycle| &cycle.rows);
         rows.any(|row| row.axial_force_n != 0.0)
     }
 
-    /// The history of every activity's cycle with the activity's share.
+    /// Returns the history of every activity's cycle with the activity's share.
     pub fn with_shares(&self, activities: &[Activity]) -> Vec<SharedCycle<'_>> {
         let histories = self.cycles.iter().map(|cycle| &cycle.history);
         let shares = activities.iter().map(|activity| activity.share);
         shares.zip(histories).collect()
     }
 
-    /// The largest value of any row; 0 if all are negative.
+    /// Returns the largest value of any row; 0 if all are negative.
     pub fn max(&self, value: fn(&CycleRow) -> f64) -> f64 {
         let each = self.cycles.iter().map(|cycle| cycle.max(value));
         each.fold(0.0, f64::max)
     }
 
-    /// The activity and the row with the highest pressure; the first of several.
+    /// Returns the activity and the row with the highest pressure; the first of several.
     pub fn highest_pressure(&self) -> Option<(usize, usize)> {
         let cycles = self.cycles.iter().enumerate();
         let rows = cycles.flat_map(|(activity, cycle)| {
@@ -172,7 +172,7 @@ impl SolvedCycles {
         rows.reduce(higher).map(|(place, _)| place)
     }
 
-    /// The load on every node touched in a row of an activity's cycle, N.
+    /// Returns the load on every node touched in a row of an activity's cycle, N.
     pub fn loads_n(&self, activity: usize, row: usize) -> Vec<(u32, f64)> {
         let cycle = &self.cycles[activity];
         let touched = cycle.history.instant(&cycle.instants[row]).iter();

@@ -27,12 +27,12 @@ pub struct StepRecord {
 }
 
 impl StepRecord {
-    /// Volume worn per cycle at its start, mm3.
+    /// Returns the volume worn per cycle at its start, mm3.
     pub fn volume_per_cycle_mm3(&self) -> f64 {
         volume_mm3(&self.area_mm2, &self.depth_per_cycle_mm)
     }
 
-    /// Volume worn, mm3.
+    /// Returns the volume worn, mm3.
     pub fn volume_mm3(&self) -> f64 {
         volume_mm3(&self.area_mm2, &self.depth_mm)
     }

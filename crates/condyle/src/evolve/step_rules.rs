@@ -10,14 +10,14 @@ use super::{
 /// changes that neighbours share count as fast ones.
 const COUNTED: f64 = 0.5;
 
-/// Depth of an interval at the rates of the solved cycle: Euler's method.
+/// Returns the depth of an interval at the rates of the solved cycle: Euler's method.
 fn euler(rates: &Rates, interval: f64) -> Vec<f64> {
     let depth = |rate: &f64| rate * interval;
     rates.depth_per_cycle_mm.iter().map(depth).collect()
 }
 
-/// Depth of an interval over which the volume per cycle continues to change as over the last
-/// one, which makes the volume second order in the interval.
+/// Returns the depth of an interval over which the volume per cycle continues to change as over the last one, which
+/// makes the volume second order in the interval.
 ///
 /// The volume added to Euler's is distributed over the nodes whose rates grow, in proportion; a volume
 /// removed, over those whose rates fall. Extrapolating every node by itself (Adams and Bashforth's
@@ -47,14 +47,14 @@ pub(super) fn extrapolated(rates: &Rates, last: Option<&StepRecord>, interval: f
     depth_mm
 }
 
-/// Volume of an interval beyond that of Euler's method, mm3, if the volume per cycle continues to change as over the
-/// last one.
+/// Returns the volume of an interval beyond that of Euler's method, mm3, if the volume per cycle continues to change
+/// as over the last one.
 fn added_mm3(rates: &Rates, last: &StepRecord, interval: f64) -> f64 {
     let change = rates.volume_per_cycle_mm3() - last.volume_per_cycle_mm3();
     interval * interval / (2.0 * last.interval) * change
 }
 
-/// Depth of an interval by a rule that is exact for rates that relax exponentially.
+/// Returns the depth of an interval by a rule that is exact for rates that relax exponentially.
 ///
 /// The rate r of a node falls by `k` (part of the [relaxation](Rates)) for every mm by which the wear of the node
 /// exceeds the motion of the femur: dr/dn = k (s - r), s the motion by which the femur sinks per cycle. The
@@ -98,12 +98,12 @@ pub(super) fn exponential(rates: &Rates, last: Option<&StepRecord>, interval: f6
     depth_mm
 }
 
-/// The relaxation of a node that the rule uses, per cycle.
+/// Returns the relaxation of a node that the rule uses, per cycle.
 pub(super) fn counted(rates: &Rates, node: usize) -> f64 {
     COUNTED * rates.node_relaxation_per_cycle[node]
 }
 
-/// Mean of exp(-t) for t from 0 to `relaxed`.
+/// Returns the mean of exp(-t) for t from 0 to `relaxed`.
 pub(super) fn mean_decay(relaxed: f64) -> f64 {
     // Below this the series is more accurate than the quotient, and the quotient fails at 0.
     const SMALL: f64 = 1e-5;
@@ -183,7 +183,7 @@ mod tests {
             }
         }
 
-        /// Depth at the nodes after even steps, each as long as `interval`.
+        /// Returns the depth at the nodes after even steps, each as long as `interval`.
         fn worn_mm(
             &self,
             steps: usize,

@@ -54,7 +54,7 @@ pub struct Activity {
 }
 
 impl Activity {
-    /// The only activity of a test.
+    /// Creates the only activity of a test.
     pub fn only(name: &str, machine: Machine) -> Self {
         Self {
             name: name.to_owned(),
@@ -70,7 +70,7 @@ impl Activity {
 }
 
 impl WearTest {
-    /// Duration of a mean cycle of all activities, s.
+    /// Returns the duration of a mean cycle of all activities, s.
     pub(super) fn cycle_seconds(&self) -> f64 {
         self.activities.iter().map(Activity::seconds).sum()
     }
@@ -108,7 +108,7 @@ pub enum Updates {
 }
 
 impl Schedule {
-    /// A fixed number of updates over `cycles`.
+    /// Creates a fixed number of updates over `cycles`.
     pub fn fixed(cycles: f64, updates: usize) -> Self {
         let updates = Updates::Fixed(updates);
         Self { cycles, updates }

@@ -67,8 +67,8 @@ impl FacesAround {
         &self.beside[self.first_beside[node]..self.first_beside[node + 1]]
     }
 
-    /// A node, and then those around it: all that have a face in common with it and, if these are
-    /// fewer than `least` in all, those around them too.
+    /// Returns a node, and then those around it: all that have a face in common with it and, if these are fewer than
+    /// `least` in all, those around them too.
     pub fn patch(&self, node: u32, least: usize) -> Vec<u32> {
         let mut nodes = Vec::with_capacity(32);
         nodes.push(node);
@@ -160,7 +160,7 @@ impl FreeNodes<'_> {
         }
     }
 
-    /// The face on the other side of an edge, starting with that edge.
+    /// Returns the face on the other side of an edge, starting with that edge.
     fn face_beyond(&self, [from, to]: [u32; 2]) -> Option<[u32; 4]> {
         let faces = self.around.of(to as usize).iter();
         let mut faces = faces.map(|&[next, across, before]| [to, next, across, before]);
@@ -206,7 +206,7 @@ mod tests {
         assert_eq!(sorted(0, 7), [0, 1, 2, 3, 4, 5, 6, 7, 8]);
     }
 
-    /// The blocks of a grid of `columns` by `rows` nodes.
+    /// Returns the blocks of a grid of `columns` by `rows` nodes.
     fn of_grid(columns: u32, rows: u32) -> Vec<NodeBlock> {
         let first = (0..rows - 1).flat_map(|j| (0..columns - 1).map(move |i| i + j * columns));
         let faces: Vec<[u32; 4]> = first

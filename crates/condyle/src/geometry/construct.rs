@@ -132,7 +132,7 @@ impl<'a> Profile<'a> {
         (1..=count).map(move |n| dish_mm - n as f64 * SECTIONS_EVERY_MM)
     }
 
-    /// Height at which most of the body ends; its lowest point if there is no stem.
+    /// Returns the height at which most of the body ends; its lowest point if there is no stem.
     fn plate_mm(&self, lowest_mm: f64) -> f64 {
         let is_stem = |y: &f64| self.sections.area_mm2(*y) < STEM_SHARE * self.whole_mm2;
         let below = self.heights(lowest_mm).find(is_stem);
@@ -141,7 +141,7 @@ impl<'a> Profile<'a> {
         })
     }
 
-    /// Ledges between the thinnest insert and the plate's underside, downwards.
+    /// Returns the ledges between the thinnest insert and the plate's underside, downwards.
     fn ledges(&self, plate_mm: f64) -> Vec<Ledge> {
         let heights: Vec<f64> = self.heights(plate_mm + SECTIONS_EVERY_MM).collect();
         let between = heights.windows(2).map(|pair| (pair[1], pair[0]));
@@ -159,7 +159,7 @@ impl<'a> Profile<'a> {
         ledges
     }
 
-    /// The ledge between two heights, if the area changes by enough within the height of a ledge.
+    /// Returns the ledge between two heights, if the area changes by enough within the height of a ledge.
     fn ledge(&self, low_mm: f64, high_mm: f64) -> Option<Ledge> {
         let is_ledge = |grown: f64| grown.abs() > LEDGE_SHARE * self.whole_mm2;
         if !is_ledge(self.grown_mm2(low_mm, high_mm)) {
@@ -173,12 +173,12 @@ impl<'a> Profile<'a> {
         })
     }
 
-    /// Area of the lower one of two sections less that of the upper one, mm2.
+    /// Returns the area of the lower one of two sections less that of the upper one, mm2.
     fn grown_mm2(&self, low_mm: f64, high_mm: f64) -> f64 {
         self.sections.area_mm2(low_mm) - self.sections.area_mm2(high_mm)
     }
 
-    /// Height between two at which the area changes most, by bisection.
+    /// Returns the height between two at which the area changes most, by bisection.
     fn jump(&self, low_mm: f64, high_mm: f64) -> f64 {
         let (mut low, mut high) = (low_mm, high_mm);
         while high - low > LEDGE_MM / 4.0 {
@@ -193,7 +193,7 @@ impl<'a> Profile<'a> {
         (low + high) / 2.0
     }
 
-    /// Height of the nearest vertex, or the given height if none is near.
+    /// Returns the height of the nearest vertex, or the given height if none is near.
     fn at_vertex(&self, y: f64) -> f64 {
         let heights = self.body.vertices.iter().map(|vertex| vertex.y);
         let nearest = heights.min_by(|a, b| (a - y).abs().total_cmp(&(b - y).abs()));
@@ -219,7 +219,7 @@ struct Sections {
 }
 
 impl Sections {
-    /// The sections of a body with lines `step_mm` apart, and a rim of lines outside it.
+    /// Creates the sections of a body with lines `step_mm` apart, and a rim of lines outside it.
     fn new(body: &TriangleMesh, step_mm: f64) -> Self {
         let (low, high) = body.bounds();
         let count = |length: f64| (length / step_mm) as usize + 3;
@@ -261,7 +261,7 @@ impl Sections {
         }
     }
 
-    /// Area within the outline of the section at a height, mm2, hollows included.
+    /// Returns the area within the outline of the section at a height, mm2, hollows included.
     fn area_mm2(&self, y: f64) -> f64 {
         let is_inside = |line: usize| {
             let above = self.passes[line].iter().take_while(|pass| pass.0 > y);
@@ -291,7 +291,7 @@ impl Sections {
     }
 }
 
-/// Height at which the vertical line at (x, z) passes a triangle, and 1 if it enters from above.
+/// Returns the height at which the vertical line at (x, z) passes a triangle, and 1 if it enters from above.
 fn pass([a, b, c]: &[Vec3; 3], (x, z): (f64, f64)) -> Option<(f64, i32)> {
     let twice_area = |p: &Vec3, q: &Vec3| (p.z - z) * (q.x - x) - (p.x - x) * (q.z - z);
     let weights = [twice_area(b, c), twice_area(c, a), twice_area(a, b)];

@@ -26,7 +26,7 @@ pub enum FemoralSurface {
 }
 
 impl FemoralSurface {
-    /// A ball of radius `radius_mm` about the origin.
+    /// Creates a ball of radius `radius_mm` about the origin.
     pub fn sphere(radius_mm: f64) -> Self {
         Self::Sphere(Torus::sphere(Vec3::zeros(), radius_mm))
     }

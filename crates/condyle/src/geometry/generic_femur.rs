@@ -54,7 +54,7 @@ pub struct GenericFemur {
 }
 
 impl GenericFemur {
-    /// The component of the given dimensions, all > 0.
+    /// Creates the component of the given dimensions, all > 0.
     pub fn new(shape: GenericFemurShape) -> Self {
         let (sine, cosine) = shape.transition_deg.to_radians().sin_cos();
         let transition = Vec3::new(-sine, -cosine, 0.0);
@@ -78,8 +78,8 @@ impl GenericFemur {
         &self.shape
     }
 
-    /// Bounds around points: each condyle is convex, so they hold up to the plane half-way to
-    /// the other one.
+    /// Returns the bounds around points: each condyle is convex, so they hold up to the plane half-way to the other
+    /// one.
     #[inline(always)]
     pub(super) fn curvature_bounds<T: Number>(&self, points: &Vector<T>) -> CurvatureBounds {
         // Across that plane the gap to the nearer condyle has a crease.
@@ -114,7 +114,7 @@ impl GenericFemur {
         sample
     }
 
-    /// The point moved to the lateral condyle's middle plane, and the side it came from.
+    /// Returns the point moved to the lateral condyle's middle plane, and the side it came from.
     #[inline(always)]
     fn folded<T: Number>(&self, point: &Vector<T>) -> (Vector<T>, T) {
         let side = point.z.below_zero(-T::one(), T::one());
@@ -122,7 +122,7 @@ impl GenericFemur {
         (Vector::new(point.x, point.y, across), side)
     }
 
-    /// The piece on whose side of the line through both centres a point lies.
+    /// Returns the piece on whose side of the line through both centres a point lies.
     #[inline(always)]
     fn piece<T: Number>(&self, point: &Vector<T>) -> Torus<T> {
         let in_front =
@@ -186,7 +186,7 @@ impl GenericFemur {
         }
     }
 
-    /// The point of the surface `behind_deg` behind straight down, `across` rad around the tube.
+    /// Returns the point of the surface `behind_deg` behind straight down, `across` rad around the tube.
     fn surface_point(&self, behind_deg: f64, across: f64, side: f64) -> Vec3 {
         let torus = if behind_deg > self.shape.transition_deg {
             &self.posterior
@@ -269,7 +269,7 @@ impl PlacedFemur {
         self.femur.curvature_bounds(&self.in_component(points))
     }
 
-    /// The rows of R, in every lane.
+    /// Returns the rows of R, in every lane.
     #[inline(always)]
     fn rows<T: Number>(&self) -> [Vector<T>; 3] {
         [0, 1, 2].map(|i| Vector::from_fn(|j, _| T::splat(self.rotation[(i, j)])))

@@ -84,7 +84,7 @@ impl GenericInsertShape {
     }
 }
 
-/// A flat block with its articulating surface at y = 0, for verification.
+/// Returns a flat block with its articulating surface at y = 0, for verification.
 ///
 /// `size_mm`: length along x and z, centred; `thickness_mm`: down to the backside.
 ///

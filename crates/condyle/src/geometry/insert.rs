@@ -48,8 +48,8 @@ impl fmt::Debug for Insert {
 }
 
 impl Insert {
-    /// An insert from its mesh, the outward quads of its articulating surface, and those of
-    /// its backside; its regions are the sides of a knee.
+    /// Creates an insert from its mesh, the outward quads of its articulating surface, and those of its backside; its
+    /// regions are the sides of a knee.
     ///
     /// # Errors
     /// An empty mesh or surface, an inverted element, or a node without thickness below it.
@@ -215,7 +215,7 @@ impl Insert {
         }
     }
 
-    /// Displacement of a surface node for which the surface around it rises by a unit.
+    /// Returns the displacement of a surface node for which the surface around it rises by a unit.
     fn outwards(&self, node: usize, normal: &Vec3) -> Vec3 {
         let wall = self.unworn.walls[node].filter(|_| self.rim_along_walls);
         let wall = wall.filter(|wall| wall.dot(normal) > MIN_COSINE_OF_WALL);
@@ -350,7 +350,7 @@ mod tests {
         assert_eq!(insert.regions(), &before);
     }
 
-    /// The generic dish as an open surface of triangles, fine or coarse.
+    /// Returns the generic dish as an open surface of triangles, fine or coarse.
     fn dish(edge_mm: f64) -> TriangleMesh {
         let insert = GenericInsertShape::default()
             .insert(Meshing { edge_mm, layers: 1 })

@@ -74,7 +74,7 @@ pub(super) fn shares_and_normals(
     (shares, normals)
 }
 
-/// The faces number `place` around four nodes; a node with fewer faces has an empty one.
+/// Returns the faces number `place` around four nodes; a node with fewer faces has an empty one.
 #[inline(always)]
 fn patch(
     positions: &[Vec3],
@@ -112,7 +112,7 @@ struct CornerPatch {
 }
 
 impl CornerPatch {
-    /// The quarters of bilinear faces with the next corner, the opposite one and the one before.
+    /// Creates the quarters of bilinear faces with the next corner, the opposite one and the one before.
     #[inline(always)]
     fn new(next: &Vector<F64x4>, across: &Vector<F64x4>, before: &Vector<F64x4>) -> Self {
         let (three, eighth) = (F64x4::splat(3.0), F64x4::splat(0.125));
@@ -138,7 +138,7 @@ fn length(v: &Vector<F64x4>) -> F64x4 {
     dot(v, v).sqrt()
 }
 
-/// A vector in units of its length; zero stays zero.
+/// Returns a vector in units of its length; zero stays zero.
 #[inline(always)]
 fn unit(v: &Vector<F64x4>) -> Vector<F64x4> {
     v * (F64x4::splat(1.0) / Number::max(length(v), F64x4::splat(f64::MIN_POSITIVE)))

@@ -49,7 +49,7 @@ impl SmoothField {
         self.is_far.len()
     }
 
-    /// The field of a surface whose triangles face outwards, computed on `threads` threads.
+    /// Creates the field of a surface whose triangles face outwards, computed on `threads` threads.
     ///
     /// The bytes of the result do not depend on `threads`; 1 starts no thread.
     pub fn new(mesh: &TriangleMesh, threads: usize) -> Self {
@@ -123,8 +123,8 @@ mod tests {
     use super::{grid::BAND_MM, *};
     use crate::{Vec3, geometry::surface_sample::tests::check_derivatives};
 
-    /// A ball of radius 24 mm with edges of about `edge_mm`, by latitude and longitude, turned so
-    /// that its poles lie where no test samples it.
+    /// Returns a ball of radius 24 mm with edges of about `edge_mm`, by latitude and longitude, turned so that its
+    /// poles lie where no test samples it.
     fn ball(edge_mm: f64) -> TriangleMesh {
         let rows = (std::f64::consts::PI * 24.0 / edge_mm) as u32;
         let columns = 2 * rows;

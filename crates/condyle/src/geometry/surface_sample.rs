@@ -57,7 +57,7 @@ impl<T: Number> SurfaceSample<T> {
         self.gap_mm - spread_mm2 * (xx + yy + zz)
     }
 
-    /// A sample infinitely far from any surface.
+    /// Creates a sample infinitely far from any surface.
     pub(crate) fn far() -> Self {
         let (zero, none) = (T::zero(), Vector::repeat(T::zero()));
         Self {
@@ -131,7 +131,8 @@ impl CurvatureBounds {
         curvature_jump_per_mm: 0.0,
     };
 
-    /// The bounds that hold around both of two points; if one has none, those of the other except for the radius.
+    /// Returns the bounds that hold around both of two points; if one has none, those of the other except for the
+    /// radius.
     #[inline(always)]
     pub fn joined(self, other: Self) -> Self {
         // The maximum of `Number` and not of f64: one instruction, and no NaN occurs.
@@ -144,7 +145,7 @@ impl CurvatureBounds {
         }
     }
 
-    /// The bounds of a convex surface with curvatures up to `max_curvature_per_mm`.
+    /// Creates the bounds of a convex surface with curvatures up to `max_curvature_per_mm`.
     ///
     /// The distance from a convex body is convex. Its mean over a share is nearly so: its second
     /// derivatives go below zero by 6 spread K^3 at most, a few thousandths of K for shares of

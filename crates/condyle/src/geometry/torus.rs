@@ -24,7 +24,7 @@ pub struct Torus<T: Number = f64> {
 }
 
 impl Torus {
-    /// A ball.
+    /// Creates a ball.
     pub fn sphere(centre: Vec3, radius_mm: f64) -> Self {
         Self {
             centre,

@@ -8,8 +8,8 @@ use crate::{
 
 /// Lever on which a moment counts as a force and a rotation as a motion, mm.
 ///
-/// It is shorter than the distance of any of a knee's axes from the contact, some 20 to 30 mm, so a moment
-/// within the tolerance is less at the contact than a force within it.
+/// It is shorter than the distance of any of a knee's axes from the contact, about 20 to 30 mm, so that a moment
+/// within the tolerance causes less force at the contact than the tolerance on forces.
 const MOMENT_LEVER_MM: f64 = 10.0;
 
 /// The lever of every joint, mm: it converts moments to forces and rotations to motions; 1 for a translation.
@@ -48,7 +48,7 @@ pub enum Drive {
     Locked(f64),
     /// Moved along a waveform of position, mm or rad.
     Prescribed(Waveform),
-    /// Free under a waveform of load, N or N mm, with the sign of the motion it pushes.
+    /// Free under a waveform of load, N or N mm, positive in the direction of positive motion.
     Loaded(Waveform),
 }
 
@@ -69,7 +69,7 @@ pub struct Joint {
 }
 
 impl Joint {
-    /// A joint locked at zero, its axis through the origin, with the defaults of its description.
+    /// Creates a joint locked at zero, its axis through the origin, with the defaults of its description.
     fn new(description: &'static JointDescription) -> Self {
         Self {
             description,
@@ -80,7 +80,7 @@ impl Joint {
         }
     }
 
-    /// Whether the joint is free under a load.
+    /// Returns whether the joint is free under a load.
     pub fn is_loaded(&self) -> bool {
         matches!(self.drive, Drive::Loaded(_))
     }
@@ -102,8 +102,8 @@ pub struct Machine {
 }
 
 impl Machine {
-    /// A machine with every joint locked at zero, all axes through the origin and no springs, at one
-    /// cycle a second.
+    /// Creates a machine with every joint locked at zero, all axes through the origin and no springs, at one cycle a
+    /// second.
     pub fn new(mechanism: &'static Mechanism) -> Self {
         Self {
             mechanism,
@@ -155,7 +155,7 @@ impl Machine {
         }
     }
 
-    /// Load on every joint; 0 on those that are not loaded.
+    /// Returns the load on every joint; 0 on those that are not loaded.
     pub(super) fn loads_at(&self, phase: f64) -> Vec6 {
         Vec6::from_fn(|j, _| match &self.joints[j].drive {
             Drive::Loaded(waveform) => waveform.at(phase).0,

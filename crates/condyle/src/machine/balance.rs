@@ -60,8 +60,8 @@ impl<'a> Balance<'a> {
         }
     }
 
-    /// The residual r = M a + C v + springs - contact - load of every loaded joint, N or N mm;
-    /// 0 on the others.
+    /// Returns the residual r = M a + C v + springs - contact - load of every loaded joint, N or N mm; 0 on the
+    /// others.
     ///
     /// The contact does work on joint j through its screw s_j, the motion of the femur past the
     /// insert: its load there is W . s_j, W the wrench on the femur.
@@ -93,7 +93,7 @@ impl<'a> Balance<'a> {
         self.motion_at(&self.kinematics.rates)
     }
 
-    /// Derivative of the residual by the positions, as exact as the contact's own; the identity on rows
+    /// Returns the derivative of the residual by the positions, as exact as the contact's own; the identity on rows
     /// that are not loaded.
     pub fn tangent(&self, slopes: StepSlopes) -> Mat6 {
         let mut tangent = self.contact_tangent(slopes);
@@ -112,7 +112,7 @@ impl<'a> Balance<'a> {
         tangent
     }
 
-    /// Derivative of the contact's part of the residual, -W . s_j, by the position of every joint k.
+    /// Returns the derivative of the contact's part of the residual, -W . s_j, by the position of every joint k.
     fn contact_tangent(&self, slopes: StepSlopes) -> Mat6 {
         let contact = self.response.tangent();
         let on_femur = self.response.wrench.reaction();

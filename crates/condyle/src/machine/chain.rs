@@ -29,8 +29,8 @@ pub struct Configuration {
 }
 
 impl Chain {
-    /// The chain of a machine whose femur, with all joints at zero, has its frame's origin at
-    /// `zero_mm` in the insert frame and turns about the point (x, y, 0) of its own frame.
+    /// Creates the chain of a machine whose femur, with all joints at zero, has its frame's origin at `zero_mm` in
+    /// the insert frame and turns about the point (x, y, 0) of its own frame.
     pub fn new(machine: &Machine, zero_mm: Vec3, flexion_axis_mm: (f64, f64)) -> Self {
         let pivot_mm = zero_mm + Vec3::new(flexion_axis_mm.0, flexion_axis_mm.1, 0.0);
         Self {
@@ -77,7 +77,7 @@ impl Chain {
     }
 }
 
-/// The screw of a joint at zero, as the femur's motion past the insert; the femur rotates about `pivot_mm`.
+/// Returns the screw of a joint at zero, as the femur's motion past the insert; the femur rotates about `pivot_mm`.
 fn screw(joint: &Joint, pivot_mm: Vec3) -> Twist {
     let directed = |direction: [f64; 3]| match joint.description.moves {
         MovedBody::Insert => -Vec3::from(direction),
@@ -108,7 +108,8 @@ impl Configuration {
             .sum()
     }
 
-    /// The twist of the part that each joint carries, at given rates: the sum of s_i v_i over the joints farther from the insert.
+    /// Returns the twist of the part that each joint carries, at given rates: the sum of s_i v_i over the joints
+    /// farther from the insert.
     ///
     /// Joint k turns the screws that it carries by their Lie bracket with its own, and so their twist too.
     pub(super) fn carried_twists(&self, rates: &[f64; 6]) -> [Twist; 6] {

@@ -15,7 +15,7 @@ pub struct TimeSettings {
     /// An implicit increment is halved until its estimated error is below this, mm; rotations on
     /// a lever of 10 mm. 0 takes every increment in one step.
     pub increment_error_mm: f64,
-    /// Largest force left out of balance, N; for moments, this much on a lever of 10 mm.
+    /// Largest force left out of balance, N; moments count as forces on a lever of 10 mm.
     pub force_tolerance_n: f64,
     /// Whether Newton's iteration may stop at a correction whose predicted residual is within the tolerance,
     /// without evaluating that residual.
@@ -40,12 +40,12 @@ impl TimeSettings {
         }
     }
 
-    /// Length of an increment at a cycle frequency, s.
+    /// Returns the length of an increment at a cycle frequency, s.
     pub fn increment_s(&self, frequency_hz: f64) -> f64 {
         1.0 / (frequency_hz * self.increments as f64)
     }
 
-    /// Whether a machine is where it was at an earlier state and moves as it did then.
+    /// Returns whether a machine is where it was at an earlier state and moves as it did then.
     pub(super) fn is_repeated(
         &self,
         machine: &Machine,
@@ -169,7 +169,7 @@ pub enum CycleError {
 }
 
 impl CycleError {
-    /// The error of a load that the insert does not bear at a phase of the cycle.
+    /// Converts a load that the insert cannot bear, at a phase of the cycle, to an error.
     pub(super) fn not_borne(phase: f64, why: NotBorne) -> Self {
         let percent = 100.0 * phase;
         match why {

@@ -126,8 +126,8 @@ struct Quickness {
 }
 
 impl Quickness {
-    /// The response at the present positions with every part at rest: there the
-    /// regularised friction is steepest in the rate and limits the step.
+    /// Creates the response at the present positions with every part at rest: there the regularised friction is
+    /// steepest in the rate and limits the step.
     ///
     /// With M = diag of the inertias, and K and C the derivatives of the balance by positions and
     /// rates, the drag is the largest eigenvalue of M^-1/2 C M^-1/2, and the frequency the root of
@@ -237,7 +237,7 @@ mod tests {
         }
     }
 
-    /// A machine that moves IS alone, without load.
+    /// Returns a machine that moves IS alone, without load.
     fn machine(inertia: f64) -> Machine {
         let mut machine = Machine::new(&KNEE);
         machine
@@ -250,7 +250,7 @@ mod tests {
         machine
     }
 
-    /// The state after 0.1 s from 1 mm above rest.
+    /// Returns the state after 0.1 s from 1 mm above rest.
     fn released(
         support: Support,
         inertia: f64,

@@ -24,7 +24,7 @@ struct BackwardStep<'a> {
 }
 
 impl<'a> BackwardStep<'a> {
-    /// Second order where the state includes the one before it, first order after a start.
+    /// Creates a step of second order if the state includes the state before it, and of first order after a start.
     fn new(machine: &'a Machine, from: &'a MachineState, step: f64) -> Self {
         let step_s = step / machine.frequency_hz;
         let ratio = from.before.map_or(0.0, |(_, last_s)| step_s / last_s);
@@ -39,13 +39,14 @@ impl<'a> BackwardStep<'a> {
         }
     }
 
-    /// Rate at the end of a value that is `end` there, was `now` at the start and `before` a step earlier.
+    /// Returns the rate at the end of a value that is `end` there, was `now` at the start and `before` a step
+    /// earlier.
     fn rate(&self, end: f64, now: f64, before: Option<f64>) -> f64 {
         let earlier = before.map_or(0.0, |before| self.weight_before * before);
         self.slope * end + (self.weight_now * now + earlier)
     }
 
-    /// Motion at the end of joints that are at `positions` there unless they are driven.
+    /// Returns the motion at the end of the step, with the joints that are not driven at `positions`.
     fn kinematics(&self, mut positions: [f64; 6]) -> Kinematics {
         let (now, before) = (&self.from.now, self.from.before.as_ref());
         let before = before.map(|(before, _)| before);
@@ -132,7 +133,7 @@ impl Simulator<'_> {
                 break;
             }
             self.counters.newton_iterations += 1;
-            // The last evaluation of a step is saved where its residual is known well enough beforehand.
+            // If the prediction of the residual is good enough, the last evaluation of a step is skipped.
             if iteration.is_predicted_done() {
                 let kinematics = step.kinematics(iteration.positions);
                 let configuration = self.chain.at(&kinematics.positions);
@@ -147,7 +148,8 @@ impl Simulator<'_> {
         })
     }
 
-    /// Whether the estimated error of a step in the positions of the loaded joints is within the permitted one.
+    /// Returns whether the estimated error of a step in the positions of the loaded joints is within the permitted
+    /// one.
     pub(super) fn is_exact_enough(&self, from: &MachineState, to: &MachineState) -> bool {
         let at_most_mm = self.time.increment_error_mm;
         at_most_mm == 0.0 || step_error_mm(self.machine, from, to) <= at_most_mm

@@ -10,7 +10,7 @@ pub enum JointKind {
 }
 
 impl JointKind {
-    /// The unit of positions in files, which ends their names.
+    /// Returns the unit of positions in files, which ends their names.
     pub const fn unit(self) -> &'static str {
         match self {
             Self::Rotation => "deg",
@@ -18,7 +18,7 @@ impl JointKind {
         }
     }
 
-    /// The unit of files in the solver's unit, rad or mm.
+    /// Returns the unit of files in the solver's unit, rad or mm.
     pub const fn file_unit_in_solver(self) -> f64 {
         match self {
             Self::Rotation => 1f64.to_radians(),
@@ -43,7 +43,7 @@ impl JointIndex {
     /// The six places, from the insert to the femur.
     pub const ALL: [Self; 6] = [Self(0), Self(1), Self(2), Self(3), Self(4), Self(5)];
 
-    /// The place as a number, from 0 at the insert.
+    /// Returns the place as a number, from 0 at the insert.
     pub const fn place(self) -> usize {
         self.0
     }
@@ -68,7 +68,7 @@ pub enum ChannelUnit {
 }
 
 impl ChannelUnit {
-    /// The ending of names with this unit, such as the `n` of `knots_n`.
+    /// Returns the ending of names with this unit, such as the `n` of `knots_n`.
     pub const fn suffix(self) -> &'static str {
         match self {
             Self::Newton => "n",
@@ -97,7 +97,7 @@ pub struct Channel {
 }
 
 impl Channel {
-    /// The factor from a value in a file to the joint's load or motion: sign and unit.
+    /// Returns the factor from a value in a file to the joint's load or motion: sign and unit.
     pub const fn factor(&self) -> f64 {
         let unit_in_solver = match self.unit {
             ChannelUnit::Newton => 1.0,
@@ -208,12 +208,12 @@ impl JointDescription {
         }
     }
 
-    /// Whether it can be free.
+    /// Returns whether it can be free.
     pub const fn can_be_free(&self) -> bool {
         !matches!(self.load, Loading::None)
     }
 
-    /// Whether it stands at zero once the machine has settled.
+    /// Returns whether it stands at zero once the machine has settled.
     pub fn settles_at_zero(&self) -> bool {
         self.is_zeroed || self.settling == Settling::HeldAtZero
     }

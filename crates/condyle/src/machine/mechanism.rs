@@ -147,7 +147,7 @@ pub struct CycleRow {
 }
 
 impl CycleRow {
-    /// The row at `percent` of the cycle with the joints at `positions`.
+    /// Creates the row at `percent` of the cycle with the joints at `positions`.
     pub(super) fn new(percent: f64, positions: [f64; 6], contact: &ContactResult) -> Self {
         let (mut region_force_n, mut contact_area_mm2) = ([0.0; MAX_REGIONS], 0.0);
         for node in &contact.touched {

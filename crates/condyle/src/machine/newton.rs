@@ -48,7 +48,7 @@ pub(super) struct NewtonIteration {
 }
 
 impl NewtonIteration {
-    /// An iteration from `positions`, with the contraction of a cycle before if there is a warm start.
+    /// Creates an iteration from `positions`, with the contraction of a cycle before if there is a warm start.
     pub fn new(
         levers: Levers,
         may_leave_n: Option<f64>,
@@ -70,7 +70,7 @@ impl NewtonIteration {
         }
     }
 
-    /// Whether the predicted residual is within the permitted one.
+    /// Returns whether the predicted residual is within the permitted one.
     pub fn is_predicted_done(&self) -> bool {
         self.may_leave_n
             .is_some_and(|may_leave_n| self.predicted_n <= may_leave_n)
@@ -78,8 +78,8 @@ impl NewtonIteration {
 
     /// Moves to better positions; false if none are found.
     ///
-    /// A correction that has made the residual longer is backtracked; otherwise the next one follows.
-    /// `tangent` is evaluated only where the tangent of the last correction is not good enough.
+    /// A correction that has made the residual longer is backtracked; otherwise the next one follows. `tangent` is
+    /// evaluated only if the tangent of the last correction is not good enough.
     pub fn improve(
         &mut self,
         residual: &Vec6,
@@ -119,9 +119,9 @@ impl NewtonIteration {
     /// Takes back a part of the last correction, after which the residual is longer; false if too little of it
     /// would remain.
     ///
-    /// Mostly friction has reversed, and the iteration continues best from where the slip is zero:
-    /// there friction is stiffest, and a correction from there does not overshoot. Otherwise the best part
-    /// is the minimum of the parabola through both lengths and the slope that Newton's method implies.
+    /// In most cases friction has reversed, and the iteration continues best from where the slip is zero: there
+    /// friction is stiffest, and a correction from there does not overshoot. Otherwise the best part is the minimum
+    /// of the parabola through both lengths and the slope that Newton's method implies.
     fn backtrack(&mut self, residual_n: f64, mean_slip: &[Vec3; MAX_REGIONS]) -> bool {
         if let Some(part) = standstill(&self.mean_slip, mean_slip) {
             self.keep(part);
@@ -158,7 +158,7 @@ impl NewtonIteration {
         self.caution = 1.0;
     }
 
-    /// The tangent of the last correction, and the predicted residual after a whole correction by it, N; none
+    /// Returns the tangent of the last correction, and the predicted residual after a whole correction by it, N; none
     /// if that exceeds the permitted one.
     ///
     /// A tangent is the most expensive part of a correction, and the last correction need not be as good: the chord
@@ -170,8 +170,8 @@ impl NewtonIteration {
     }
 }
 
-/// The part of a correction after which the first of the regions stands still, whose mean slip was `before` and is
-/// `after`; none if no slip reverses.
+/// Returns the part of a correction after which the first of the regions stands still, whose mean slip was `before`
+/// and is `after`; none if no slip reverses.
 fn standstill(before: &[Vec3; MAX_REGIONS], after: &[Vec3; MAX_REGIONS]) -> Option<f64> {
     let regions = before.iter().zip(after);
     let turning = regions.filter(|(before, after)| before.dot(after) < 0.0);

@@ -30,9 +30,9 @@ pub struct NotSettled {
 
 /// Finds the positions of static balance under the load at the start of the cycle.
 ///
-/// The state of each joint meanwhile is part of its [description](Settling); there are no springs, and no friction,
-/// since nothing slides. Newton's method with a damping that vanishes near the balance
-/// (pseudo-transient continuation) also converges from a first touch on one side.
+/// The [description](Settling) of each joint defines its state during settling. Springs do not act, and neither does
+/// friction, since nothing slides. Newton's method with a damping that vanishes near the balance (pseudo-transient
+/// continuation) also converges from a first touch on one side.
 ///
 /// # Errors
 /// If the femur does not come to rest, for instance because it slides off.

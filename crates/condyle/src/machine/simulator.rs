@@ -52,7 +52,7 @@ pub struct Simulator<'a> {
 }
 
 impl<'a> Simulator<'a> {
-    /// A machine on a contact that has not run yet.
+    /// Creates a machine on a contact that has not run yet.
     pub fn new(
         machine: &'a Machine,
         chain: &'a Chain,
@@ -70,12 +70,11 @@ impl<'a> Simulator<'a> {
         }
     }
 
-    /// Solves increments from `start` until one ends where the machine was a cycle before: the
-    /// increments since then are one cycle that repeats itself.
+    /// Solves increments from `start` until one ends in the state of the machine one cycle earlier: the increments
+    /// between are a cycle that repeats itself.
     ///
-    /// A motion that starts or that follows a change of the geometry requires a little more than a
-    /// cycle for that, and seldom two. `watch` receives the number of increments solved after each; its break stops
-    /// the solution.
+    /// A motion that starts, or that follows a change of the geometry, requires little more than one cycle for that,
+    /// seldom two. `watch` receives the number of increments solved after each; its break stops the solution.
     ///
     /// # Errors
     /// An increment that cannot be solved.
@@ -178,7 +177,7 @@ impl<'a> Simulator<'a> {
         self.machine.levers().largest_n(&residual)
     }
 
-    /// An increment by the implicit integrator, with its warm start from the last cycle.
+    /// Solves an increment with the implicit integrator, with its warm start from the last cycle.
     fn implicit(
         &mut self,
         state: &MachineState,
@@ -228,7 +227,7 @@ impl<'a> Simulator<'a> {
         }
     }
 
-    /// An implicit step, repeated until the contact's own state agrees with the load at its end.
+    /// Takes an implicit step, repeated until the contact's own state agrees with the load at its end.
     fn settled_step(
         &mut self,
         from: &MachineState,

@@ -38,7 +38,7 @@ pub struct MachineState {
 }
 
 impl MachineState {
-    /// A machine at rest at the start of a cycle, at the given positions where it is free.
+    /// Creates a machine at rest at the start of a cycle, at the given positions where it is free.
     pub fn at_rest(machine: &Machine, positions: [f64; 6]) -> Self {
         let mut now = Kinematics::at_rest(positions);
         machine.drive(0.0, &mut now.positions, &mut now.rates);
@@ -49,8 +49,8 @@ impl MachineState {
         }
     }
 
-    /// Positions `step_s` later at constant acceleration; after a start, which has no accelerations yet, at
-    /// constant rate.
+    /// Returns the positions `step_s` later at constant acceleration; after a start, which has no accelerations yet,
+    /// at constant rate.
     pub(super) fn extrapolated(&self, step_s: f64) -> [f64; 6] {
         let now = &self.now;
         let half_s2 = if self.before.is_some() {
@@ -72,8 +72,8 @@ const COASTING: f64 = 0.5;
 
 /// The solution of an increment, from which the same increment of the next cycle starts.
 ///
-/// A cycle nearly repeats the one before. So Newton's iteration starts nearer to the end of the increment, and its
-/// contraction is known before the first correction.
+/// A cycle nearly repeats the previous one. With a warm start Newton's iteration starts nearer to the end of the
+/// increment, and its contraction is known before the first correction.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct WarmStart {
     /// Motion beyond the extrapolation over half of the step, mm or rad.

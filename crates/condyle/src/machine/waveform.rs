@@ -17,7 +17,7 @@ pub struct Knot {
     pub value: f64,
 }
 
-/// Length of the piece that starts at knot `a`, across the seam for the last.
+/// Returns the length of the piece that starts at knot `a`, across the seam for the last.
 fn span_percent(knots: &[Knot], a: usize) -> f64 {
     if a + 1 < knots.len() {
         knots[a + 1].percent - knots[a].percent
@@ -59,7 +59,7 @@ pub struct Waveform {
 }
 
 impl Waveform {
-    /// A constant value.
+    /// Creates a constant waveform.
     pub fn constant(value: f64) -> Self {
         Self {
             knots: vec![Knot {
@@ -71,7 +71,7 @@ impl Waveform {
         }
     }
 
-    /// A waveform through `knots`, sorted by place; the last connects to the first.
+    /// Creates a waveform through `knots`, sorted by place; the last connects to the first.
     ///
     /// # Errors
     /// No knots; knots that are not finite, outside 0 to 100 %, not increasing, or that step at the seam;
@@ -181,8 +181,8 @@ impl Waveform {
 
 /// Second derivatives at the knots of the periodic cubic spline.
 ///
-/// The system is cyclic, diagonally dominant and small; Gauss-Seidel contracts by at least a
-/// half a sweep, so it is solved to round-off in a few dozen sweeps.
+/// The system is cyclic, diagonally dominant and small; each Gauss-Seidel sweep at least halves the error, so it is
+/// solved to round-off in a few dozen sweeps.
 fn spline_bends(knots: &[Knot]) -> Vec<f64> {
     // More than enough: 0.5^100 is far below rounding.
     const SWEEPS: usize = 100;

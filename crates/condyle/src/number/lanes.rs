@@ -31,13 +31,13 @@ impl F64x4 {
         Self(f64x4::new(lanes))
     }
 
-    /// The four numbers.
+    /// Returns the four numbers.
     #[inline(always)]
     pub fn to_array(self) -> [f64; LANES] {
         self.0.to_array()
     }
 
-    /// The columns of a matrix of four rows.
+    /// Returns the columns of a matrix of four rows.
     #[inline(always)]
     pub fn transposed(rows: [Self; LANES]) -> [Self; LANES] {
         let [a, b, c, d] = rows;
@@ -45,14 +45,14 @@ impl F64x4 {
         [Self(a), Self(b), Self(c), Self(d)]
     }
 
-    /// The sum over the lanes, always in the same order.
+    /// Returns the sum over the lanes, always in the same order.
     #[inline]
     pub fn sum(self) -> f64 {
         let [a, b, c, d] = self.to_array();
         (a + b) + (c + d)
     }
 
-    /// The largest lane.
+    /// Returns the largest lane.
     #[inline(always)]
     pub fn greatest(self) -> f64 {
         let [a, b, c, d] = self.to_array();
@@ -68,26 +68,26 @@ impl F32x8 {
         Self(f32x8::new(lanes))
     }
 
-    /// The eight numbers.
+    /// Returns the eight numbers.
     #[inline(always)]
     pub fn to_array(self) -> [f32; LANES_F32] {
         self.0.to_array()
     }
 
-    /// A bit mask of the lanes that are not above zero.
+    /// Returns a bit mask of the lanes that are not above zero.
     #[inline(always)]
     pub fn not_above_zero(self) -> u32 {
         (1 << LANES_F32) - 1 - self.0.simd_gt(f32x8::ZERO).to_bitmask()
     }
 
-    /// Combines twice four numbers.
+    /// Combines two groups of four numbers.
     #[inline(always)]
     pub fn pair(one: F64x4, other: F64x4) -> Self {
         let ([a, b, c, d], [e, f, g, h]) = (one.to_array(), other.to_array());
         Self(f32x8::new([a, b, c, d, e, f, g, h].map(|x| x as f32)))
     }
 
-    /// The sum over the lanes, always in the same order.
+    /// Returns the sum over the lanes, always in the same order.
     #[inline]
     pub fn sum(self) -> f64 {
         self.0.to_array().map(f64::from).iter().sum()

@@ -4,12 +4,13 @@ use std::collections::VecDeque;
 
 use nalgebra::{DMatrix, DVector};
 
-/// Limit of the number of differences: more add little information.
+/// Largest number of differences that are kept: more add little information.
 const DEPTH: usize = 8;
 /// Part of the mean square of the differences that is added to each square, so that nearly equal differences do not
 /// cancel to rounding.
 const MIN_PART: f64 = 1e-12;
-/// Growth of the residual over the least at which the history is dropped: the map is no longer nearly linear.
+/// Ratio of the residual to the smallest so far at which the history is discarded: the map is no longer nearly
+/// linear.
 const BENT: f64 = 3.0;
 
 /// The search for a fixed point $x$ of a map $g$.
@@ -69,7 +70,7 @@ impl Mixing {
         }
     }
 
-    /// The $\gamma$ of the changes; none where there are none.
+    /// Returns the $\gamma$ of the changes; none where there are none.
     fn parts(&self, left: &DVector<f64>) -> Option<DVector<f64>> {
         let count = self.changes.len();
         let of = |i: usize| &self.changes[i].left;

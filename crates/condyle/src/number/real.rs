@@ -27,33 +27,33 @@ pub trait Number:
     + MulAssign
     + DivAssign
 {
-    /// The same value in every lane.
+    /// Creates a number with the same value in every lane.
     fn splat(value: f64) -> Self;
     /// The number of lanes.
     const COUNT: usize;
-    /// A number from its lanes.
+    /// Returns a number from its lanes.
     fn from_lanes(value: impl FnMut(usize) -> f64) -> Self;
-    /// The value in one lane.
+    /// Returns the value in one lane.
     fn lane(self, lane: usize) -> f64;
 
     /// Square root.
     fn sqrt(self) -> Self;
     /// Magnitude.
     fn abs(self) -> Self;
-    /// The largest integer that is not larger.
+    /// Returns the largest integer that is not larger than `self`.
     fn floor(self) -> Self;
     /// `self` times `factor` plus `addend`, rounded once.
     fn mul_add(self, factor: Self, addend: Self) -> Self;
     /// `self` times `factor` less `subtrahend`, rounded once.
     fn mul_sub(self, factor: Self, subtrahend: Self) -> Self;
-    /// The larger of two.
+    /// Returns the larger of two.
     fn max(self, other: Self) -> Self;
-    /// The smaller of two.
+    /// Returns the smaller of two.
     #[inline(always)]
     fn min(self, other: Self) -> Self {
         -(-self).max(-other)
     }
-    /// The smallest lane.
+    /// Returns the smallest lane.
     fn least(self) -> f64;
     /// `then` where `self` is below zero, `otherwise` elsewhere.
     fn below_zero(self, then: Self, otherwise: Self) -> Self;

@@ -84,7 +84,7 @@ struct Kang {
 }
 
 impl Kang {
-    /// Sum of p |ds| exp(-c p), MPa mm, below and above the pressure at which the factor stops falling.
+    /// Returns the sum of p |ds| exp(-c p), MPa mm, below and above the pressure at which the factor stops falling.
     fn weighed_work_mpa_mm(&self, cycle: &MeanCycle<'_>) -> [f64; 2] {
         let mut work = [0.0; 2];
         let at_most = (-self.decay_per_mpa * self.most_pressure_mpa).exp();

@@ -17,13 +17,13 @@ pub trait WearLaw: Debug + Send + Sync {
 pub struct NodeWear {
     /// Depth along the inward normal, mm; 0 or more, and 0 where nothing slides.
     pub depth_mm: f64,
-    /// Part of it, 0 to 1, outside the pressures and cross-shear to which the law was fitted; none if its source
-    /// gives no such range.
+    /// Part of the depth, 0 to 1, at pressures or cross-shear outside the range to which the law was fitted; none if
+    /// its source gives no such range.
     pub part_outside: Option<f64>,
 }
 
 impl NodeWear {
-    /// The wear by a law whose range is unknown.
+    /// Creates the wear by a law whose range of validity is unknown.
     pub fn of_depth(depth_mm: f64) -> Self {
         Self {
             depth_mm,
@@ -45,7 +45,7 @@ pub struct WearLawKind {
     pub known: Known,
     /// Constants of the law.
     pub parameters: &'static [Parameter],
-    /// Returns the constants of a law whose wear is larger by a factor in every cycle; a calibration uses it.
+    /// Returns the constants with which the wear in every cycle is multiplied by a factor; calibrations use it.
     pub scaled: fn(&[f64], f64) -> Vec<f64>,
     /// Creates the law from the values of its constants, in their order.
     pub make: fn(&[f64]) -> Arc<dyn WearLaw>,
@@ -87,7 +87,7 @@ impl WearLawKind {
         }
     }
 
-    /// Whether its formula or any of its defaults is quoted from memory.
+    /// Returns whether its formula or any of its defaults is quoted from memory.
     pub fn is_approximate(&self) -> bool {
         let mut known = self.parameters.iter().map(|parameter| parameter.known);
         self.known == Known::Approximate || known.any(|known| known == Known::Approximate)

@@ -7,7 +7,7 @@ pub type SharedCycle<'a> = (f64, &'a CycleHistory);
 
 /// The mean cycle of one node: a cycle of every activity, each weighted by its share.
 ///
-/// The principal direction is common to all activities, since the molecules at a place are drawn by all of them.
+/// The principal direction is common to all activities, since all of them orient the molecules at a place.
 #[derive(Clone, Copy, Debug)]
 pub struct MeanCycle<'a> {
     activities: &'a [SharedCycle<'a>],
@@ -26,7 +26,7 @@ pub struct MeanCycle<'a> {
 }
 
 impl<'a> MeanCycle<'a> {
-    /// The mean cycle of node `node`, whose share of the surface is `area_mm2` large.
+    /// Creates the mean cycle of node `node`, whose share of the surface is `area_mm2` large.
     pub fn new(activities: &'a [SharedCycle<'a>], node: usize, area_mm2: f64) -> Self {
         let mut mean = Self {
             activities,

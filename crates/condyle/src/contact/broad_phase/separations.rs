@@ -8,11 +8,11 @@ use crate::{
     spatial::Pose,
 };
 
-/// Rounding of one step in single precision at most, mm: every step subtracts it from the bounds.
+/// Upper bound on the rounding error of one step in single precision, mm. Every step subtracts it from the bounds.
 const ROUNDED_OFF_MM: f64 = 2e-6;
 
-/// Larger separations are stored as this much, mm: numbers of this size are rounded in single precision by less than
-/// [`ROUNDED_OFF_MM`].
+/// Largest separation that is stored, mm; larger ones are reduced to it. Numbers of this size are rounded in single
+/// precision by less than [`ROUNDED_OFF_MM`].
 const FARTHEST_MM: f64 = 16.0;
 
 type Numbers = [f32; LANES_F32];
@@ -23,7 +23,7 @@ pub(crate) struct Separations {
     at: Option<Pose>,
     eights: Vec<Eight>,
     count: usize,
-    /// The number of the wear that the bounds are for.
+    /// The number of the change by wear for which the bounds hold.
     pub worn: u32,
 }
 
@@ -55,7 +55,7 @@ impl FemurStep {
         }
     }
 
-    /// Returns the loss of separation of eight blocks besides that by the motion of their middles, mm.
+    /// Returns the loss of separation of eight blocks in addition to the loss by the motion of their middles, mm.
     #[inline(always)]
     fn lost_mm(&self, places: &BlockPlaces) -> F32x8 {
         let rounded_off_mm = F32x8::splat(ROUNDED_OFF_MM);
@@ -86,8 +86,8 @@ impl Eight {
         radius_mm: [f32::INFINITY; LANES_F32],
     };
 
-    /// Carries the bounds along a motion of the blocks' middles in the femoral frame that may bring them nearer by
-    /// `lost_mm` besides, and returns a bit for each block that may touch after it.
+    /// Updates the bounds for a motion of the blocks' middles in the femoral frame, which may bring them nearer by a
+    /// further `lost_mm`, and returns a bit for each block that may then touch.
     #[inline(always)]
     fn carry(&mut self, motion: &Vector<F32x8>, lost_mm: F32x8) -> u32 {
         // The separation changes by slope . d, and by no more than loss |d| besides. A bound holds within a
@@ -119,8 +119,8 @@ impl Separations {
     /// Carries the bounds to another pose of the femur and to the last wear, and lists the blocks that may touch then,
     /// ascending.
     ///
-    /// A block that may touch by these bounds and is apart by those of another increment takes these over, provided that
-    /// they are for the same wear.
+    /// If a block may touch by its own bound but is apart by the bound of another increment, it takes the latter,
+    /// provided that both hold for the same wear.
     pub fn follow(
         &mut self,
         to: &Pose,
@@ -149,7 +149,7 @@ impl Separations {
                 lost_mm += wear.lost_mm;
             }
             let mut may_touch = bounds.carry(&motion, lost_mm);
-            // Most blocks are apart by their own bounds; the others are worth a second opinion before they are sampled.
+            // Most blocks are apart by their own bounds. For the others, a second bound is cheaper than a sample.
             if let Some((eights, step)) = &neighbour
                 && may_touch != 0
             {
@@ -216,7 +216,7 @@ pub(crate) struct BlockPlaces {
 pub(crate) struct BlockWear {
     /// Motion of their middles, mm.
     pub moved: Vector<F32x8>,
-    /// Loss of separation besides that by the motion, mm.
+    /// Loss of separation in addition to the loss by that motion, mm.
     pub lost_mm: F32x8,
 }
 
@@ -248,7 +248,7 @@ impl BlockPlaces {
 }
 
 impl BlockWear {
-    /// The motion along three axes.
+    /// Returns the motion along three axes.
     #[inline(always)]
     pub fn seen_along(&self, [x, y, z]: &[Vector<F32x8>; 3]) -> Vector<F32x8> {
         let moved = &self.moved;
@@ -280,11 +280,11 @@ fn middle(block: &ShareBlock) -> Vec3 {
     block.centre.map(|lanes| lanes.sum() / LANES as f64)
 }
 
-/// Returns the loss of separation by wear of a block, besides the motion `moved` of its middle, mm.
+/// Returns the loss of a block's separation by wear in addition to the loss by the motion `moved` of its middle, mm.
 ///
-/// Each centre may move otherwise than the middle. The reach of a share changes by no more than half of the change of its
-/// edges. A fifth of that again covers the change of the mean over the share, and the reach that longer edges gain as the
-/// normal turns.
+/// Each centre may move differently from the middle. The reach of a share changes by no more than half of the change
+/// of its edges. A fifth of that again covers the change of the mean over the share, and the reach that longer edges
+/// gain as the normal turns.
 fn lost_mm(before: &ShareBlock, after: &ShareBlock, moved: &Vec3) -> f64 {
     let astray = after.centre - before.centre - moved.map(F64x4::splat);
     let [by_a, by_b] = [after.edge_a - before.edge_a, after.edge_b - before.edge_b];
@@ -303,25 +303,24 @@ const EXTRAPOLATED_MM: f64 = 1e-4;
 
 /// A bound on how far a block of shares is from touching, as a function of how the femur moves on.
 ///
-/// A gap g with gradient G and no second derivative below -h is, a motion d on, at least
-/// g + G . d - h d^2/2. The reach of a share, the overclosure that its highest corner has above its
-/// middle, grows by its half edges times the turn of the normal: K d on the femur, and the femur's own
-/// turn. What the shares of the block have in common is taken for all: the mean of their gradients, for
-/// the motion of their middle.
+/// A gap g with gradient G and no second derivative below -h is, a motion d on, at least g + G . d - h d^2/2. The
+/// reach of a share, the overclosure that its highest corner has above its middle, grows by its half edges times the
+/// turn of the normal: K d on the femur, and the femur's own turn. One bound serves all shares of the block: it uses
+/// the mean of their gradients, for the motion of their middle.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct SeparationBound {
-    /// Gap less reach, and less how much the mean over a share may jump between two arcs, mm.
+    /// Gap less reach, less the largest jump of the mean over a share between two arcs, mm.
     pub clear_mm: f64,
     /// Gradient of the gap by the middle's place in the femoral frame.
     pub slope: Vec3,
     /// The further loss with each millimetre of motion.
     pub loss: f64,
-    /// The motion that all this holds for, mm.
+    /// Length of motion up to which the bound holds, mm.
     pub radius_mm: f64,
 }
 
 impl SeparationBound {
-    /// The bound for shares with a reach of `reach_mm` under a femur sampled as `sample`, whose gaps are
+    /// Creates the bound for shares with a reach of `reach_mm` under a femur sampled as `sample`, whose gaps are
     /// larger than the reach.
     #[inline(always)]
     pub fn new(
@@ -340,8 +339,8 @@ impl SeparationBound {
         let clear_mm = gap_mm - reach_mm - shares.spread_mm2 * F64x4::splat(curvature_jump_per_mm);
         let by_turn = shares.half_mm * max_curvature_per_mm;
         if gap_mm.least() - shares.half_mm > radius_mm {
-            // Where the curvature of one lane is not known, what all may lose is bounded by slopes
-            // alone. A lane whose gap is small is known itself, and its own reach counts.
+            // If the curvature of one lane is unknown, the loss of all lanes is bounded by the slopes alone. A lane
+            // whose gap is small is known itself, and its own reach counts.
             let known_mm = if radius_mm < 0.0 {
                 CurvatureBounds::KNOWN_GAP_MM
             } else {

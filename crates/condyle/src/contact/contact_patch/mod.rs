@@ -137,7 +137,7 @@ impl<'a> ContactPatch<'a> {
 
     /// Returns the nodes in contact at a motion near that of the response.
     ///
-    /// Over the short way from there pressures change to first order, and covered areas stay.
+    /// Over this short motion pressures change to first order, and covered areas stay constant.
     pub fn touched(&self, motion: &RelativeMotion) -> Vec<TouchedNode> {
         let change = FrameChange::to_femur(&self.pose);
         let moved = Twist4::new(&change.twist(&Twist::between(&self.pose, &motion.pose)));

@@ -22,14 +22,14 @@ pub(crate) struct NearCache {
 
 /// Finds the blocks of shares within reach of the femur.
 ///
-/// Invariant: the result depends on the pose alone, but for samples that are extrapolated.
+/// Invariant: the result depends on the pose alone, except for extrapolated samples.
 pub(crate) struct NearBlocks<'a> {
     femur: &'a FemoralSurface,
     pub blocks: Vec<ShareBlock>,
     pub broad_phase: BroadPhase,
     /// Motion up to which a sample is extrapolated, mm.
     reuse_mm: f64,
-    /// Every block's last sample of the femur, and the number of the search at which it was near last.
+    /// The last sample of the femur under every block, and the number of the last search at which the block was near.
     cached: Vec<CachedSample>,
     near_at: Vec<u64>,
     /// The number of the last search: the first is 2, and no block was near at the one before it.
@@ -112,8 +112,8 @@ impl<'a> NearBlocks<'a> {
                 });
             } else {
                 self.broad_phase.touches(block);
-                // Samples are kept only while a block is near: they then follow from the motion, and not from which
-                // blocks the broad phase named.
+                // Samples are kept only while a block is near: they then depend on the motion and not on the
+                // candidates of the broad phase.
                 self.near_at[at] = self.number;
                 if !reuses {
                     self.cached[at] = cached;
@@ -133,7 +133,7 @@ pub(crate) struct CachedSample {
 }
 
 impl CachedSample {
-    /// No sample: farther away than any motion.
+    /// Returns a placeholder for a missing sample, farther away than any motion.
     pub fn nothing() -> Self {
         Self {
             place: Vector::repeat(F64x4::splat(f64::INFINITY)),

@@ -8,19 +8,19 @@ use crate::{
     geometry::Share,
 };
 
-/// Pressures that differ by no more than this part count as equal: the order of their nodes would be a matter of round-off,
-/// and a mirrored knee would have another peak.
+/// Relative difference up to which pressures count as equal. Otherwise round-off would decide the order of their
+/// nodes, and a mirrored knee would have a different peak.
 const EQUAL: f64 = 1e-9;
 
-/// Nodes to which a quadratic is fitted at least: a node inside a surface and those around it are as many; at the rim
-/// farther ones are added.
+/// Smallest number of nodes to which a quadratic is fitted. A node inside a surface and those around it suffice; at
+/// the rim farther nodes are added.
 pub(crate) const MIN_NODES: usize = 7;
 
 /// Returns the highest pressure at or around the nodes in contact, MPa; any region may have it.
 ///
-/// `highest_around` returns that within a node's share. It is called for the nodes with the highest mean of their region,
-/// with the highest pressure so far; a result that is not above it need not be exact. The highest mean over a share is a
-/// lower bound.
+/// `highest_around` returns the highest pressure within a node's share. It is called for the nodes with the highest
+/// mean of their region, with the highest pressure so far; a result that is not above it need not be exact. The
+/// highest mean over a share is a lower bound.
 pub(crate) fn highest_mpa(
     touched: &[TouchedNode],
     highest_around: impl Fn(u32, f64) -> f64,
@@ -186,7 +186,7 @@ mod tests {
     use super::*;
     use crate::geometry::{ArticulatingSurface, FacesAround};
 
-    /// A skewed grid of 5 by 5 nodes in a plane that lies askew.
+    /// Returns a skewed grid of 5 by 5 nodes in a plane that lies askew.
     fn skewed() -> ArticulatingSurface {
         let (a, b) = (Vec3::new(0.9, 0.2, 0.1), Vec3::new(0.3, -0.1, 0.7));
         let nodes = (0..5).flat_map(|i| (0..5).map(move |k| a * f64::from(i) + b * f64::from(k)));

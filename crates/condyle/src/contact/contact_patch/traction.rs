@@ -109,8 +109,8 @@ type Six<T> = [T; 6];
 
 /// The tangent of many shares, summed in lanes, column by column.
 ///
-/// It is summed in single precision, eight shares at a time: a Newton correction that is right to six digits leaves a
-/// millionth of the residual, and single precision halves the cost of the most expensive part of the sum.
+/// It is summed in single precision, eight shares at a time: a Newton correction that is accurate to six digits
+/// leaves a millionth of the residual, and single precision halves the cost of the most expensive part of the sum.
 pub(crate) struct TangentSum {
     by_pose: [Six<F32x8>; 6],
     by_twist: [Six<F32x8>; 6],
@@ -179,7 +179,7 @@ impl TangentSum {
     /// q1 = 1 - mu c (1 - s^2)/w, q2 = 1 - mu c/w;
     ///
     /// and a change of twist tau: dW = L mu/w ((1 - s^2) T1 T1' + T2 T2') tau.
-    // Inlined, the entries of the sum would go to and fro between two places in memory at every call.
+    // If this function were inlined, every call would move the entries of the sum between two places in memory.
     #[inline(never)]
     pub fn add(
         &mut self,

@@ -6,14 +6,14 @@ use super::{
 };
 use crate::number::{F64x4, Number};
 
-/// The number of changes side by side.
+/// Number of changes that are stored side by side.
 const SIDES: usize = ROWS;
-/// With more than one change to so many nodes the matrix is factored again: that takes n^3/6 products, and each change
-/// n^2/2 and more.
+/// Nodes per change at which the matrix is factored again: factoring takes n^3/6 products, and each change at least
+/// n^2/2.
 const NODES_A_CHANGE: usize = 4;
-/// Bounds on the number of changes from which on it is.
+/// Bounds on the number of changes beyond which the matrix is factored again.
 const MAX_CHANGES: [usize; 2] = [32, 320];
-/// The row of a node that has none.
+/// The row number that marks a node without a row.
 const NONE: u32 = u32::MAX;
 
 /// The loads on the nodes in contact, from their overclosures.
@@ -169,7 +169,7 @@ impl ChangedFactor {
     /// Factors the matrix of other changes to L D L', with D in place of the unit diagonal of L. The rows that it has in common
     /// with the matrix before stay.
     fn change(&mut self, changes: Vec<usize>, compliance: &NearMatrix) {
-        // From one trial set to the next few changes differ: rows of L before the first of these are right.
+        // Consecutive trial sets differ in few changes: rows of L before the first difference stay valid.
         let pairs = self.changes.iter().zip(&changes);
         let same = pairs.take_while(|(before, now)| before == now).count();
         self.changes = changes;

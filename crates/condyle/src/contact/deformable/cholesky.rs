@@ -4,7 +4,7 @@ use crate::number::{F64x4, LANES, Number};
 
 pub(crate) const ROWS: usize = 2 * LANES;
 
-/// Panels that are eliminated together: those before are then read from memory once for all of them.
+/// Number of panels that are eliminated together: earlier panels are then read from memory once for all of them.
 const TOGETHER: usize = 4;
 
 /// One number for each of the rows that go side by side, or for each right-hand side.
@@ -16,8 +16,9 @@ pub(crate) type Eight = [F64x4; 2];
 /// vectors. A matrix whose order is no multiple of eight is padded with the identity. The same matrix gives the same bytes
 /// on any machine with fused products.
 ///
-/// Written here and not taken from a library, since small matrices are factored and solved some thousand times a second,
-/// right-hand sides come in eights (a load and its six derivatives), and the order of all operations is fixed.
+/// It is not taken from a library, since small matrices are factored and solved about a thousand times a second,
+/// right-hand sides come in groups of eight (a load and its six derivatives), and the order of all operations is
+/// fixed.
 #[derive(Default)]
 pub(crate) struct Cholesky {
     order: usize,
@@ -203,7 +204,7 @@ impl Cholesky {
 
     /// Solves L' x = b for one right-hand side, in place.
     pub fn backward_one(&self, side: &mut [f64]) {
-        // One side has no sides next to it to fill the lanes: these hold partial sums over the rows below instead.
+        // A single right-hand side does not fill the lanes; they hold partial sums over the rows below instead.
         let mut taken = vec![zero(); side.len()];
         for panel in (0..side.len() / ROWS).rev() {
             let first = ROWS * panel;

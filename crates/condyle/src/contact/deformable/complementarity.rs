@@ -7,11 +7,11 @@ use super::{
 };
 use crate::number::{F64x4, LANES, Number};
 
-/// A load may pull by this much, N: round-off of loads of some newtons.
+/// Largest tensile load that counts as round-off, N, where loads are a few newtons.
 const LOAD_TOLERANCE_N: f64 = 1e-9;
 /// Block exchanges without progress after which single exchanges follow.
 const MAX_TRIES: u32 = 10;
-/// Rounds after which the rest is round-off: ten times the most that was ever seen.
+/// Number of rounds after which the remaining error is round-off: ten times the largest number observed.
 const MAX_ROUNDS: u32 = 500;
 
 /// The set of nodes in contact, and the factor of their compliance.
@@ -39,7 +39,7 @@ pub(crate) struct ContactSet {
     /// The load of every node of the trial set; and of the solution, with the derivatives by six motions.
     loads_n: Vec<f64>,
     loads: Vec<Eight>,
-    /// The former by the panels of their nodes.
+    /// Those loads by the panels of their nodes.
     by_panel: Vec<(usize, Eight)>,
     clearances: Clearances,
 }
@@ -63,7 +63,7 @@ impl ContactSet {
     /// Finds the loads, and returns the place of each node in contact among the candidates with its load and the load's
     /// derivatives by six motions.
     ///
-    /// Candidates come in an order that is always the same.
+    /// The candidates must come in a fixed order.
     pub fn solve(
         &mut self,
         candidates: &[Candidate],
@@ -97,7 +97,7 @@ impl ContactSet {
                 self.is_in_contact[place] = !self.is_in_contact[place];
             }
         }
-        // The derivatives are needed of the solution only.
+        // Only the solution needs derivatives.
         self.factor
             .loads_by_motion(&self.nodes, &self.overclosures, &mut self.loads);
         for &node in &self.nodes {
@@ -213,7 +213,7 @@ impl Candidate {
     }
 }
 
-/// A gap may be below zero by this much, mm: a millionth of the roughness of a surface.
+/// Largest overlap that counts as no overlap, mm: a millionth of the roughness of a surface.
 const GAP_TOLERANCE_MM: f64 = 1e-10;
 
 /// A node is likely to overlap if its gap would be less than this, mm, with the deflection that was computed last.

@@ -91,7 +91,7 @@ impl Compliance {
         let all = self.source.tiles();
         // Between the two locks another thread may have added some of them.
         tiles.retain(|&tile| !near.knows(all[tile][0]));
-        // Room for all at once: rows that grow by themselves take twice the memory.
+        // Room for all is reserved at once: rows that grow step by step take twice the memory.
         let new_rows = tiles
             .iter()
             .map(|&tile| all[tile].len().next_multiple_of(ROWS));
@@ -252,7 +252,7 @@ impl NearMatrix {
         mut between: impl FnMut(usize, usize) -> Vec<f64>,
     ) {
         let first = self.rows.len();
-        // Whole panels: rows beyond the last node are zero and never asked for.
+        // Whole panels: rows beyond the last node are zero and never read.
         let rows = first + tiles[new].len().next_multiple_of(ROWS);
         for (row, &node) in (first..).zip(&tiles[new]) {
             self.row_of[node as usize] = row as u32;
@@ -366,7 +366,7 @@ pub(crate) fn along_surface(node: u32) -> [u32; 2] {
     [2 * node, 2 * node + 1]
 }
 
-/// Divides nodes into tiles of so many at most, halving the largest extent until they are small enough.
+/// Divides nodes into tiles of at most `most` nodes, halving the largest extent until they are small enough.
 pub(crate) fn tiles(positions: &[Vec3], most: usize) -> Vec<Vec<u32>> {
     let mut open = vec![(0..positions.len() as u32).collect::<Vec<u32>>()];
     let mut tiles = Vec::new();

@@ -34,9 +34,9 @@ const MAX_BULGE_MM: f64 = 0.1;
 
 /// The contact of a femur with an elastic insert as it is now.
 ///
-/// Invariant: a response depends on the motion alone, but for samples that are extrapolated and for the tolerance of the
+/// Invariant: a response depends on the motion alone, except for extrapolated samples and the tolerance of the
 /// complementarity. The tangent is the derivative of the response as long as no node comes into contact or leaves it,
-/// right to six digits.
+/// accurate to six digits.
 pub(crate) struct DeformableContact<'a> {
     bodies: Bodies<'a>,
     friction: Coulomb,
@@ -51,7 +51,7 @@ pub(crate) struct DeformableContact<'a> {
     /// The inward normals of the nodes of every block; for blocks near the femur the change of the gaps along them.
     inward: Vec<Vector<F64x4>>,
     along: Vec<AlongNormal>,
-    /// Fields of the state that are not of a history, for the next contact.
+    /// Fields of the state that belong to no history, kept for the next contact.
     fields: Vec<StateField>,
     /// The loads of the last response, and the parts of the state that depend on the load history.
     node_loads: Vec<NodeLoad>,
@@ -62,8 +62,9 @@ pub(crate) struct DeformableContact<'a> {
 type Loads4 = [[f64; LANES]; 7];
 
 impl<'a> DeformableContact<'a> {
-    /// Creates the contact of bodies, faster with the cache of another. Histories resume from their own part of the state;
-    /// `memory` holds the other fields, which are passed on. With a history of friction, `settings` have none.
+    /// Creates the contact of bodies; the cache of another contact makes it faster. Histories resume from their own
+    /// part of the state; `memory` holds the other fields, which are passed on. With a history of friction,
+    /// `settings` have none.
     pub fn new(
         memory: ContactMemory,
         bodies: Bodies<'a>,
@@ -141,7 +142,7 @@ impl<'a> DeformableContact<'a> {
                 numbers[lane] = get(load, at);
             }
             let load_n = &mut loads[number][0][lane];
-            // A load may pull by round-off.
+            // By round-off a load may be slightly tensile.
             *load_n = load_n.max(0.0);
             self.node_loads.push((self.candidates[place].node, *load_n));
         }

@@ -1,7 +1,7 @@
 //! The part of a node's share that is in contact, and the peak pressure, both from the pressures at the nodes.
 //!
-//! Under smooth bodies the square of the pressure is smooth up to the edge of contact (in Hertz's contact a quadratic), and
-//! the pressure itself is not. So both are found from the square.
+//! For smooth bodies the square of the pressure is smooth up to the edge of contact (in Hertz's contact a quadratic),
+//! and the pressure itself is not. So both are found from the square.
 
 use crate::{
     Vec3,
@@ -13,9 +13,9 @@ use crate::{
     geometry::{ArticulatingSurface, FacesAround},
 };
 
-/// The reach of the contact beyond a node, in steps between nodes: [`STEPS_BY_RATIO`] times the ratio of its pressure to
-/// that of the next node inside, less [`STEPS_LESS`]. Fitted: with these the radius of a ball's contact errs by 3 % at most
-/// on hexahedra of half of that radius, and by 1 % on those of a fifth.
+/// The reach of the contact beyond a node, in steps between nodes: [`STEPS_BY_RATIO`] times the ratio of its pressure
+/// to that of the next node inside, less [`STEPS_LESS`]. The values are fitted: the contact radius of a ball has an
+/// error of at most 3 % on hexahedra of half that radius, and 1 % on hexahedra of a fifth of it.
 const STEPS_BY_RATIO: f64 = 2.3;
 const STEPS_LESS: f64 = 0.77;
 
@@ -56,7 +56,7 @@ impl<'a> NodePressures<'a> {
             let next = faces.flat_map(|&[next, _, before]| [next, before]);
             next.filter(|&other| self.pressure2[other as usize] == 0.0)
         };
-        // All around most nodes are in contact, too.
+        // For most nodes, all nodes around them are in contact, too.
         let at_edge = outside().next().and_then(|_| self.slope(node));
         let Some(slope) = at_edge else {
             return 1.0;

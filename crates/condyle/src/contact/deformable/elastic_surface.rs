@@ -24,14 +24,14 @@ use crate::{
     geometry::{Insert, bounds},
 };
 
-/// Nodes of a tile at most: neighbouring loads use the same part of the factor and are solved together.
+/// Largest number of nodes in a tile: neighbouring loads use the same part of the factor and are solved together.
 const TILE_NODES: usize = 48;
 
 /// The number of freedoms in the half-solution of a load, over the root of the number of all: those on the cuts around the
 /// load, through a plate of three layers of nodes. Used for estimates of memory only.
 const FELT_PER_ROOT: f64 = 6.0;
 
-/// The articulating surface of an elastic insert, held at its backside or at the floor of that.
+/// The articulating surface of an elastic insert, held at its backside or at the flat part of its backside.
 ///
 /// The stiffness is factored once. Everything else is computed when it is first needed, and kept.
 pub(crate) struct ElasticSurface {
@@ -48,7 +48,7 @@ pub(crate) struct ElasticSurface {
     tangential: OnceLock<Arc<Compliance>>,
     /// The influence of loads inside the insert, if it yields.
     influence: OnceLock<Influence>,
-    /// The flat part of the backside, and whether the insert rests on that; else the whole backside is bonded.
+    /// The flat part of the backside, and whether the insert rests on it; otherwise the whole backside is bonded.
     floor: Floor,
     rests: bool,
     /// The tray, if the insert rests on it, and the spacing of its points, mm.
@@ -68,7 +68,7 @@ impl ElasticSurface {
     /// part of its backside; walls and recesses are free.
     ///
     /// # Errors
-    /// A material or a mesh that is no elastic solid.
+    /// The material or the mesh does not define an elastic solid.
     pub fn new(
         insert: &Insert,
         mesh_nodes: &[Vec3],
@@ -136,7 +136,7 @@ impl ElasticSurface {
         Some(self.normal.add_to(unused))
     }
 
-    /// Returns the tray with points at some spacing, which is kept while the spacing stays.
+    /// Returns the tray with points at the given spacing; it is kept until the spacing changes.
     pub fn tray(&self, spacing_mm: f64) -> Arc<Tray> {
         let mut tray = self.tray.lock().unwrap_or_else(PoisonError::into_inner);
         if let Some((known_mm, known)) = &*tray

@@ -24,10 +24,11 @@ use crate::{
 
 /// Coulomb friction with stick and slip on an elastic surface.
 ///
-/// A node under the normal load F carries a load T along the surface, |T| <= mu F. While an increment moves the femur's
-/// material past it by D, the surface moves along itself by the change of C T, with the compliance C along it; D less that
-/// is slip. Where there is slip, T has its limit and the direction of the slip. So T depends on the loads at the start of
-/// the increment. The loads of an increment are a trial state, committed once a step is accepted.
+/// A node under the normal load F carries a load T along the surface, |T| <= mu F. While an increment moves the
+/// femur's material past it by D, the surface moves along itself by the change of C T, with the compliance C along
+/// it; D less this motion is the slip. Where there is slip, T has its limit and the direction of the slip. So T
+/// depends on the loads at the start of the increment. The loads of an increment are a trial state, committed once a
+/// step is accepted.
 ///
 /// Normal and tangential loads are found one after the other: the displacement along the normal by tangential loads, and
 /// the reverse, are neglected.
@@ -49,7 +50,7 @@ pub(crate) struct ElasticFriction<'a> {
     contact: Vec<ContactNode>,
     loaded_nodes: Vec<u32>,
     loads: StickSlip,
-    /// The derivatives of those loads by a motion of the femur in its frame, once the tangent was asked for.
+    /// The derivatives of those loads by a motion of the femur in its frame, once the tangent was requested.
     by_motion: RefCell<Vec<[Eight; 2]>>,
     /// The loads of every node of the surface, and whether it sticks.
     loads_n: Vec<Pair>,
@@ -141,7 +142,7 @@ impl<'a> ElasticFriction<'a> {
         loads
     }
 
-    /// Returns the unit loads whose compliance is needed.
+    /// Returns the unit loads for which the compliance is needed.
     fn asked(&self) -> impl Iterator<Item = u32> {
         let contact = self.contact.iter().map(|node| node.node);
         let held = self.start.loads.iter().chain(&self.last_end);
@@ -246,8 +247,8 @@ impl LoadHistory for ElasticFriction<'_> {
         Some(tangent)
     }
 
-    /// The accepted motion differs slightly from that of the last response. The loads follow by their derivatives if the
-    /// tangent was asked for there; otherwise they are solved again.
+    /// The accepted motion differs slightly from that of the last response. The loads follow by their derivatives if
+    /// the tangent was requested there; otherwise they are solved again.
     fn accept(&mut self, motion: &RelativeMotion, patch: &ContactPatch<'_>) {
         let (from, pose) = (&patch.pose, &motion.pose);
         let moved = FrameChange::to_femur(from).twist(&Twist::between(from, pose));

@@ -19,8 +19,8 @@ use super::complementarity::Candidate;
 /// A load on a node of the surface along the inward normal, N.
 pub(crate) type NodeLoad = (u32, f64);
 
-/// Loads and histories agree once they move the surface by no more than this, mm: some 1e-5 of its deflection under load,
-/// and far below what changes a wear depth. A smaller value only costs turns.
+/// Loads and histories agree once they move the surface by no more than this, mm: about 1e-5 of its deflection under
+/// load, far too little to change a wear depth. A smaller value only adds iterations.
 pub(crate) const SETTLED_MM: f64 = 1e-5;
 
 /// A part of the insert's state that depends on the load history: plastic strain, friction that sticks, the position of
@@ -60,7 +60,7 @@ pub(crate) trait LoadHistory {
     /// Updates the trial state under the loads of the last response, and returns how far that moves the surface, mm.
     ///
     /// # Errors
-    /// A load that the insert does not bear.
+    /// The insert cannot bear the load.
     fn settle(&mut self, _loads: &SurfaceLoads<'_>) -> Result<f64, NotBorne> {
         Ok(0.0)
     }

@@ -9,7 +9,8 @@ use super::{
 
 pub(crate) type Pair = [f64; 2];
 
-/// The loads are found once no sweep would change one of them by more than this, N: some 1e-8 of the loads in contact.
+/// The loads are found once no sweep would change one of them by more than this, N: about 1e-8 of the loads in
+/// contact.
 const FOUND_N: f64 = 1e-7;
 /// A node slides if its load is at least this part of its limit; the rest is rounding.
 const AT_LIMIT: f64 = 1.0 - 1e-9;
@@ -42,7 +43,7 @@ const MAX_STEPS: u32 = 500;
 /// on the circles of their limits.
 #[derive(Default)]
 pub(crate) struct StickSlip {
-    /// The nodes, in an order that is always the same; and each with its place in that order, ascending.
+    /// The nodes in a fixed order, and each with its place in that order, ascending.
     nodes: Vec<Searched>,
     places: Vec<(u32, usize)>,
     /// The loads by the panels of the compliance.
@@ -56,7 +57,7 @@ pub(crate) struct FrictionNode {
     pub limit_n: f64,
     /// The motion of the femur past it since it carried no load, b, mm.
     pub reach_mm: Pair,
-    /// The load, N; at first that with which the search starts.
+    /// The load, N; initially the start value of the search.
     pub load_n: Pair,
 }
 
@@ -73,7 +74,7 @@ struct Searched {
 }
 
 impl Searched {
-    /// Returns the load that is better for its slip while the others stay, and may exceed the limit.
+    /// Returns the improved load for its slip with the other loads fixed; it may exceed the limit.
     fn unlimited_n(&self) -> Pair {
         let (load_n, slip_mm) = (self.own.load_n, self.slip_mm);
         [0, 1].map(|k| load_n[k] + self.stiffness_n_per_mm * slip_mm[k])
@@ -83,13 +84,13 @@ impl Searched {
         within(self.unlimited_n(), self.own.limit_n)
     }
 
-    /// Returns the change to a better load, N.
+    /// Returns the change to the improved load, N.
     fn change_n(&self) -> Pair {
         let better_n = self.better_n();
         [0, 1].map(|k| better_n[k] - self.own.load_n[k])
     }
 
-    /// Returns whether it counts as sliding: a better load for it would exceed its limit.
+    /// Returns whether it counts as sliding: its improved load would exceed its limit.
     fn slides(&self) -> bool {
         length(self.unlimited_n()) > self.own.limit_n
     }
@@ -109,11 +110,11 @@ struct Freedom {
 }
 
 impl StickSlip {
-    /// Solves for the loads on nodes, given in an order that is always the same.
+    /// Solves for the loads on nodes, given in a fixed order.
     pub fn solve(&mut self, nodes: &[FrictionNode], compliance: &NearMatrix) {
         self.start(nodes, compliance);
         self.approach(compliance);
-        // Sliding loads get their limit to the last digit.
+        // Sliding loads are set exactly to their limits.
         for place in 0..self.nodes.len() {
             self.load(place, self.nodes[place].better_n());
         }
@@ -271,8 +272,8 @@ impl StickSlip {
         }
     }
 
-    /// Puts better loads on the nodes whose loads are far off, such as those that have just come into contact, and returns
-    /// whether there are any.
+    /// Improves the loads of nodes that are far from the solution, such as nodes that have just come into contact,
+    /// and returns whether there are any.
     fn update_far_nodes(&mut self, compliance: &NearMatrix) -> bool {
         let is_far = |place: &usize| {
             let node = &self.nodes[*place];
@@ -297,7 +298,7 @@ impl StickSlip {
         !far.is_empty()
     }
 
-    /// Puts a better load on each node in turn.
+    /// Improves the load of each node in turn.
     fn sweep(&mut self, compliance: &NearMatrix) {
         for place in 0..self.nodes.len() {
             self.nodes[place].slip_mm = self.slip_mm(place, compliance);
@@ -305,7 +306,7 @@ impl StickSlip {
         }
     }
 
-    /// Takes a Newton step. Sliding loads are put to their limits first.
+    /// Takes a Newton step, after setting sliding loads to their limits.
     fn newton_step(&mut self, compliance: &NearMatrix) {
         let freedoms = self.freedoms();
         let slides: Vec<bool> = self.nodes.iter().map(Searched::slides).collect();
@@ -411,8 +412,8 @@ impl StickSlip {
         freedoms
     }
 
-    /// Factors the compliance between the freedoms. `visit` receives of each freedom its line: the displacements of its node
-    /// along it by every load of the panels.
+    /// Factors the compliance between the freedoms. `visit` receives the line of each freedom: the displacements of
+    /// its node along it by every load of the panels.
     fn factor(
         &self,
         freedoms: &[Freedom],
@@ -460,7 +461,7 @@ pub(crate) struct ByMotion {
     pub limit_n: Eight,
 }
 
-/// Puts a sliding load to its limit, and cuts any other to it.
+/// Scales a sliding load to its limit, and any other load only if it exceeds its limit.
 fn admissible(load_n: Pair, limit_n: f64, slides: bool) -> Pair {
     if slides {
         to_length(load_n, limit_n)

@@ -2,15 +2,15 @@
 
 use crate::number::Number;
 
-/// Edge slopes are bounded from below, smoothly, by this much, mm: it keeps the closed form away from 0/0, and widens the
-/// edge of contact by a thousandth of a millimetre.
+/// Smooth lower bound on edge slopes, mm. It keeps the closed form away from 0/0, and widens the edge of contact by a
+/// thousandth of a millimetre.
 const MIN_SLOPE_MM: f64 = 1e-3;
 
 /// The edge slopes of a share: the rise of the overclosure along each of its edges.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct EdgeSlopes<T> {
     signed_mm: [T; 2],
-    /// Without sign, and never zero.
+    /// Magnitudes of the slopes, never zero.
     size_mm: [T; 2],
 }
 

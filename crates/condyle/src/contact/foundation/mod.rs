@@ -36,8 +36,8 @@ use peak::PeakSearch;
 ///
 /// $$ \mathbf f = p A \left( \mathbf n + \mu \frac{\mathbf v_t}{\sqrt{v_t^2 + v_0^2}} \right). $$
 ///
-/// Shares at the edge of contact count with the part of them that is in contact. Limits: neighbours do not
-/// interact, so a foundation does not match Hertz, and edge loading is over-estimated (Halloran 2005).
+/// A share at the edge of contact counts only with its part in contact. Limits: neighbours do not interact, so a
+/// foundation does not match Hertz, and edge loading is over-estimated (Halloran 2005).
 #[derive(Clone, Debug, PartialEq)]
 pub struct Foundation {
     /// Pressure from overclosure.
@@ -113,9 +113,9 @@ impl ContactLaw for Foundation {
 
 /// The contact of a femur with an insert as it is now, by a [`Foundation`].
 ///
-/// Invariant: a response depends on the motion alone, but for samples that are extrapolated
+/// Invariant: a response depends on the motion alone, except for extrapolated samples
 /// ([`Foundation::sample_reuse_mm`]), which change the force by less than a hundred-thousandth. The tangent is the
-/// derivative of the response, summed in single precision: right to six digits.
+/// derivative of the response, summed in single precision: accurate to six digits.
 struct FoundationContact<'a> {
     law: &'a Foundation,
     bodies: Bodies<'a>,

@@ -16,11 +16,12 @@ use crate::{
 /// such as that of the thickness at the rim, and its values between the nodes are meaningless.
 const MAX_MISSED: f64 = 0.3;
 
-/// A fit over the edge of contact is replaced if it misses a mean around the top by more than this part of its rise there:
-/// it is then bent otherwise than the surface.
+/// A fit over the edge of contact is replaced if it misses a mean around the top by more than this part of its rise
+/// there: it then curves differently from the surface.
 const MISSED_OF_RISE: f64 = 0.1;
 
-/// At an edge those nodes on one side of it are to determine a quadratic: twice as many as in the interior are searched.
+/// At an edge, the nodes on one side of it must determine a quadratic; twice as many nodes as in the interior are
+/// searched.
 const NODES_ONE_SIDED: usize = 2 * MIN_NODES;
 
 /// The search for the highest pressure.

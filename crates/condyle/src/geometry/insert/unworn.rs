@@ -34,7 +34,7 @@ pub enum InsertError {
         "hexahedron {hex} of the insert is inverted or flat (scaled Jacobian {quality:.3}); repair the mesh or use a larger edge"
     )]
     BadElement { hex: usize, quality: f64 },
-    /// A node with no insert below it.
+    /// A node of the articulating surface with no backside below it.
     #[error(
         "the backside lies nowhere below the articulating surface at ({:.2}, {:.2}, {:.2}) mm; check which surface is the backside",
         place_mm.x, place_mm.y, place_mm.z
@@ -106,15 +106,15 @@ impl UnwornInsert {
         })
     }
 
-    /// Positions of the surface's nodes, mm.
+    /// Returns the positions of the surface's nodes, mm.
     pub fn surface_positions(&self) -> impl Iterator<Item = Vec3> {
         let nodes = self.surface_nodes.iter();
         nodes.map(|&node| self.nodes[node as usize])
     }
 }
 
-/// The direction of the boundary edge that leads down from each node of the articulating surface, if it has exactly
-/// one.
+/// Returns the direction of the boundary edge that leads down from each node of the articulating surface, if it has
+/// exactly one.
 fn walls(mesh: &HexMesh, boundary: &[[u32; 4]], surface_nodes: &[u32]) -> Vec<Option<Vec3>> {
     let number = |node: u32| surface_nodes.binary_search(&node).ok();
     let mut below: Vec<Vec<u32>> = vec![Vec::new(); surface_nodes.len()];
@@ -140,7 +140,7 @@ fn walls(mesh: &HexMesh, boundary: &[[u32; 4]], surface_nodes: &[u32]) -> Vec<Op
     below.into_iter().enumerate().map(direction).collect()
 }
 
-/// The nodes of quads, ascending, and the quads in numbers of these nodes.
+/// Returns the nodes of quads, ascending, and the quads in numbers of these nodes.
 fn numbered(quads: &[[u32; 4]]) -> (Vec<u32>, Vec<[u32; 4]>) {
     let mut nodes: Vec<u32> = quads.iter().flatten().copied().collect();
     nodes.sort_unstable();
@@ -161,7 +161,7 @@ struct Backside {
     bins: Vec<Vec<u32>>,
 }
 
-/// Distance from each node of a surface, against its normal, to the backside, mm.
+/// Returns the distance from each node of a surface, against its normal, to the backside, mm.
 ///
 /// Where a normal misses the backside (at the rim), the distance straight down counts, and where
 /// that misses too, the nearest vertex of the backside.
@@ -213,7 +213,7 @@ impl Backside {
         sorted
     }
 
-    /// Distance from a point along a unit direction to the first triangle hit.
+    /// Returns the distance from a point along a unit direction to the first triangle hit.
     fn distance_along(&self, from: &Vec3, direction: &Vec3) -> Option<f64> {
         if direction.y >= 0.0 {
             return None;

@@ -52,7 +52,7 @@ impl CellBounds {
         concavity_per_mm: 0.0,
     };
 
-    /// The bounds of no point.
+    /// The bounds of an empty set of points.
     const NONE: Self = Self {
         max_curvature_per_mm: 0.0,
         concavity_per_mm: 0.0,
@@ -65,7 +65,7 @@ impl CellBounds {
         }
     }
 
-    /// The bounds at one point, from the field's slope and curvature K there.
+    /// Creates the bounds at one point, from the field's slope and curvature K there.
     fn at(slope: f64, [xx, yy, zz, xy, xz, yz]: [f64; 6]) -> Self {
         let trace = xx + yy + zz;
         let square = xx * xx + yy * yy + zz * zz + 2.0 * (xy * xy + xz * xz + yz * yz);
@@ -89,7 +89,7 @@ fn rounded_up(value: f64) -> f32 {
 }
 
 impl CurvatureGrid {
-    /// The bounds of a field.
+    /// Creates the bounds of a field.
     pub fn new(gap: &GapSpline) -> Self {
         let margin_mm = HALF_DIAGONAL * SPACING_MM;
         let near = NEAR_MM.start - margin_mm..NEAR_MM.end + margin_mm;
@@ -111,7 +111,7 @@ impl CurvatureGrid {
         }
     }
 
-    /// The bounds around any point of the cell around a grid node.
+    /// Returns the bounds around any point of the cell around a grid node.
     #[inline]
     pub fn around(&self, node: usize) -> CurvatureBounds {
         let cell = self.cells[node];
@@ -127,7 +127,7 @@ impl CurvatureGrid {
     }
 }
 
-/// The bounds of every known cell joined with those of the 26 cells around it.
+/// Returns the bounds of every known cell joined with those of the 26 cells around it.
 fn with_neighbours(
     cells: &[CellBounds],
     known: &[usize],
@@ -148,7 +148,7 @@ fn with_neighbours(
     joined
 }
 
-/// The bounds at eight points of a cell, without those away from contact.
+/// Returns the bounds at eight points of a cell, without those away from contact.
 fn in_cell(gap: &GapSpline, middle: &Vec3) -> CellBounds {
     const OFFSET_MM: f64 = SPACING_MM / 4.0;
     let mut all = CellBounds::NONE;

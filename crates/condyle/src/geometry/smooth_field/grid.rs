@@ -23,7 +23,7 @@ pub struct NodeGrid {
 }
 
 impl NodeGrid {
-    /// The grid around a surface from `low` to `high`: two nodes beyond the band.
+    /// Creates the grid around a surface from `low` to `high`: two nodes beyond the band.
     pub fn around((low, high): (Vec3, Vec3)) -> Self {
         let margin = Vec3::repeat(BAND_MM + 2.0 * SPACING_MM);
         let origin = low - margin;
@@ -41,19 +41,19 @@ impl NodeGrid {
         [1, self.counts[0], self.counts[0] * self.counts[1]]
     }
 
-    /// Number of nodes; saturates.
+    /// Returns the number of nodes; saturates.
     pub fn node_count(&self) -> usize {
         let counts = self.counts.iter();
         counts.fold(1, |product: usize, &count| product.saturating_mul(count))
     }
 
-    /// Position of node (i, j, k), mm.
+    /// Returns the position of node (i, j, k), mm.
     #[inline]
     pub fn position(&self, i: usize, j: usize, k: usize) -> Vec3 {
         self.origin + Vec3::new(i as f64, j as f64, k as f64) * SPACING_MM
     }
 
-    /// Numbers and positions of the nodes with neighbours on all sides.
+    /// Returns the numbers and positions of the nodes with neighbours on all sides.
     pub fn inner_nodes(&self) -> impl Iterator<Item = (usize, Vec3)> {
         let [nx, ny, nz] = self.counts;
         let [sx, sy, sz] = self.strides();
@@ -63,7 +63,7 @@ impl NodeGrid {
         })
     }
 
-    /// First node and one past the last node along each axis within the band of a triangle.
+    /// Returns the first node and one past the last node along each axis within the band of a triangle.
     pub fn band_around(&self, corners: [Vec3; 3]) -> [[usize; 3]; 2] {
         let [a, b, c] = corners.map(|corner| (corner - self.origin) / SPACING_MM);
         let (low, high) = (a.inf(&b).inf(&c), a.sup(&b).sup(&c));
@@ -73,7 +73,7 @@ impl NodeGrid {
         [[0, 1, 2].map(first), [0, 1, 2].map(end)]
     }
 
-    /// Largest distance of the grid from the frame's origin, mm.
+    /// Returns the largest distance of the grid from the frame's origin, mm.
     pub fn reach_mm(&self) -> f64 {
         let size = Vec3::from(self.counts.map(|count| count as f64)) * SPACING_MM;
         self.origin.abs().sup(&(self.origin + size).abs()).norm()
@@ -83,10 +83,10 @@ impl NodeGrid {
 /// Marker of nodes beyond the band until their bound is computed, mm: no gap is as large.
 pub const BEYOND_BAND_MM: f64 = 1e3;
 
-/// The gap at every node of a grid within the band, [`BEYOND_BAND_MM`] elsewhere.
+/// Returns the gap at every node of a grid within the band, [`BEYOND_BAND_MM`] elsewhere.
 ///
-/// Each of `threads` fills its own layers, and no number depends on the thread that computed it. With one thread,
-/// the caller's does the work.
+/// Each of `threads` fills its own layers, and no number depends on the thread that computed it. With one thread, the
+/// thread of the caller does the work.
 pub fn gaps_at_nodes(grid: &NodeGrid, mesh: &CurvedMesh<'_>, threads: usize) -> Vec<f64> {
     let mut gaps = vec![BEYOND_BAND_MM; grid.node_count()];
     if threads <= 1 {
@@ -116,7 +116,7 @@ fn fill_layers(grid: &NodeGrid, mesh: &CurvedMesh<'_>, first_layer: usize, gaps:
     }
 }
 
-/// The triangle nearest to each of `count` nodes from `first_layer` on; none beyond the band.
+/// Returns the triangle nearest to each of `count` nodes from `first_layer` on; none beyond the band.
 fn nearest_triangles(
     grid: &NodeGrid,
     mesh: &CurvedMesh<'_>,
@@ -180,7 +180,7 @@ pub fn bound_far_gaps(grid: &NodeGrid, gaps: &mut [f64], is_closed: bool) -> Vec
     is_far
 }
 
-/// A node's bound, or the bound from its neighbour's gap if that is nearer.
+/// Returns a node's bound, or the bound from its neighbour's gap if that is nearer.
 fn nearer(own: f64, neighbours: f64, is_closed: bool) -> f64 {
     let from_there = neighbours.abs() + SPACING_MM * STRAIGHT_PER_PATH;
     if from_there >= own.abs() {
@@ -190,8 +190,7 @@ fn nearer(own: f64, neighbours: f64, is_closed: bool) -> f64 {
     sign * from_there
 }
 
-/// The coefficients of the quadratic B-spline through the gaps at the nodes, without fourth
-/// differences.
+/// Returns the coefficients of the quadratic B-spline through the gaps at the nodes, without fourth differences.
 ///
 /// Along one axis the spline's value at a node is (c_before + 6 c + c_after)/8, which is c and an
 /// eighth of its second difference. So c = g minus an eighth of the second difference of g, one axis

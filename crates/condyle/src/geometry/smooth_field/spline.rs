@@ -33,7 +33,7 @@ struct Neighbourhood<T> {
 }
 
 impl GapSpline {
-    /// The spline of these coefficients, one per node.
+    /// Creates the spline of these coefficients, one per node.
     pub fn new(grid: NodeGrid, mut coefficients: Vec<f64>) -> Self {
         coefficients.push(0.0);
         Self {
@@ -46,14 +46,14 @@ impl GapSpline {
         &self.grid
     }
 
-    /// The spline with its coefficients changed by `change`, which receives the new and the old ones.
+    /// Returns the spline with its coefficients changed by `change`, which receives the new and the old ones.
     pub fn changed(&self, change: impl FnOnce(&mut [f64], &[f64])) -> Self {
         let mut changed = self.clone();
         change(Arc::make_mut(&mut changed.coefficients), &self.coefficients);
         changed
     }
 
-    /// Number of the grid node next to each lane's point.
+    /// Returns the number of the grid node next to each lane's point.
     #[inline(always)]
     pub fn nodes_at<T: Number>(&self, points: &Vector<T>) -> impl Iterator<Item = usize> {
         let corners = self.locate(points).corner.into_iter().take(T::COUNT);
@@ -61,7 +61,7 @@ impl GapSpline {
         corners.map(move |corner| corner as usize + sx + sy + sz)
     }
 
-    /// Gap at a point, mm.
+    /// Returns the gap at a point, mm.
     #[inline(always)]
     pub fn gap_mm<T: Number>(&self, point: &Vector<T>) -> T {
         self.derivatives(point).value
@@ -73,7 +73,7 @@ impl GapSpline {
         sample_from(&self.derivatives(point))
     }
 
-    /// The spline and its derivatives at a point; outside the grid its value is a bound.
+    /// Returns the spline and its derivatives at a point; outside the grid its value is a bound.
     #[inline(always)]
     fn derivatives<T: Number>(&self, point: &Vector<T>) -> Derivatives<T> {
         let here = self.locate(point);
@@ -84,7 +84,7 @@ impl GapSpline {
         }
     }
 
-    /// The coefficients that reach a point, and the bases there.
+    /// Returns the coefficients that reach a point, and the bases there.
     #[inline(always)]
     fn locate<T: Number>(&self, point: &Vector<T>) -> Neighbourhood<T> {
         let (one, half) = (T::one(), T::splat(0.5));
@@ -111,7 +111,7 @@ impl GapSpline {
         }
     }
 
-    /// The coefficients from a corner on: row `j` of layer `k`, and one number more.
+    /// Returns the coefficients from a corner on: row `j` of layer `k`, and one number more.
     #[inline(always)]
     fn rows(&self, corner: u32) -> impl Fn(usize, usize) -> F64x4 {
         // One check of the last index covers all: strides of 32 bits cannot overflow their
@@ -208,8 +208,8 @@ impl<T: Number> Bases<T> {
         }
     }
 
-    /// The spline, where `rows` gives the coefficients around every lane's point: of layer k the row
-    /// j along x, and one more number.
+    /// Returns the spline, where `rows` gives the coefficients around every lane's point: of layer k the row j along
+    /// x, and one more number.
     #[inline(always)]
     fn spline<R: Fn(usize, usize) -> F64x4>(&self, rows: impl Fn(usize) -> R) -> Derivatives<T> {
         // The spline is the sum of b_i(x) b_j(y) b_k(z) c_ijk over 27 coefficients, and a derivative
@@ -245,8 +245,8 @@ impl<T: Number> Bases<T> {
         }
     }
 
-    /// The 27 coefficients around one lane's point contracted along y and z, side by side along x:
-    /// their values, and derivatives by z, zz, y, yz and yy.
+    /// Returns the 27 coefficients around one lane's point contracted along y and z, side by side along x: their
+    /// values, and derivatives by z, zz, y, yz and yy.
     #[inline(always)]
     fn across_x(&self, lane: usize, row: impl Fn(usize, usize) -> F64x4) -> [F64x4; 6] {
         let weights = |of: &[[f64; LANES]; 3]| {
@@ -278,7 +278,7 @@ impl<T: Number> Bases<T> {
     }
 }
 
-/// A basis in memory, from which the number of any lane is broadcast to four.
+/// Returns a basis in memory, from which the number of any lane is broadcast to four.
 #[inline(always)]
 fn laid_out<T: Number>(basis: &Basis<T>) -> Basis<[f64; LANES]> {
     let lanes = |number: T| {
@@ -294,7 +294,7 @@ fn laid_out<T: Number>(basis: &Basis<T>) -> Basis<[f64; LANES]> {
     }
 }
 
-/// The first three columns of a matrix with a row of four numbers for every lane.
+/// Returns the first three columns of a matrix with a row of four numbers for every lane.
 #[inline(always)]
 fn columns<T: Number>(rows: &[F64x4; LANES]) -> [T; 3] {
     let [a, b, c, _] = F64x4::transposed(*rows);
@@ -308,7 +308,7 @@ fn sum<T: Number>(weights: &[T; 3], of: &[T; 3]) -> T {
     a.mul_add(of[0], b.mul_add(of[1], *c * of[2]))
 }
 
-/// The second difference: second derivatives of the three B-splines are 1, -2, 1 everywhere.
+/// Returns the second difference: second derivatives of the three B-splines are 1, -2, 1 everywhere.
 #[inline(always)]
 fn second_difference<T: Number>(of: &[T; 3]) -> T {
     of[0] - (of[1] + of[1]) + of[2]

@@ -12,10 +12,10 @@ const MIN_COSINE: f64 = 0.966;
 const MAX_OFF_MM: f64 = 0.25;
 
 pub(crate) struct Floor {
-    /// Its normal, into the insert.
+    /// Normal of the floor, into the insert.
     pub normal: Vec3,
     pub nodes: Vec<u32>,
-    /// The share of the floor of each, mm2.
+    /// The share of the floor that belongs to each node, mm2.
     pub share_mm2: Vec<f64>,
     /// The part of the backside, projected onto the tray, that is floor.
     pub part: f64,
@@ -91,7 +91,7 @@ pub(crate) struct Grid {
 }
 
 impl Grid {
-    /// Over some nodes, its cells no wider than `spacing_mm`.
+    /// Creates a grid over some nodes with cells no wider than `spacing_mm`.
     pub fn over(mesh: &HexMesh, nodes: &[u32], spacing_mm: f64) -> Self {
         let places: Vec<Vec3> = mesh.positions(nodes).collect();
         let (low, high) = bounds(&places);

@@ -19,24 +19,24 @@ use crate::{
 /// newtons, far less than a load makes the insert slip within the rim. The rim carries the net force only.
 const LOCK_N_PER_MM: f64 = 1e5;
 
-/// The stiffness of the search over that of a single point; with this value the search took the fewest steps for the
-/// inserts of the cases. It changes the way to the equilibrium, and not the equilibrium.
+/// Ratio of the stiffness of the search to the stiffness of a single point. This value took the fewest steps for the
+/// inserts of the cases. It changes the path to the equilibrium, not the equilibrium.
 const SEARCH_STIFFNESS: f64 = 0.5;
 
 /// The equilibrium is found once the motion under the forces and the admissible motion agree within this, mm: a hundredth
 /// of the agreement that is required of loads and backside.
 const AT_REST_MM: f64 = 1e-7;
-/// Steps after which there is no equilibrium: ten times what was seen where there is one.
+/// Number of steps after which no equilibrium exists: ten times the number observed where one exists.
 const MAX_STEPS: usize = 5000;
-/// A backside that is this far off its tray is held by nothing, mm.
+/// Displacement beyond which the insert has tipped off its tray, mm.
 const TIPPED_MM: f64 = 10.0;
 
 /// The tray under an insert, condensed to the points of its backside.
 ///
-/// The motion q has three numbers a point, along the point's own directions. With the forces b that loads on the surface
-/// exert along them, the tray pushes with R = S q - b; and the surface deflects by B q in addition to its deflection with
-/// the backside held ([`condyle_fem::MovedSupports`]). S includes the rim that locks the insert sideways: a spring against
-/// the mean slip and the mean turn of the backside.
+/// The motion q has three numbers per point, along the point's own directions. With the forces b that loads on the
+/// surface exert along them, the tray pushes with R = S q - b; and the surface deflects by B q in addition to its
+/// deflection with the backside held ([`condyle_fem::MovedSupports`]). S includes the rim that locks the insert
+/// sideways: a spring against the mean slip and the mean turn of the backside.
 pub(crate) struct Tray {
     pub points: Vec<TrayPoint>,
     /// The stiffness of the search for every number of q, N/mm, and the inverse of S with those.
@@ -51,7 +51,7 @@ pub(crate) struct Tray {
 }
 
 impl Tray {
-    /// The tray of a solid that is held by the floor of its backside and whose surface has `tiles` tiles.
+    /// Creates the tray of a solid that is held by the floor of its backside and whose surface has `tiles` tiles.
     pub fn new(solid: &ElasticSolid, floor: &Floor, spacing_mm: f64, tiles: usize) -> Self {
         let groups = tray_points(solid.mesh(), floor, spacing_mm);
         let motions_of = |point: &TrayPoint| {
@@ -221,7 +221,7 @@ fn admissible(friction: f64, stuck_mm: &[f64], pulled_to: &DVector<f64>) -> DVec
         if off > 0.0 {
             return *to;
         }
-        // In contact: the spring presses by -off, and friction holds a slip of up to -mu off against it.
+        // In contact: the spring presses by -off, and friction can hold a slip of up to -mu off.
         let slip = [x - stuck[0], z - stuck[1]];
         let pulled = slip[0].hypot(slip[1]);
         let held = -friction * off;
@@ -269,7 +269,7 @@ fn lock_of(points: &[TrayPoint]) -> ([DVector<f64>; 3], f64) {
     (lock, gyration_mm)
 }
 
-/// Points that are solved for together at most.
+/// Largest number of points that are solved for together.
 const TOGETHER: usize = 16;
 
 /// A point of the backside, for the mesh nodes around it.
@@ -285,7 +285,7 @@ pub(crate) struct TrayPoint {
     pub area_mm2: f64,
 }
 
-/// Returns points on a grid of some `spacing_mm` over the transverse plane, in groups that lie together.
+/// Returns points on a grid of about `spacing_mm` over the transverse plane, in groups that lie together.
 ///
 /// The floor moves by bilinear interpolation between them, and beyond its outermost points by extrapolation, so that
 /// rigid-body motions are among its motions. All points have the directions of the floor.

@@ -12,7 +12,7 @@ use crate::{
     contact::deformable::compliance::{SurfaceCompliance, UnitLoads, tiles},
 };
 
-/// Mesh nodes of a tile at most. Plastic strains spread over few elements, so tiles are small.
+/// Largest number of mesh nodes in a tile. Plastic strains spread over few elements, so tiles are small.
 const TILE_NODES: usize = 8;
 
 /// The influence of loads on the surface and plastic strains below it inside an insert.
@@ -22,7 +22,7 @@ pub(crate) struct Influence {
     /// For every tile of the surface, the displacements of all mesh nodes by unit loads on its nodes, mm/N: a row for every
     /// axis of every mesh node. Single precision is enough to look for yield.
     by_surface: Vec<OnceLock<Box<[f32]>>>,
-    /// Tiles of mesh nodes, and of every node its tile and its place there.
+    /// Tiles of mesh nodes, and for every node its tile and its place in the tile.
     node_tiles: Vec<Vec<u32>>,
     place_of: Vec<(u32, u32)>,
     /// Unit forces on the mesh nodes, three for each, in the same tiles.
@@ -140,7 +140,7 @@ impl Influence {
         if let Some(block) = lock().get(&(tile, other)) {
             return Arc::clone(block);
         }
-        // Not under the lock: another thread may compute the same block, to the same bytes.
+        // Computed without the lock: another thread may compute the same block, to the same bytes.
         let block: Arc<[f64]> = self.forces.between(tile as usize, other as usize).into();
         lock().insert((tile, other), Arc::clone(&block));
         block
