@@ -41,7 +41,7 @@ pub struct ActivitySummary {
 }
 
 impl ActivitySummary {
-    /// The activities of a march with several; none of a march with one.
+    /// Returns the activities of a march with several activities; empty for a march with one.
     pub fn of(march: &March) -> Vec<Self> {
         let (test, state) = (march.test(), march.state());
         if test.activities.len() < 2 {
@@ -79,8 +79,8 @@ impl ActivitySummary {
     }
 }
 
-/// Name of the file with the motions and loads of activity number `number`: the first has the one that a run of
-/// one activity has.
+/// Returns the name of the file with the motions and loads of activity number `number`. The first activity has the
+/// file name of a run with one activity.
 pub fn kinematics_file(number: usize, name: &str) -> String {
     if number == 0 {
         return "kinematics.csv".to_owned();
@@ -88,7 +88,7 @@ pub fn kinematics_file(number: usize, name: &str) -> String {
     format!("kinematics_{name}.csv")
 }
 
-/// The names of the activities that a case lists; none where it lists none.
+/// Returns the names of the activities that a case lists.
 #[cfg(feature = "file-system")]
 pub(super) fn listed_in(case: &str) -> Vec<String> {
     let case: toml::Table = case.parse().unwrap_or_default();

@@ -3,7 +3,7 @@
 /// Files that a command writes into its own folder among the results.
 #[derive(Clone, Copy, Debug)]
 pub struct AddedFiles {
-    /// The folder, in that of the run.
+    /// The folder, inside the folder of the run.
     pub folder: &'static str,
     /// Files without their endings.
     pub names: &'static [&'static str],
@@ -66,7 +66,7 @@ pub const COMPARED: AddedFiles = AddedFiles {
 };
 
 impl AddedFiles {
-    /// All files that may be there, by their paths in the folder of the run.
+    /// Returns all files that may exist, by their paths in the folder of the run.
     pub fn paths(&self) -> impl Iterator<Item = String> + use<> {
         let Self {
             folder,

@@ -1,14 +1,14 @@
-//! The checkpoint: enough to go on after a crash, to the same bytes.
+//! The checkpoint: the state from which a run resumes after a crash, to the same bytes.
 
 use condyle::evolve::MarchState;
 use serde::{Deserialize, Serialize};
 use thiserror::Error;
 
-/// First bytes of a checkpoint; the last is the version of what follows.
+/// First bytes of a checkpoint; the last of them is the version of the format.
 const MAGIC: &[u8; 20] = b"condyle checkpoint \x0c";
 const HASH_LENGTH: usize = 32;
 
-/// A march on its way, with the inputs it belongs to.
+/// A march in progress, with the hash of its inputs.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Checkpoint {
     /// Hash of case and meshes, in hexadecimal.
@@ -33,14 +33,14 @@ pub enum CheckpointError {
 }
 
 impl Checkpoint {
-    /// The checkpoint as bytes.
+    /// Returns the checkpoint as bytes.
     pub fn to_bytes(&self) -> Vec<u8> {
         let content = postcard::to_stdvec(self).expect("numbers and text always serialise");
         let hash = blake3::hash(&content);
         [MAGIC.as_slice(), hash.as_bytes(), &content].concat()
     }
 
-    /// The checkpoint from its bytes.
+    /// Reads a checkpoint from its bytes.
     ///
     /// # Errors
     /// Bytes of another program or version, or damaged ones.

@@ -1,7 +1,7 @@
-//! `checksums`: the hash of every mesh of a run, so that one that was damaged is found.
+//! `checksums`: the hash of every mesh of a run, by which damaged meshes are detected.
 //!
-//! A mesh stays as it is once it is written, so its hash is written with it, before the checkpoint that remembers
-//! it. Each line is one of `b3sum`: `b3sum --check checksums` looks at them all.
+//! A mesh does not change once it is written, so its hash is written with it, before the checkpoint that refers to
+//! it. Each line has the format of `b3sum`: `b3sum --check checksums` verifies all of them.
 
 use std::{
     fs, io,
@@ -15,10 +15,10 @@ use super::replace::replace_file;
 pub(super) const CHECKSUMS: &str = "checksums";
 const GAP: &str = "  ";
 
-/// A mesh of a run that is no longer what the run wrote.
+/// A mesh of a run that has changed since the run wrote it.
 #[derive(Debug, Error)]
 pub enum DamagedFile {
-    /// Other bytes.
+    /// The bytes have changed.
     #[error(
         "{}: the file is damaged: its bytes are not those that the run wrote (its hash is in {CHECKSUMS}); put it back \
          from a copy, or run the case again with --force",
@@ -28,7 +28,7 @@ pub enum DamagedFile {
         /// The file.
         file: PathBuf,
     },
-    /// Not there, or not to be read.
+    /// The file is missing or cannot be read.
     #[error(
         "{}: the run wrote this file, and it cannot be read: {source}; put it back from a copy, or run the case again with \
          --force",
@@ -45,7 +45,7 @@ pub enum DamagedFile {
 /// Checks that a file has the bytes that the run wrote; accepts a file without a hash in its folder.
 ///
 /// # Errors
-/// One that was changed, or that is gone.
+/// The file has changed, or it is missing.
 pub fn check_file(file: &Path) -> Result<(), DamagedFile> {
     let name = file.file_name().and_then(|name| name.to_str());
     let listed = listed(file.parent().unwrap_or(Path::new("")));

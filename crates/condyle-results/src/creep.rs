@@ -48,7 +48,7 @@ pub struct ScanLine {
 }
 
 impl CreepSummary {
-    /// The creep of a finished march, if its insert creeps.
+    /// Returns the creep of a finished march, if its insert creeps.
     pub fn of(state: &MarchState) -> Option<Self> {
         let last = state.updates.last()?.creep?;
         Some(Self {
@@ -65,7 +65,7 @@ impl CreepSummary {
 }
 
 impl Penetration {
-    /// The penetration after so many cycles, linear between updates; none of a shorter test.
+    /// Returns the penetration after a number of cycles, linear between updates; none for a shorter test.
     fn at(updates: &[UpdateRecord], cycles: f64) -> Option<Self> {
         let after = updates.iter().position(|update| update.cycles >= cycles)?;
         let end = updates[after].creep?;
@@ -89,7 +89,7 @@ impl Penetration {
 }
 
 impl ScanLine {
-    /// The line of least squares through the scans from so many cycles on.
+    /// Returns the least-squares line through the scans from a number of cycles on.
     fn through(updates: &[UpdateRecord], from: f64) -> Option<Self> {
         let scan = |update: &UpdateRecord| Some((update.cycles, update.creep?.max_unloaded_mm));
         let scans = updates.iter().filter(|update| update.cycles >= from);

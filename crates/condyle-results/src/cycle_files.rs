@@ -16,7 +16,7 @@ use condyle_mesh::formats::{
 
 use super::side::{Side, point_on_side, quad_on_side, triangle_on_side};
 
-/// The two cycles whose motions are kept.
+/// The two cycles whose motions are stored.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum KeptCycle {
     /// On the unworn insert.
@@ -37,7 +37,7 @@ impl KeptCycle {
         }
     }
 
-    /// The kept cycles that a march has just solved: after one update the first, after all of them the last.
+    /// Returns the kept cycles that a march has just solved: after one update the first, after all of them the last.
     pub fn solved_by(march: &March) -> impl Iterator<Item = Self> {
         let is_first = march.state().updates.len() == 1;
         let first = is_first.then_some(Self::First);
@@ -55,8 +55,8 @@ pub fn frame_name(body: &str, increment: usize) -> String {
     format!("{body}_{:04}.vtu", increment + 1)
 }
 
-/// The articulating surface that a cycle pressed on, with the pressure at the end of an increment:
-/// `pressure_mpa` at the nodes, each the mean over the node's share of the surface.
+/// Returns the articulating surface that a cycle loaded, with the pressure at the end of an increment: `pressure_mpa`
+/// at the nodes, each the mean over the node's share of the surface.
 pub fn insert_frame(
     march: &March,
     cycle: &SolvedCycle<'_>,
@@ -79,13 +79,13 @@ pub fn insert_frame(
     compact_vtu_bytes(&Grid::quads(&nodes, &quads), &[array])
 }
 
-/// The femur in the insert frame at a pose; `femur.vtu` is at the neutral one.
+/// Returns the femur in the insert frame at a pose; `femur.vtu` is at the neutral one.
 pub fn femur_vtu(femur: &TriangleMesh, pose: &Pose, side: Side) -> Result<Vec<u8>, MeshFileError> {
     let placed = femur_on_side(femur, pose, side);
     compact_vtu_bytes(&Grid::triangles(&placed.vertices, &placed.triangles), &[])
 }
 
-/// The femur in the insert frame at a pose, in the knee of that side.
+/// Returns the femur in the insert frame at a pose, in a knee of the given side.
 pub fn femur_on_side(femur: &TriangleMesh, pose: &Pose, side: Side) -> TriangleMesh {
     let place = |vertex: &Vec3| point_on_side(&pose.to_insert(vertex), side);
     let triangle = |&corners| triangle_on_side(corners, side);
@@ -95,7 +95,7 @@ pub fn femur_on_side(femur: &TriangleMesh, pose: &Pose, side: Side) -> TriangleM
     }
 }
 
-/// The `.pvd` file of a cycle: both bodies at every increment, the time in % of the cycle.
+/// Returns the `.pvd` file of a cycle: both bodies at every increment, the time in % of the cycle.
 pub fn cycle_pvd(cycle: KeptCycle, percents: &[f64]) -> String {
     let frames = percents.iter().enumerate();
     let files: Vec<(f64, Vec<String>)> = frames
@@ -110,14 +110,14 @@ pub fn cycle_pvd(cycle: KeptCycle, percents: &[f64]) -> String {
     }))
 }
 
-/// About so many triangles show a femur in motion well enough.
+/// Number of triangles that suffices to show a femur in motion.
 pub const FRAME_TRIANGLES: f64 = 6000.0;
 /// A mesh with more than [`FRAME_TRIANGLES`] is coarsened to cells of this size for the frames, mm.
 const FRAME_CELL_MM: f64 = 2.0;
 
-/// The femur as the frames show it: a fine mesh is written hundreds of times, and so coarsened.
+/// Returns the femur of the frames: a fine mesh is coarsened, since it is written hundreds of times.
 pub fn femur_of_frames(femur: TriangleMesh) -> TriangleMesh {
-    // A mesh little larger than the aim is kept: clustering would lose shape and save little.
+    // A mesh slightly larger than the target is kept: clustering would lose shape and save little.
     if femur.triangles.len() as f64 > 1.5 * FRAME_TRIANGLES {
         return femur.clustered(FRAME_CELL_MM);
     }
@@ -129,10 +129,10 @@ pub fn cycle_pressure_file(cycle: KeptCycle) -> String {
     format!("{}_pressure.csv", cycle.name())
 }
 
-/// The pressures of the cycle that a march solved last: a row an increment and node that is pressed.
+/// Returns the pressures of the cycle that a march solved last: one row per increment and loaded node.
 ///
-/// `node` is the number of a point of `insert_*.vtu`, from 0; `pressure_mpa` is the mean over the node's share of
-/// the surface, of 32 bits, at the end of the increment. Nothing before the first update of a march.
+/// `node` is the number of a point of `insert_*.vtu`, from 0; `pressure_mpa` is the mean over the node's share of the
+/// surface, in 32 bits, at the end of the increment. None before the first update of a march.
 pub fn cycle_pressure_csv(march: &March) -> Option<String> {
     let cycle = march.last_cycle()?;
     let nodes = march.insert().surface_nodes();

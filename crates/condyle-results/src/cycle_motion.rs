@@ -5,7 +5,7 @@ use condyle::machine::{
     knee::{KNEE, MEDIAL},
 };
 
-/// Largest less smallest position of a joint, in the unit of files.
+/// Returns the largest less smallest position of a joint, in the unit of files.
 pub fn joint_range(rows: &[CycleRow], joint: JointIndex) -> f64 {
     let values = || rows.iter().map(|row| joint.of(&row.positions));
     let (low, high) = (

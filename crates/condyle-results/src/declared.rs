@@ -11,8 +11,8 @@ use super::{
     tables::WEAR_COLUMNS,
 };
 
-/// A JSON schema of `summary.json`, with the columns of `wear.csv` and `kinematics.csv` and the fields of `insert_*.vtu`
-/// under `tables` and `node_fields`.
+/// Returns a JSON schema of `summary.json`, with the columns of `wear.csv` and `kinematics.csv` and the fields of
+/// `insert_*.vtu` under `tables` and `node_fields`.
 pub fn results_schema() -> String {
     let mut properties = serde_json::Map::new();
     let mut required = Vec::new();

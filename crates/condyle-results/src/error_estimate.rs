@@ -20,7 +20,7 @@ pub enum Part {
     SlipTolerance,
 }
 
-/// Of each number that is estimated: an error in %, or the reason why there is none.
+/// For each estimated number, the error in %, or the reason why it is missing.
 pub type QuantityErrors = Vec<(&'static Scalar, Result<f64, String>)>;
 
 /// Estimated discretisation error of a number by its parts: the change that a much finer value would make; none where a
@@ -62,7 +62,7 @@ pub struct ErrorEstimate {
 }
 
 impl Part {
-    /// The name in files.
+    /// Returns the name in files.
     pub const fn name(self) -> &'static str {
         match self {
             Self::Increments => "increments",
@@ -98,7 +98,7 @@ impl ErrorParts {
 }
 
 impl ErrorEstimate {
-    /// The errors, by their parts, of numbers whose values are those of `value_of`.
+    /// Creates an estimate from the errors of numbers by their parts; `value_of` returns the value of each number.
     pub fn new(
         value_of: impl Fn(&Scalar) -> f64,
         parts: impl IntoIterator<Item = (Part, QuantityErrors)>,
@@ -125,19 +125,19 @@ impl ErrorEstimate {
         estimate
     }
 
-    /// The errors of all numbers that were estimated, in the order of the catalogue.
+    /// Returns the errors of all numbers that were estimated, in the order of the catalogue.
     pub fn quantities(&self) -> &[QuantityError] {
         &self.quantities
     }
 
-    /// The error of a number; none where it was not estimated.
+    /// Returns the error of a number; none where it was not estimated.
     pub fn get(&self, scalar: &Scalar) -> Option<&QuantityError> {
         self.quantities
             .iter()
             .find(|quantity| quantity.scalar == scalar)
     }
 
-    /// Keeps the reason why a part has no estimate; once, where the mass loss has the same.
+    /// Stores the reason why a part has no estimate; only once if the mass loss has the same reason.
     fn leave_out(&mut self, part: Part, scalar: &Scalar, why: String) {
         if self.not_estimated.get(part.name()) == Some(&why) {
             return;

@@ -29,7 +29,7 @@ pub struct NeutralPose {
 }
 
 impl NeutralPose {
-    /// The neutral pose of a march, in the knee of that side.
+    /// Returns the neutral pose of a march, in a knee of the given side.
     pub fn of(march: &March, side: Side) -> Self {
         let pose = pose_on_side(&march.neutral_pose(), side);
         let settled = &march.state().settled;
@@ -44,8 +44,8 @@ impl NeutralPose {
     }
 }
 
-/// `femur_pose.csv`: a row an increment of the cycles of `kinematics.csv`, the origin of the femoral
-/// frame in the insert frame, then R row by row.
+/// Returns `femur_pose.csv`: one row per increment of the cycles of `kinematics.csv`, the origin of the femoral frame
+/// in the insert frame, then R row by row.
 pub fn femur_pose_csv(march: &March, side: Side) -> String {
     let mut text = String::from(
         "cycles,percent,origin_x_mm,origin_y_mm,origin_z_mm,r_xx,r_xy,r_xz,r_yx,r_yy,r_yz,r_zx,r_zy,r_zz\n",

@@ -30,7 +30,7 @@ use condyle_mesh::formats::MeshFileError;
 /// A reason why a results folder cannot be used.
 #[derive(Debug, Error)]
 pub enum ResultsError {
-    /// A folder in whose state the run cannot go into it.
+    /// A folder whose state does not permit the run.
     #[error("{}: {state}", folder.display())]
     Folder {
         /// The folder.
@@ -54,7 +54,7 @@ pub enum ResultsError {
         /// The cause.
         source: io::Error,
     },
-    /// A mesh of the run that is no longer what the run wrote.
+    /// A mesh of the run that has changed since the run wrote it.
     #[error(transparent)]
     Damaged(#[from] DamagedFile),
     /// An insert that cannot be written.
@@ -65,13 +65,13 @@ pub enum ResultsError {
 /// The state of a folder that cannot take a run.
 #[derive(Debug, Error)]
 pub enum FolderState {
-    /// It holds a run, of which it has this file.
+    /// It holds a run, as this file shows.
     #[error(
         "the folder already holds a run ({0} is there); \
          give another folder with --out, go on with --resume, or write over it with --force"
     )]
     Run(&'static str),
-    /// It holds a file of a run's name, and nothing to resume.
+    /// It holds a file with a name that runs use, and nothing to resume.
     #[error(
         "the folder already holds a run or a part of one ({0} is there, and no checkpoint to go on from); \
          give another folder with --out, or take the file away yourself"
@@ -83,7 +83,7 @@ pub enum FolderState {
          give another folder with --out, or write over it with --force: there is nothing left to --resume"
     )]
     DoneRun,
-    /// It holds a file that a run would replace, and no run that the file is of.
+    /// It holds a file that a run would replace and that belongs to no run.
     #[error(
         "{0} is there, but no checkpoint, so that it may be something else than a run; \
          give another folder with --out, or take the file away yourself"
@@ -101,7 +101,7 @@ pub enum FolderState {
          wait until it has ended, or give another folder with --out"
     )]
     InUse,
-    /// It is a file.
+    /// The path is a file.
     #[error("this is a file and no folder; give another folder with --out")]
     File,
     /// It holds no run to resume.
@@ -142,7 +142,7 @@ pub struct ResultsFolder {
     path: PathBuf,
 }
 
-/// Files of a run that are never written over by another; the one written first comes first.
+/// Files of a run that another run never overwrites, in the order in which they are written first.
 pub(super) const SIGNS_OF_A_RUN: [&str; 16] = [
     "case.toml",
     "checkpoint",
@@ -162,8 +162,8 @@ pub(super) const SIGNS_OF_A_RUN: [&str; 16] = [
     "cycle_last_pressure.csv",
 ];
 
-/// Seconds spent by the parts of a run that is not done; gone once it is, so that what is left
-/// is the same bytes whether it was stopped or not.
+/// File with the seconds spent by an unfinished run. It is removed when the run is done, so that the folder has the
+/// same bytes whether the run was interrupted or not.
 pub(super) const TIME_SPENT: &str = "time_spent_s";
 
 /// The part of a run that a folder holds.
@@ -180,7 +180,7 @@ pub enum Found {
 }
 
 impl ResultsFolder {
-    /// The folder at `path`, as it is.
+    /// Creates the folder at `path`, as it is.
     pub fn existing(path: &Path) -> Self {
         let path = path.to_owned();
         Self { path }
@@ -210,11 +210,10 @@ impl ResultsFolder {
         Err(state.of(path))
     }
 
-    /// The lock of the folder at `path`, so that no other run writes into it; none where there is
-    /// no such folder.
+    /// Locks the folder at `path`, so that no other run writes into it; none if the folder does not exist.
     ///
     /// # Errors
-    /// Another run that has it, or a folder that cannot be written.
+    /// Another run holds the lock, or the folder cannot be written.
     pub fn lock(path: &Path) -> Result<Option<FolderLock>, ResultsError> {
         if !path.is_dir() {
             return Ok(None);
@@ -223,10 +222,10 @@ impl ResultsFolder {
         taken.map(Some).ok_or(FolderState::InUse.of(path))
     }
 
-    /// A folder for a run, made if it is not there.
+    /// Creates the folder of a run, unless it exists.
     ///
     /// # Errors
-    /// A folder that cannot be made.
+    /// The folder cannot be created.
     pub fn create(path: &Path) -> Result<Self, ResultsError> {
         fs::create_dir_all(path).map_err(refused(path))?;
         Ok(Self::existing(path))
@@ -286,13 +285,13 @@ impl ResultsFolder {
         Checkpoint::from_bytes(&bytes).map_err(|source| ResultsError::Checkpoint { file, source })
     }
 
-    /// The summary, which is the last file of a run.
+    /// Returns the summary, which is the last file of a run.
     fn summary(&self) -> Option<Box<Summary>> {
         let text = fs::read_to_string(self.file("summary.json")).ok()?;
         serde_json::from_str(&text).ok()
     }
 
-    /// The time from [`Self::write_time_spent`], s; 0 without its file.
+    /// Returns the time from [`Self::write_time_spent`], s; 0 without its file.
     fn time_spent_s(&self) -> f64 {
         let text = fs::read_to_string(self.file(TIME_SPENT)).unwrap_or_default();
         let seconds = text.trim().parse().unwrap_or(0.0);
@@ -309,14 +308,14 @@ impl ResultsFolder {
         self.replace(TIME_SPENT, format!("{seconds}\n").as_bytes())
     }
 
-    /// Takes away what only a run that is not done needs.
+    /// Removes the files that only an unfinished run needs.
     pub fn finish(&self) -> Result<(), ResultsError> {
         let file = self.file(TIME_SPENT);
         remove(&beside(&file))?;
         remove(&file)
     }
 
-    /// The path of the folder.
+    /// Returns the path of the folder.
     pub fn path(&self) -> &Path {
         &self.path
     }
@@ -326,7 +325,7 @@ impl ResultsFolder {
         self.replace("case.toml", toml.as_bytes())
     }
 
-    /// Writes the femur as it stands at neutral, in the insert frame.
+    /// Writes the femur in its neutral pose, in the insert frame.
     pub fn write_femur(
         &self,
         march: &March,
@@ -337,8 +336,8 @@ impl ResultsFolder {
         self.replace("femur.vtu", &bytes)
     }
 
-    /// Writes the cycle that the march has just solved, increment by increment, where it is the first or the
-    /// last; to be done before [`Self::write_update`], so that a checkpoint never lacks it.
+    /// Writes the cycle that the march has just solved, increment by increment, if it is the first or the last. Call
+    /// it before [`Self::write_update`], so that no checkpoint lacks the cycle.
     pub fn write_cycles(
         &self,
         march: &March,
@@ -375,8 +374,8 @@ impl ResultsFolder {
         self.replace(&format!("{}.pvd", kept.name()), pvd.as_bytes())
     }
 
-    /// Writes the pressures of the cycle that the march has just solved, where it is the first or the last; to be
-    /// done before [`Self::write_update`], as [`Self::write_cycles`].
+    /// Writes the pressures of the cycle that the march has just solved, if it is the first or the last. Call it
+    /// before [`Self::write_update`], as [`Self::write_cycles`].
     pub fn write_pressures(&self, march: &March) -> Result<(), ResultsError> {
         for cycle in KeptCycle::solved_by(march) {
             if let Some(table) = cycle_pressure_csv(march) {
@@ -386,8 +385,8 @@ impl ResultsFolder {
         Ok(())
     }
 
-    /// Writes all that the march has found so far, and last of all the checkpoint: whatever it
-    /// remembers is then already in the other files.
+    /// Writes the results of the march so far, and then the checkpoint: the other files are complete before it refers
+    /// to them.
     pub fn write_update(
         &self,
         march: &March,
@@ -413,7 +412,7 @@ impl ResultsFolder {
         if let Some(paths) = slip_paths_csv(march, side) {
             self.replace("slip_paths.csv", paths.as_bytes())?;
         }
-        // Last and durably: everything that the checkpoint remembers is on the disk before it.
+        // Written last and durably: everything that the checkpoint refers to is on the disk before it.
         let checkpoint = Checkpoint {
             inputs_blake3: inputs_blake3.to_owned(),
             version: env!("CARGO_PKG_VERSION").to_owned(),
@@ -450,7 +449,7 @@ fn refused(file: &Path) -> impl FnOnce(io::Error) -> ResultsError {
     move |source| ResultsError::Refused { file, source }
 }
 
-/// Removes a file, which need not be there.
+/// Removes a file if it exists.
 pub(super) fn remove(file: &Path) -> Result<(), ResultsError> {
     match fs::remove_file(file) {
         Err(source) if source.kind() != io::ErrorKind::NotFound => Err(refused(file)(source)),

@@ -13,15 +13,15 @@ use super::{
     tables::described,
 };
 
-/// The insert as worn so far, with the results of its last update at the nodes; what is not on the articulating
-/// surface has none, which is 0.
+/// The insert as worn so far, with the results of its last update at the nodes; 0 at nodes that are not on the
+/// articulating surface.
 #[derive(Clone, Debug, PartialEq)]
 pub struct InsertFields {
-    /// The hexahedra, and where their nodes are now, mm.
+    /// The hexahedra, with the present positions of their nodes, mm.
     pub mesh: HexMesh,
-    /// Name with its unit, and a value a node.
+    /// Name with its unit, and one value per node.
     pub scalars: Vec<(&'static str, Vec<f64>)>,
-    /// Name with its unit, and a vector of the insert frame a node.
+    /// Name with its unit, and one vector per node, in the insert frame.
     pub vectors: Vec<(&'static str, Vec<[f64; 3]>)>,
     /// 1 at the nodes of the articulating surface.
     pub articulating: Vec<u8>,
@@ -32,7 +32,7 @@ struct Source<'a> {
     mesh: &'a HexMesh,
 }
 
-/// A field of `insert_*.vtu` with a value a node.
+/// A field of `insert_*.vtu` with one value per node.
 #[derive(Clone, Copy)]
 pub struct NodeField {
     /// Its name, which ends in its unit.
@@ -82,20 +82,20 @@ described! {
 }
 
 impl Source<'_> {
-    /// Values at the nodes of the articulating surface as values at all nodes.
+    /// Returns the values at the nodes of the articulating surface as values at all nodes.
     fn at_surface(&self, values: &[f64]) -> Option<Vec<f64>> {
         let surface = self.march.insert().surface_nodes();
         Some(spread(surface, values, 0.0, self.mesh.nodes.len()))
     }
 
-    /// The same of an insert that creeps, 0 before it has.
+    /// Returns the same for an insert that creeps; 0 before the first creep.
     fn of_creep(&self, values: Option<&[f64]>) -> Option<Vec<f64>> {
         self.march.test().creep.as_ref()?;
         let none = || Some(vec![0.0; self.mesh.nodes.len()]);
         values.map_or_else(none, |values| self.at_surface(values))
     }
 
-    /// The inside of a deformable insert at the last update; none of a foundation.
+    /// Returns the state inside a deformable insert at the last update; none for a foundation.
     fn under_surface(&self) -> Option<&UnderSurface> {
         self.march.state().under_surface.as_ref()
     }
@@ -106,7 +106,7 @@ impl Source<'_> {
 }
 
 impl InsertFields {
-    /// The fields of a march, in the knee of that side.
+    /// Creates the fields of a march, in a knee of the given side.
     pub fn of(march: &March, side: Side) -> Self {
         let surface = march.insert().surface_nodes();
         let mesh = mesh_on_side(march.insert().mesh(), side);
@@ -130,7 +130,7 @@ fn directions(march: &March, side: Side, count: usize) -> Vec<[f64; 3]> {
     spread(march.insert().surface_nodes(), &directions, [0.0; 3], count)
 }
 
-/// Values at the `surface` nodes as values at all nodes, elsewhere `none`.
+/// Returns the values at the `surface` nodes as values at all nodes, elsewhere `none`.
 fn spread<T: Copy>(surface: &[u32], values: &[T], none: T, nodes: usize) -> Vec<T> {
     let mut all = vec![none; nodes];
     // VTK has one array for all nodes of a mesh: nodes off the surface get a value too.
@@ -140,7 +140,7 @@ fn spread<T: Copy>(surface: &[u32], values: &[T], none: T, nodes: usize) -> Vec<
     all
 }
 
-/// Values of elements as values at nodes: the mean of those around each.
+/// Returns the values of elements as values at nodes: the mean of those around each.
 fn mean_around(mesh: &HexMesh, values: &[f64]) -> Vec<f64> {
     let mut sums = vec![(0.0, 0.0); mesh.nodes.len()];
     for (hex, value) in mesh.hexes.iter().zip(values) {
@@ -154,7 +154,7 @@ fn mean_around(mesh: &HexMesh, values: &[f64]) -> Vec<f64> {
     sums.into_iter().map(mean).collect()
 }
 
-/// Values of elements as values at nodes: the largest of those around each.
+/// Returns the values of elements as values at nodes: the largest of those around each.
 fn most_around(mesh: &HexMesh, values: &[f64]) -> Vec<f64> {
     let mut most = vec![0.0; mesh.nodes.len()];
     for (hex, &value) in mesh.hexes.iter().zip(values) {
@@ -170,8 +170,8 @@ pub fn insert_file_name(update: usize) -> String {
     format!("insert_{update:04}.vtu")
 }
 
-/// `insert_*.vtu`: the insert as worn so far, with the results of its last update at the nodes, in
-/// the knee of that side.
+/// `insert_*.vtu`: the insert as worn so far, with the results of its last update at the nodes, in a knee of the
+/// given side.
 pub fn insert_vtu(march: &March, side: Side) -> Result<Vec<u8>, MeshFileError> {
     let fields = InsertFields::of(march, side);
     let scalars = fields.scalars.iter().map(|(name, values)| PointArray {

@@ -3,8 +3,8 @@
 use condyle::evolve::March;
 use serde::{Deserialize, Serialize};
 
-/// Wear by one law: of the law that moved the surface the wear of the run, of every other the wear that it predicts for
-/// the same histories.
+/// Wear by one law: the wear of the run for the law that moved the surface, and the wear predicted for the same
+/// histories for every other law.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct LawWear {
     /// The word for the law.
@@ -27,8 +27,8 @@ pub struct LawWear {
 }
 
 impl LawWear {
-    /// The wear of a march by its law, called `word`, then by its comparison laws. `is_approximate` returns whether
-    /// the law of a word was quoted from memory.
+    /// Returns the wear of a march by its law, called `word`, then by its comparison laws. `is_approximate` returns
+    /// whether the law of a word was quoted from memory.
     pub fn of(march: &March, word: &str, is_approximate: impl Fn(&str) -> bool) -> Vec<Self> {
         let state = march.state();
         let Some(last) = state.updates.last() else {
@@ -63,7 +63,8 @@ impl LawWear {
     }
 }
 
-/// A part of a volume, %. Both are sums of steps, each extrapolated: a hair more than all is all.
+/// Returns a part of a volume, %. Both volumes are sums of extrapolated steps; a result slightly above 100 % by
+/// rounding counts as 100 %.
 fn percent_of(volume_mm3: f64, part_mm3: f64) -> f64 {
     (100.0 * part_mm3 / volume_mm3.max(f64::MIN_POSITIVE)).clamp(0.0, 100.0)
 }

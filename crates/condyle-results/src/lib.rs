@@ -1,6 +1,6 @@
 //! The results of a run: the [`catalogue`] of quantities, the results folder and its readers.
 //!
-//! A run writes a folder with one file a table, all readable without condyle; [`Summary`] is its `summary.json`.
+//! A run writes a folder with one file per table, all readable without condyle; [`Summary`] is its `summary.json`.
 
 mod activities;
 mod added;

@@ -1,4 +1,4 @@
-//! A folder belongs to one run at a time.
+//! The lock of a results folder, which belongs to one run at a time.
 
 use std::{
     fs::{self, File, OpenOptions, TryLockError},
@@ -9,8 +9,8 @@ use std::{
 /// The file that a run holds locked as long as it writes.
 pub(super) const LOCK: &str = "in_use";
 
-/// A folder that no other run writes into. The system releases it when the program ends, however
-/// it ends; a file that is left behind locks no other run out.
+/// A folder that no other run writes into. The system releases the lock whenever the program ends; a file that
+/// remains does not lock out other runs.
 #[derive(Debug)]
 pub struct FolderLock {
     path: PathBuf,
@@ -19,7 +19,7 @@ pub struct FolderLock {
 }
 
 impl FolderLock {
-    /// The lock of `folder`, which is there; none where another run has it.
+    /// Locks the existing folder `folder`; none if another run holds the lock.
     pub(super) fn take(folder: &Path) -> io::Result<Option<Self>> {
         let path = folder.join(LOCK);
         let mut options = OpenOptions::new();
@@ -32,7 +32,7 @@ impl FolderLock {
                 Err(TryLockError::Error(error)) if error.kind() != ErrorKind::Unsupported => {
                     return Err(error);
                 }
-                // A run that has just ended took its file away: nobody else would meet a lock on that.
+                // A run that has just ended removed this file, so that a lock on it excludes no other run.
                 Ok(()) if !path.exists() => {}
                 Ok(()) | Err(_) => return Ok(Some(Self { path, _file: file })),
             }

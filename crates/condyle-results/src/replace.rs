@@ -1,4 +1,4 @@
-//! A file is replaced whole or not at all.
+//! Atomic replacement of files.
 
 use std::{
     fs,
@@ -14,7 +14,7 @@ pub(super) fn replace_file(path: &Path, bytes: &[u8]) -> io::Result<()> {
     fs::rename(&beside, path)
 }
 
-/// As [`replace_file`], and waits until the disk has it.
+/// Replaces a file as [`replace_file`], and waits until it is on the disk.
 pub(super) fn replace_file_durably(path: &Path, bytes: &[u8]) -> io::Result<()> {
     let beside = beside(path);
     let mut file = fs::File::create(&beside)?;
@@ -23,8 +23,8 @@ pub(super) fn replace_file_durably(path: &Path, bytes: &[u8]) -> io::Result<()> 
     fs::rename(&beside, path)
 }
 
-/// The name of a file while it is written: always the same, so that one left behind by a run that
-/// was stopped is replaced by the resumed run.
+/// Returns the name of a file while it is written. It is always the same, so that a resumed run replaces the file of
+/// an interrupted one.
 pub(super) fn beside(path: &Path) -> PathBuf {
     let mut name = path.as_os_str().to_owned();
     name.push(".part");

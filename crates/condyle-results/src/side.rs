@@ -4,7 +4,7 @@ use condyle::machine::knee::{KNEE, LATERAL, MEDIAL};
 use condyle::{Mat3, Vec3, spatial::Pose};
 use condyle_fem::HexMesh;
 
-/// The side of the body that a knee is of.
+/// The side of the body: a right or a left knee.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Side {
     /// A right knee: +z is lateral.
@@ -21,12 +21,12 @@ impl Side {
     /// The words that files use for them.
     pub const WORDS: &'static [&'static str] = &["right", "left"];
 
-    /// The word that files use.
+    /// Returns the word that files use.
     pub fn word(self) -> &'static str {
         Self::WORDS[self as usize]
     }
 
-    /// A description in one sentence.
+    /// Returns a description in one sentence.
     pub fn about(self) -> &'static str {
         match self {
             Self::Right => "A right knee.",
@@ -34,12 +34,12 @@ impl Side {
         }
     }
 
-    /// The side that `word` names.
+    /// Returns the side that `word` names.
     pub fn from_word(word: &str) -> Option<Self> {
         Self::ALL.iter().copied().find(|side| side.word() == word)
     }
 
-    /// The other side.
+    /// Returns the other side.
     pub fn other(self) -> Self {
         match self {
             Self::Right => Self::Left,
@@ -64,13 +64,13 @@ pub(super) fn point_on_side(point: &Vec3, side: Side) -> Vec3 {
     }
 }
 
-/// The pose of mirrored bodies in the mirrored frame: M R M and M t, with M the mirror.
+/// Returns the pose of mirrored bodies in the mirrored frame: M R M and M t, with M the mirror.
 pub(super) fn pose_on_side(pose: &Pose, side: Side) -> Pose {
     let mirror = Mat3::from_diagonal(&point_on_side(&Vec3::repeat(1.0), side));
     Pose::new(mirror * pose.rotation * mirror, mirror * pose.translation)
 }
 
-/// A face that faces out after the mirror too.
+/// Returns a face with its corners reordered if mirrored, so that it faces out.
 pub(super) fn quad_on_side([a, b, c, d]: [u32; 4], side: Side) -> [u32; 4] {
     match side {
         Side::Right => [a, b, c, d],
@@ -78,7 +78,7 @@ pub(super) fn quad_on_side([a, b, c, d]: [u32; 4], side: Side) -> [u32; 4] {
     }
 }
 
-/// A triangle that faces out after the mirror too.
+/// Returns a triangle with its corners reordered if mirrored, so that it faces out.
 pub(super) fn triangle_on_side([a, b, c]: [u32; 3], side: Side) -> [u32; 3] {
     match side {
         Side::Right => [a, b, c],

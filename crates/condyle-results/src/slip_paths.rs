@@ -13,8 +13,8 @@ use super::side::point_on_side;
 /// Distance of the other places of a side from its deepest one, mm.
 const AROUND_MM: f64 = 6.0;
 
-/// `slip_paths.csv`: the slip of the femur past the place of each side that is worn deepest, and past four around it, a row
-/// an increment in which the place is pressed; none before a march has solved a cycle.
+/// Returns `slip_paths.csv`: the slip of the femur past the deepest place of each side and past four places around
+/// it, with one row per increment in which the place is under pressure; none before a march has solved a cycle.
 pub(super) fn slip_paths_csv(march: &March, side: Side) -> Option<String> {
     let cycle = march.last_cycle()?;
     let mut text =
@@ -27,7 +27,7 @@ pub(super) fn slip_paths_csv(march: &March, side: Side) -> Option<String> {
     Some(text)
 }
 
-/// The deepest node of each side that is worn and the nodes nearest to the places around it, each once.
+/// Returns the deepest node of each side that is worn and the nodes nearest to the places around it, each once.
 fn places(positions: &[Vec3], depth_mm: &[f64]) -> Vec<usize> {
     let mut nodes = Vec::new();
     for is_of_side in [|z: f64| z < 0.0, |z: f64| z >= 0.0] {

@@ -1,4 +1,4 @@
-//! `summary.json`: the numbers of the catalogue and the parts that are no numbers.
+//! `summary.json`: the numbers of the catalogue, and the parts that are not numbers.
 
 use std::{collections::BTreeMap, ops::Index};
 
@@ -32,11 +32,11 @@ pub struct Summary {
     pub wear_laws: Vec<LawWear>,
     /// Each of several activities; motions and ranges of the summary are those of the first.
     pub activities: Vec<ActivitySummary>,
-    /// Creep; none of an insert that does not creep.
+    /// Creep; none for an insert that does not creep.
     pub creep: Option<CreepSummary>,
     /// The pose of the settled femur in the insert frame, at which AP, ML and IS read zero.
     pub neutral_pose: Option<NeutralPose>,
-    /// Corrections and doubts of the input.
+    /// Corrections of the input, and remarks on suspicious input.
     pub warnings: Vec<String>,
     /// Version of condyle.
     pub version: String,
@@ -64,7 +64,7 @@ pub struct PlausibilityWarning {
 }
 
 impl Summary {
-    /// The numbers, activities and creep of a march; none before its first update.
+    /// Creates the numbers, activities and creep of a march; none before its first update.
     pub fn new(march: &March, facts: RunFacts) -> Option<Self> {
         let run = FinishedRun::new(march, facts)?;
         let values = catalogue::scalars();
@@ -78,12 +78,12 @@ impl Summary {
         })
     }
 
-    /// The value of a number; none where the run does not have it.
+    /// Returns the value of a number; none if the run does not have it.
     pub fn get(&self, scalar: &Scalar) -> Option<f64> {
         self.scalars.get(scalar.key).copied()
     }
 
-    /// The estimated discretisation error of a number, in its unit; none where it was not estimated.
+    /// Returns the estimated discretisation error of a number, in its unit; none where it was not estimated.
     pub fn total_error(&self, scalar: &Scalar) -> Option<f64> {
         Some(self.error.as_ref()?.get(scalar)?.in_unit.total)
     }

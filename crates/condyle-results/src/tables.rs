@@ -109,7 +109,7 @@ pub fn kinematics_csv(
     text
 }
 
-/// The rows of the first and the last cycle with the cycles before each, once where both are the same.
+/// Returns the rows of the first and the last cycle with the cycles before each, once where both are the same.
 pub(super) fn rows_of(
     cycles: Option<&(CycleRecord, CycleRecord)>,
 ) -> impl Iterator<Item = (f64, &CycleRow)> {

@@ -64,7 +64,7 @@ impl ResultsFolder {
         Ok(())
     }
 
-    /// The files that a run may have left, whether they are there or not, the checkpoint last.
+    /// Returns the files that a run may have left, whether they are there or not, the checkpoint last.
     fn files_of_a_run(&self) -> Vec<PathBuf> {
         let inserts = names_in(self.path()).filter(|name| is_numbered(name, "insert"));
         let others = SIGNS_OF_A_RUN
@@ -97,7 +97,7 @@ impl ResultsFolder {
             .collect()
     }
 
-    /// The frames of a cycle, by their paths in the folder.
+    /// Returns the frames of a cycle, by their paths in the folder.
     fn frames(&self, cycle: KeptCycle) -> Vec<String> {
         let folder = cycle.name();
         // One that was being written when the run was stopped has the ending of such files.

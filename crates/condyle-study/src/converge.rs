@@ -48,7 +48,7 @@ pub struct ConvergeOptions {
 pub struct Point {
     /// The value of the number.
     pub value: f64,
-    /// Name of the run's folder in that of the study.
+    /// Name of the run's folder in the folder of the study.
     pub folder: String,
     /// The results of the run.
     pub summary: Summary,
@@ -65,7 +65,7 @@ pub struct Convergence {
     pub steps: Vec<f64>,
 }
 
-/// The results that are compared.
+/// Returns the results that are compared.
 fn compared() -> impl Iterator<Item = &'static Scalar> {
     const KEYS: [&str; 5] = [
         "mass_loss_mg",
@@ -77,15 +77,15 @@ fn compared() -> impl Iterator<Item = &'static Scalar> {
     KEYS.into_iter().filter_map(catalogue::scalar)
 }
 
-/// Runs the case at `case_path` over values written as `key=value,value,...`, each into a folder of its own, and writes
+/// Runs the case at `case_path` over values written as `key=value,value,...`, each into its own folder, and writes
 /// `converge.csv`, `converge.json` and `converge.svg` next to them.
 ///
 /// The key is a dotted path, such as `march.updates`, or the last word of one, with or without its unit. A count is finer
 /// where it is larger, any other number where it is smaller.
 ///
 /// # Errors
-/// Everything that can be known of the input before it runs; a folder that cannot be used; the coarsest run that failed;
-/// [`StudyError::Interrupted`] if the listener breaks, after which the study can be resumed.
+/// Every problem of the input that is detected before it runs; a folder that cannot be used; the coarsest run that
+/// failed; [`StudyError::Interrupted`] if the listener breaks, after which the study can be resumed.
 pub fn converge(
     case_path: &Path,
     over: &str,
@@ -98,7 +98,7 @@ pub fn converge(
     let mut cases = Vec::new();
     for test in tests() {
         let mut case = plan.case_of(&test)?;
-        // The study itself shows what its runs would otherwise estimate one by one.
+        // The study itself shows the errors that each run would otherwise estimate.
         case.accuracy.estimate = false;
         cases.push(case);
     }
@@ -219,7 +219,7 @@ fn value_of(test: &Test) -> f64 {
     }
 }
 
-/// The last word of the key and the value, such as `updates-10`.
+/// Returns the last word of the key and the value, such as `updates-10`.
 fn folder_name(input: &Input, value: f64) -> String {
     format!("{}-{value}", last_word(&input.key))
 }
@@ -270,7 +270,7 @@ impl Convergence {
         extrapolate(&self.steps, &self.values(output))
     }
 
-    /// A row for each run, from coarse to fine.
+    /// Returns a row for each run, from coarse to fine.
     fn csv(&self) -> String {
         let keys: Vec<&str> = compared().map(|output| output.key).collect();
         let differences: Vec<String> = compared()
@@ -328,7 +328,7 @@ impl Convergence {
     }
 
     fn plot(&self, output: &Scalar) -> Plot {
-        /// The smallest span of an axis, as a share of the finest value: readers cannot tell less apart.
+        /// The smallest span of an axis, as a share of the finest value: smaller differences are not visible.
         const MIN_SHOWN_SHARE: f64 = 1e-3;
         // Finer runs lie to the right, by the logarithm of their steps where they have one.
         let has_logarithms = self.steps.iter().all(|step| *step > 0.0);
@@ -431,7 +431,7 @@ fn percent(value: f64) -> String {
     format!("{value:+.3}")
 }
 
-/// A number with five significant digits.
+/// Returns a number with five significant digits.
 fn significant(value: f64) -> String {
     let magnitude = match value {
         0.0 => 0,

@@ -13,14 +13,14 @@ pub(crate) enum Place {
     OfCase,
     /// The quantile of this share of its distribution.
     Share(f64),
-    /// This part of the way from its low end to its high end.
+    /// The value at this fraction of the range, from its low end.
     Along(f64),
 }
 
-/// A normal input, which has no ends, ends here for a design that needs them: 95 % of its values lie between.
+/// Ends of the range of a normal input in designs that need ends: 95 % of its values lie between.
 const END_DEVIATIONS: f64 = 2.0;
 
-/// The quantile of this share; of levels, each has the same share.
+/// Returns the quantile of this share; of levels, each has the same share.
 pub(crate) fn level_at_share(input: &Input, share: f64) -> Level {
     match &input.variation {
         Variation::Levels(keys) => {
@@ -32,7 +32,7 @@ pub(crate) fn level_at_share(input: &Input, share: f64) -> Level {
     }
 }
 
-/// The value this part of the way from the low end to the high end.
+/// Returns the value at the fraction `part` of the range, from its low end.
 pub(crate) fn level_along(input: &Input, part: f64) -> Level {
     match &input.variation {
         Variation::Levels(_) => level_at_share(input, part),
@@ -59,12 +59,12 @@ fn quantile(variation: &Variation, share: f64) -> f64 {
     }
 }
 
-/// The quantile of the standard normal distribution.
+/// Returns the quantile of the standard normal distribution.
 pub(crate) fn normal_quantile(share: f64) -> f64 {
     Normal::standard().inverse_cdf(share)
 }
 
-/// The share of the standard normal distribution below a value.
+/// Returns the share of the standard normal distribution below a value.
 pub(crate) fn normal_share(deviations: f64) -> f64 {
     Normal::standard().cdf(deviations)
 }
@@ -74,7 +74,7 @@ fn truncated_normal(keys: &TruncatedKeys, share: f64) -> f64 {
     let below = |value: f64| normal_share((value - mean) / keys.standard_deviation);
     let (least, most) = (below(keys.low), below(keys.high));
     let value = mean + keys.standard_deviation * normal_quantile(least + share * (most - least));
-    // Rounding may lead beyond the ends, which the case may refuse.
+    // Rounding may exceed the ends, and the case may reject such a value.
     value.clamp(keys.low, keys.high)
 }
 

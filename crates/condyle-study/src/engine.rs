@@ -1,4 +1,5 @@
-//! The engine of all studies: tests on several threads, results taken in as they arrive, a listener that can stop.
+//! The engine of all studies: it runs tests on several threads, stores results as they arrive, and reports to a
+//! listener that can stop it.
 
 use std::{
     ops::ControlFlow::{self, Break, Continue},
@@ -44,7 +45,7 @@ pub struct StudyOptions {
 pub struct Progress {
     /// Tests that were stored before this run of the study.
     pub before: u64,
-    /// Tests that are done, those before included.
+    /// Tests that are done, including those stored before.
     pub kept: u64,
     /// All tests; for a search, the largest number allowed.
     pub tests: u64,
@@ -69,7 +70,7 @@ pub type Listener<'a> = dyn FnMut(&StudyEvent) -> ControlFlow<()> + 'a;
 /// that is killed at any instant resumes with the other tests. A test that fails is stored with its reason.
 ///
 /// # Errors
-/// A folder of something else, or that cannot be written; [`StudyError::Interrupted`] if the listener breaks.
+/// A folder that holds other files or cannot be written; [`StudyError::Interrupted`] if the listener breaks.
 pub fn run_study(
     plan: &Plan,
     options: &StudyOptions,
@@ -124,7 +125,7 @@ pub fn merge(plan: &Plan, shards: &[PathBuf], out: &Path) -> Result<u64, StudyEr
     whole.count()
 }
 
-/// The results of all tests of a plan, in the order of their rows; nothing is stored.
+/// Returns the results of all tests of a plan, in the order of their rows; nothing is stored.
 pub(crate) fn run_in_memory(
     plan: &Plan,
     bench: &TestBench,
@@ -135,7 +136,7 @@ pub(crate) fn run_in_memory(
     run_all(plan, threads, &work, listener)
 }
 
-/// The results of `work` on all tests of a plan, in the order of their rows.
+/// Returns the results of `work` on all tests of a plan, in the order of their rows.
 pub(crate) fn run_all<T: Send>(
     plan: &Plan,
     threads: usize,
@@ -176,7 +177,7 @@ pub(crate) struct Reporter<'a, T> {
 }
 
 impl<T> Reporter<'_, T> {
-    /// Breaks if the study is to stop.
+    /// Passes an event to the listener; breaks if the study is to stop.
     pub fn report(&self, event: StudyEvent) -> ControlFlow<()> {
         let sent = self.sender.send(Message::Event(event));
         if sent.is_err() || self.stop.load(Ordering::Relaxed) {
@@ -186,8 +187,8 @@ impl<T> Reporter<'_, T> {
     }
 }
 
-/// The worker pool: runs `work` on `tests` on several threads, and passes results to `keep` and events to the listener
-/// on this one.
+/// Runs `work` on `tests` on several threads, and passes results to `keep` and events to the listener on the calling
+/// thread.
 fn run_tests<T: Send>(
     tests: &mut (dyn Iterator<Item = Test> + Send),
     threads: usize,
@@ -242,7 +243,7 @@ fn run_tests<T: Send>(
         while let Ok(Continue(())) = flow
             && let Ok(first) = receiver.recv()
         {
-            // All that is waiting is stored in one transaction.
+            // All waiting results are stored in one transaction.
             let messages = std::iter::once(first).chain(receiver.try_iter());
             flow = take_in(messages.collect(), listener);
         }
@@ -283,7 +284,7 @@ impl Default for TestBench {
     }
 }
 
-/// The first line of an error, of several problems the first.
+/// Returns the first line of an error, and the first of several problems.
 fn reason(error: &RunError) -> String {
     let problem = error
         .in_case()

@@ -15,16 +15,16 @@ use thiserror::Error;
 #[derive(Debug, Error)]
 #[non_exhaustive]
 pub enum StudyError {
-    /// The study file or its case.
+    /// The study file or its case has problems.
     #[error(transparent)]
     Study(#[from] Problems),
-    /// A key or a value to converge over that the case cannot take.
+    /// The case does not accept the key or a value of a convergence study.
     #[error(transparent)]
     Assignment(#[from] AssignmentError),
-    /// Tests that cannot be planned or run as asked, with the remedy.
+    /// The tests cannot be planned or run as requested; the text includes the remedy.
     #[error("{0}")]
     Plan(String),
-    /// A folder that the study cannot use.
+    /// The study cannot use the folder.
     #[error("{}: {problem}", folder.display())]
     Folder {
         /// The folder.
@@ -35,7 +35,7 @@ pub enum StudyError {
     /// The listener stopped the study; stored tests are kept.
     #[error("interrupted")]
     Interrupted,
-    /// The database.
+    /// The database cannot be used.
     #[error("{}: {source}; check that the disk is not full and the file can be written", path.display())]
     Store {
         /// The file.
@@ -54,13 +54,13 @@ pub enum StudyError {
     /// The folder is in use.
     #[error(transparent)]
     Results(#[from] ResultsError),
-    /// The page.
+    /// The page cannot be written.
     #[error(transparent)]
     Report(#[from] ReportError),
-    /// The case as it is, which every answer is relative to.
+    /// The unchanged case, to which every answer refers, does not run.
     #[error(transparent)]
     Run(#[from] RunError),
-    /// A run whose results the study compares with those of the others.
+    /// A run that the study compares with the others fails.
     #[error("{number}: {source}")]
     RunWith {
         /// The key and its value, such as `march.updates = 1`.
@@ -82,7 +82,7 @@ impl StudyError {
         Self::Plan(problem.to_owned())
     }
 
-    /// The error for a file or folder that the system refuses to read or write.
+    /// Converts a system error to the error for a file or folder that the system refuses to read or write.
     pub(crate) fn refused(path: &Path) -> impl Fn(io::Error) -> Self {
         let path = path.to_path_buf();
         move |source| Self::Refused {

@@ -1,8 +1,8 @@
 //! Studies: a case run many times with changed values.
 //!
-//! One engine runs the tests of a [`Plan`], which knows each by its number, on several threads. [`run_study`] stores their
-//! results in a [`Store`], from which [`write_answers`] computes tables, pictures and a page. [`sensitivity`],
-//! [`uncertainty`] and [`converge`] are plans made ready, with answers of their own.
+//! One engine runs the tests of a [`Plan`], which defines each test by its number, on several threads. [`run_study`]
+//! stores their results in a [`Store`], from which [`write_answers`] computes tables, pictures and a page.
+//! [`sensitivity`], [`uncertainty`] and [`converge`] are ready-made plans with their own answers.
 
 mod answers;
 mod converge;

@@ -21,15 +21,15 @@ use crate::{
     store::Store,
 };
 
-/// Inputs in a picture, those that matter most.
+/// Number of inputs in a picture: those with the largest effects.
 const MAX_INPUTS: usize = 12;
-/// Inputs of a scatter matrix.
+/// Number of inputs in a scatter matrix.
 const MAX_COLUMNS: usize = 5;
 
 /// Writes `table.csv`, `answers.json`, the pictures and `study.html` of the study in `folder`, and returns the answers.
 ///
 /// # Errors
-/// A folder without the study, or one that cannot be written.
+/// The folder does not hold the study, or it cannot be written.
 pub fn write_answers(plan: &Plan, folder: &Path) -> Result<Answers, StudyError> {
     let store = Store::existing(folder, plan)?;
     let answers = Answers::read(plan, &store)?;
@@ -145,7 +145,7 @@ fn elementary(answers: &Answers) -> Option<Picture> {
     Some(("morris.svg", caption.to_owned(), svg))
 }
 
-/// The largest effects on an output.
+/// Returns the largest effects on an output.
 fn effects_on<'a>(answers: &'a Answers, output: &str) -> Vec<&'a Effect> {
     let mut own = answers.effects_on(output);
     own.truncate(MAX_INPUTS);
@@ -249,7 +249,7 @@ fn scatter(answers: &Answers) -> Option<Picture> {
     Some(("scatter.svg", caption.to_owned(), svg))
 }
 
-/// The axes of an output over an input.
+/// Returns the axes of an output over an input.
 fn cloud(spread: &Spread, effect: &Effect) -> Cloud {
     let marks = effect.words.iter().enumerate();
     Cloud {

@@ -1,4 +1,4 @@
-//! The plan of a study: its tests, each found by its number alone.
+//! The plan of a study: its tests, each defined by its number alone.
 
 use std::{fmt, path::Path, str::FromStr};
 
@@ -37,7 +37,7 @@ pub struct Test {
     pub row: u64,
     /// The place of its design among those that are compared.
     pub alternative: usize,
-    /// The value of every input; none where the case's own value stays.
+    /// The value of every input; none if the input keeps the value of the case.
     pub values: Vec<Option<Level>>,
 }
 
@@ -97,27 +97,28 @@ impl Plan {
         })
     }
 
-    /// The study as its file describes it.
+    /// Returns the study as its file describes it.
     pub fn study(&self) -> &Study {
         &self.study
     }
 
-    /// Hash of everything that the tests depend on, in hexadecimal.
+    /// Returns the hash of everything on which the tests depend, in hexadecimal.
     pub fn inputs_blake3(&self) -> &str {
         &self.inputs_blake3
     }
 
-    /// Number of all tests; for a search, the largest number allowed.
+    /// Returns the number of all tests; for a search, the largest number allowed.
     pub fn tests(&self) -> u64 {
         self.tests * designs(&self.study) as u64
     }
 
-    /// Whether tests depend on the results of earlier ones.
+    /// Returns whether tests depend on the results of earlier ones.
     pub fn is_search(&self) -> bool {
         matches!(self.study.design, Design::Optimise(_))
     }
 
-    /// Test `row`; none beyond the last, and none of a search, where it depends on the results of earlier tests.
+    /// Returns test `row`; none beyond the last test, and none for a search, whose tests depend on the results of
+    /// earlier ones.
     pub(crate) fn test(&self, row: u64) -> Option<Test> {
         if row >= self.tests() {
             return None;
@@ -139,7 +140,7 @@ impl Plan {
         })
     }
 
-    /// The values of the inputs at these places.
+    /// Returns the values of the inputs at these places.
     pub(crate) fn values_at(&self, places: &[Place]) -> Vec<Option<Level>> {
         let inputs = self.study.inputs.iter().zip(places);
         let value = |(input, place): (&Input, &Place)| match *place {
@@ -168,7 +169,7 @@ impl Plan {
         places
     }
 
-    /// The case of a test.
+    /// Returns the case of a test.
     ///
     /// # Errors
     /// A combination of values that the case does not accept.
@@ -176,12 +177,12 @@ impl Plan {
         Ok(self.study.changed_case(&self.assignments(test))?)
     }
 
-    /// The changes of the case in a test.
+    /// Returns the changes of the case in a test.
     pub fn assignments(&self, test: &Test) -> Vec<Assignment> {
         self.study.assignments(test.alternative, &test.values)
     }
 
-    /// The values of a test in the table: those of the case where the test sets none.
+    /// Returns the values of a test in the table; if the test sets no value, that of the case.
     pub(crate) fn written_values(&self, test: &Test) -> Vec<Option<Level>> {
         let inputs = self.study.inputs.iter().zip(&test.values);
         let value = |(input, value): (&Input, &Option<Level>)| {
@@ -190,13 +191,13 @@ impl Plan {
         inputs.map(value).collect()
     }
 
-    /// The name of the design of a test; none where no designs are compared.
+    /// Returns the name of the design of a test; none if the study compares no designs.
     pub(crate) fn design_of(&self, test: &Test) -> Option<&str> {
         let design = self.study.alternatives.get(test.alternative)?;
         Some(&design.name)
     }
 
-    /// Columns of the table for the inputs and the outputs.
+    /// Returns the columns of the table for the inputs and the outputs.
     pub(crate) fn columns(&self) -> (Vec<&str>, Vec<&'static str>) {
         let inputs = self.study.inputs.iter().map(|input| input.key.as_str());
         (
@@ -206,18 +207,18 @@ impl Plan {
     }
 }
 
-/// The value of an output among the outputs of a test.
+/// Returns the value of an output among the outputs of a test.
 pub(crate) fn output_value(values: &[f64], output: &Scalar) -> f64 {
     let place = catalogue::outputs().position(|one| one.key == output.key);
     place.map_or(f64::NAN, |place| values[place])
 }
 
-/// Number of designs that are compared, one for the case alone.
+/// Returns the number of designs that are compared, one for the case alone.
 pub(crate) fn designs(study: &Study) -> usize {
     study.alternatives.len().max(1)
 }
 
-/// Number of values of each input.
+/// Returns the number of values of each input.
 fn counts(study: &Study, points: u64) -> Vec<u64> {
     let count = |input: &Input| match &input.variation {
         Variation::Levels(keys) => keys.levels.0.len() as u64,
@@ -226,7 +227,7 @@ fn counts(study: &Study, points: u64) -> Vec<u64> {
     study.inputs.iter().map(count).collect()
 }
 
-/// Number of tests of one design.
+/// Returns the number of tests of one design.
 fn tests(study: &Study) -> f64 {
     let inputs = study.inputs.len() as f64;
     let numbers = |points| counts(study, points).into_iter().map(|count| count as f64);
@@ -254,17 +255,17 @@ impl Shard {
     /// The whole study.
     pub const WHOLE: Self = Self { number: 1, of: 1 };
 
-    /// Whether it is the whole study.
+    /// Returns whether it is the whole study.
     pub fn is_whole(&self) -> bool {
         self.of == 1
     }
 
-    /// Whether a row is one of its tests.
+    /// Returns whether a row is one of its tests.
     pub(crate) fn has(&self, row: u64) -> bool {
         row % self.of == self.number - 1
     }
 
-    /// Number of its tests among so many.
+    /// Returns the number of its tests in a study of `tests` tests.
     pub(crate) fn count(&self, tests: u64) -> u64 {
         (tests + self.of - self.number) / self.of
     }

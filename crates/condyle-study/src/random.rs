@@ -7,7 +7,7 @@ pub(crate) struct Random(u64);
 const INCREMENT: u64 = 0x9e37_79b9_7f4a_7c15;
 
 impl Random {
-    /// The stream of this number of a seed; streams are independent, so that each can be drawn without the others.
+    /// Creates stream `number` of a seed; streams are independent, so that each can be drawn without the others.
     pub fn stream(seed: u64, number: u64) -> Self {
         let numbered = mixed(number.wrapping_add(INCREMENT).wrapping_mul(INCREMENT));
         Self(mixed(seed.wrapping_add(INCREMENT)) ^ numbered)
@@ -18,12 +18,12 @@ impl Random {
         mixed(self.0)
     }
 
-    /// A uniform number between 0 and 1, both excluded: the inverse of a distribution is then finite.
+    /// Returns a uniform number between 0 and 1, both excluded: the inverse of a distribution is then finite.
     pub fn share(&mut self) -> f64 {
         ((self.next() >> 12) as f64 + 0.5) / (1_u64 << 52) as f64
     }
 
-    /// A uniform index below `count`.
+    /// Returns a uniform index below `count`.
     pub fn index(&mut self, count: usize) -> usize {
         (self.share() * count as f64) as usize
     }
@@ -37,7 +37,7 @@ impl Random {
     }
 }
 
-/// A hash of 64 bits in which every bit of the result depends on every bit of `value`.
+/// Returns a hash of 64 bits in which every bit of the result depends on every bit of `value`.
 pub(crate) fn mixed(value: u64) -> u64 {
     let mixed = (value ^ (value >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
     let mixed = (mixed ^ (mixed >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);

@@ -11,7 +11,8 @@ use crate::{
     random::Random,
 };
 
-/// A search ends once its steps are below this part of every range: smaller changes make no other implant.
+/// A search ends once its steps are below this part of every range: smaller changes do not change an implant
+/// noticeably.
 const MIN_STEP: f64 = 1e-3;
 
 /// Returns the results of tests in their order, or none if some of them are missing.
@@ -27,7 +28,7 @@ pub(crate) struct Searched {
 }
 
 impl Searched {
-    /// Whether the search has converged to one place.
+    /// Returns whether the search has converged to one place.
     pub fn is_converged(&self) -> bool {
         self.step < MIN_STEP
     }
@@ -36,7 +37,7 @@ impl Searched {
 /// Searches by CMA-ES (Hansen 2016), generation by generation. The tests of a generation depend on the results of the
 /// earlier ones and on the seed alone, so that a resumed search repeats its stored tests.
 ///
-/// None for a study that is no search.
+/// None for a study that is not a search.
 pub(crate) fn search(
     plan: &Plan,
     evaluate: &mut Evaluate<'_>,
@@ -75,8 +76,8 @@ pub(crate) fn search(
     Ok(Some(searched))
 }
 
-/// The places of tests, the best first: those within the limits by the minimised output, then the others by their
-/// violation, then those that failed (Deb 2000).
+/// Returns the places of tests, the best first: those within the limits by the minimised output, then the others by
+/// their violation, then those that failed (Deb 2000).
 fn order(worth: &[(f64, f64)]) -> Vec<usize> {
     let mut order: Vec<usize> = (0..worth.len()).collect();
     order.sort_by(|&one, &other| {
@@ -86,7 +87,7 @@ fn order(worth: &[(f64, f64)]) -> Vec<usize> {
     order
 }
 
-/// The relative violation of all limits, and the minimised output.
+/// Returns the relative violation of all limits, and the minimised output.
 fn worth(plan: &Plan, keys: &OptimiseKeys, found: &TestResult) -> (f64, f64) {
     let (Ok(outputs), Some(minimised)) = (found, catalogue::output(&keys.minimise)) else {
         return (f64::INFINITY, f64::INFINITY);
@@ -102,7 +103,7 @@ fn worth(plan: &Plan, keys: &OptimiseKeys, found: &TestResult) -> (f64, f64) {
     )
 }
 
-/// First step, as a part of the ranges: from the middle, the ends are within two.
+/// First step, as a part of the ranges: the ends are less than two steps from the middle.
 const FIRST_STEP: f64 = 0.3;
 /// Largest step, as a part of the ranges: a longer one would only be mirrored.
 const MAX_STEP: f64 = 1.0;
@@ -179,12 +180,12 @@ impl Evolution {
         }
     }
 
-    /// The largest standard deviation along an axis, as a part of the ranges.
+    /// Returns the largest standard deviation along an axis, as a part of the ranges.
     pub fn largest_step(&self) -> f64 {
         self.step * self.covariance.diagonal().max().sqrt()
     }
 
-    /// The points of the next generation.
+    /// Returns the points of the next generation.
     pub fn ask(&self) -> Vec<Vec<f64>> {
         let eigen = SymmetricEigen::new(self.covariance.clone());
         let roots = eigen
@@ -200,7 +201,7 @@ impl Evolution {
         (0..self.rates.size).map(&mut point).collect()
     }
 
-    /// Learns from the points of a generation; `order` has their places, the best first.
+    /// Updates mean, step and covariance from the points of a generation; `order` has their places, the best first.
     pub fn tell(&mut self, points: &[Vec<f64>], order: &[usize]) {
         let rates = &self.rates;
         let step =
@@ -243,7 +244,7 @@ impl Evolution {
         self.step = (self.step * change).min(MAX_STEP);
     }
 
-    /// C^(-1/2) of a step.
+    /// Returns C^(-1/2) times a step.
     fn whitened(&self, step: &DVector<f64>) -> DVector<f64> {
         let eigen = SymmetricEigen::new(self.covariance.clone());
         let roots = eigen
@@ -254,7 +255,7 @@ impl Evolution {
     }
 }
 
-/// A coordinate in 0 to 1, mirrored at the ends.
+/// Returns a coordinate in 0 to 1, mirrored at the ends.
 fn mirrored(value: f64) -> f64 {
     let folded = value.rem_euclid(2.0);
     if folded > 1.0 { 2.0 - folded } else { folded }
@@ -264,7 +265,7 @@ fn mirrored(value: f64) -> f64 {
 mod tests {
     use super::*;
 
-    /// The mean after a minimisation of (violation, objective).
+    /// Returns the mean after a minimisation of (violation, objective).
     fn found(axes: usize, seed: u64, worth: impl Fn(&[f64]) -> (f64, f64)) -> (Vec<f64>, f64) {
         let mut evolution = Evolution::new(axes, seed);
         for _ in 0..150 {

@@ -19,8 +19,8 @@ use crate::{
     uncertainty::{compared, records},
 };
 
-/// Everything that a case assumes and that may affect its results: the name, the keys, which change together and of
-/// which a case may have some, the kind of the change, and the factors, terms or texts.
+/// Assumptions of a case that may affect its results. Columns: the name; the keys, which change together and of which
+/// a case may have some; the kind of the change; the factors, terms or texts.
 const ASSUMPTIONS: &str = include_str!("assumptions.csv");
 
 /// The results of a case without changes and with each of its assumptions changed.
@@ -38,9 +38,9 @@ type Results = BTreeMap<&'static str, f64>;
 struct Changed {
     assumption: &'static str,
     change: String,
-    /// The change as `--set` takes it.
+    /// The change in the notation of `--set`.
     set: Vec<String>,
-    /// None where the test failed.
+    /// The results; none if the test failed.
     found: Option<Results>,
     /// Changes of the results, %, in the order of the columns; none where a result was 0.
     above_percent: Option<Vec<Option<f64>>>,
@@ -51,7 +51,7 @@ struct Changed {
 /// do not depend on the number of threads.
 ///
 /// # Errors
-/// A case that cannot be run without changes. A change that cannot be run is among the results.
+/// The case does not run without changes. A change that fails is part of the results.
 pub fn sensitivity(
     case_path: &Path,
     threads: usize,
@@ -65,7 +65,7 @@ pub fn sensitivity(
     let bench = TestBench::default();
     let as_given = bench.summary(&study.case)?;
     let mut changes = changes_of(&study.case);
-    // A law or a curve that is the case's own is no change.
+    // The law or the curve of the case itself is not a change.
     changes.retain(|(_, _, set)| study.changed_case(set).ok().as_ref() != Some(&study.case));
     let alternatives = changes.iter();
     study.alternatives = alternatives
@@ -88,7 +88,7 @@ pub fn sensitivity(
 
 type NamedChange = (&'static str, String, Vec<Assignment>);
 
-/// Every change of a case, in the order of the table.
+/// Returns every change of a case, in the order of the table.
 fn changes_of(case: &Case) -> Vec<NamedChange> {
     let mut changes = Vec::new();
     for [name, keys, kind, values] in records(ASSUMPTIONS) {
@@ -110,7 +110,7 @@ fn changes_of(case: &Case) -> Vec<NamedChange> {
     changes
 }
 
-/// The keys with another text, and the change in words.
+/// Returns the assignments that replace the text of the keys, and the change in words.
 fn replaced(case: &Case, keys: &[&str], text: &str) -> (String, Vec<Assignment>) {
     let is_other = |key: &&&str| case.has(key) && case.word_at(key).as_deref() != Some(text);
     let set = keys.iter().filter(is_other);
@@ -120,7 +120,7 @@ fn replaced(case: &Case, keys: &[&str], text: &str) -> (String, Vec<Assignment>)
     (words.to_owned(), set.collect())
 }
 
-/// The keys times a number, or plus it, and the change in words.
+/// Returns the assignments that multiply the keys by a number or add it to them, and the change in words.
 fn moved(case: &Case, keys: &[&str], is_factor: bool, by: f64) -> (String, Vec<Assignment>) {
     let words = match by {
         0.0 if is_factor => "none".to_owned(),
@@ -134,14 +134,14 @@ fn moved(case: &Case, keys: &[&str], is_factor: bool, by: f64) -> (String, Vec<A
     let set = keys.iter().filter_map(|key| {
         let value = case.number_at(key)?;
         let other = if is_factor { by * value } else { value + by };
-        // Sums of decimal numbers end in digits that nobody wrote.
+        // Sums of decimal numbers have rounding errors in their last digits.
         let other = (other * 1e9).round() / 1e9;
         (other != value).then(|| Assignment::new(key, format!("{other}")))
     });
     (words, set.collect())
 }
 
-/// The compared outputs of a test.
+/// Returns the compared outputs of a test.
 fn results(values: &[f64]) -> Results {
     let value = |output: &'static Scalar| (output.key, output_value(values, output));
     compared().map(value).collect()
@@ -178,7 +178,7 @@ impl Changed {
 }
 
 impl Sensitivity {
-    /// A table in Markdown, and the changes without effect or result.
+    /// Returns a table in Markdown, and the changes without effect or result.
     pub fn markdown(&self) -> String {
         let is_without_effect = |one: &&Changed| one.found.as_ref() == Some(&self.as_given);
         let name = |one: &Changed| format!("{}: {}", one.assumption, one.change);

@@ -1,18 +1,18 @@
 //! Statistics of samples.
 
-/// Mean; 0 of an empty sample.
+/// Returns the mean, or 0 for an empty sample.
 pub(crate) fn mean(values: &[f64]) -> f64 {
     values.iter().sum::<f64>() / (values.len() as f64).max(1.0)
 }
 
-/// Sample standard deviation; 0 of fewer than two values.
+/// Returns the sample standard deviation, or 0 for fewer than two values.
 pub(crate) fn standard_deviation(values: &[f64]) -> f64 {
     let mean = mean(values);
     let squares: f64 = values.iter().map(|value| (value - mean).powi(2)).sum();
     (squares / (values.len() as f64 - 1.0).max(1.0)).sqrt()
 }
 
-/// Quantile of sorted values, linear between neighbours; NaN of an empty sample.
+/// Returns the quantile of sorted values, linear between neighbours; NaN for an empty sample.
 pub(crate) fn quantile(sorted: &[f64], share: f64) -> f64 {
     let Some(last) = sorted.len().checked_sub(1) else {
         return f64::NAN;
@@ -22,13 +22,13 @@ pub(crate) fn quantile(sorted: &[f64], share: f64) -> f64 {
     sorted[below] + (place - place.floor()) * (sorted[above] - sorted[below])
 }
 
-/// The interval that holds the central 95 % of the values.
+/// Returns the interval that holds the central 95 % of the values.
 pub(crate) fn central_interval(mut values: Vec<f64>) -> [f64; 2] {
     values.sort_by(f64::total_cmp);
     [0.025, 0.975].map(|share| quantile(&values, share))
 }
 
-/// The smallest and the largest value; infinite and reversed for none.
+/// Returns the smallest and the largest value; infinite and reversed if there are no values.
 pub(crate) fn extent(values: impl Iterator<Item = f64>) -> [f64; 2] {
     values.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], value| {
         [low.min(value), high.max(value)]
@@ -38,7 +38,7 @@ pub(crate) fn extent(values: impl Iterator<Item = f64>) -> [f64; 2] {
 /// The two-sided 95 % quantile of the standard normal distribution.
 pub(crate) const NORMAL_95: f64 = 1.959_964;
 
-/// The 95 % interval of a probability, observed `hits` times in `tests` (Wilson 1927); 0 to 1 without tests.
+/// Returns the 95 % interval of a probability, observed `hits` times in `tests` (Wilson 1927); 0 to 1 without tests.
 pub(crate) fn wilson_interval(hits: f64, tests: f64) -> [f64; 2] {
     if tests == 0.0 {
         return [0.0, 1.0];
@@ -53,7 +53,7 @@ pub(crate) fn wilson_interval(hits: f64, tests: f64) -> [f64; 2] {
     ]
 }
 
-/// Pearson's correlation; none for fewer than three pairs, or where either variable is constant.
+/// Returns Pearson's correlation; none for fewer than three pairs, or if either variable is constant.
 pub(crate) fn correlation(x: &[f64], y: &[f64]) -> Option<f64> {
     let (mean_x, mean_y) = (mean(x), mean(y));
     let [mut xy, mut xx, mut yy] = [0.0; 3];
@@ -66,13 +66,13 @@ pub(crate) fn correlation(x: &[f64], y: &[f64]) -> Option<f64> {
     (x.len() > 2 && xx > 0.0 && yy > 0.0).then(|| xy / (xx * yy).sqrt())
 }
 
-/// Spearman's rank correlation; none as for [`correlation`].
+/// Returns Spearman's rank correlation; none in the same cases as [`correlation`].
 pub(crate) fn rank_correlation(pairs: &[(f64, f64)]) -> Option<f64> {
     let (x, y): (Vec<f64>, Vec<f64>) = pairs.iter().copied().unzip();
     correlation(&ranks(&x), &ranks(&y))
 }
 
-/// The rank of each value; equal values share the mean of their ranks.
+/// Returns the rank of each value; equal values share the mean of their ranks.
 fn ranks(values: &[f64]) -> Vec<f64> {
     let mut order: Vec<usize> = (0..values.len()).collect();
     order.sort_by(|&one, &other| values[one].total_cmp(&values[other]));

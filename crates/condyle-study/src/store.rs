@@ -23,10 +23,10 @@ use crate::{
 pub(crate) const DATABASE: &str = "study.db";
 /// Version of the tables.
 const FORMAT: &str = "1";
-/// Time for which another process that reads may delay a write.
+/// Longest time for which a reading process may delay a write.
 const MAX_WAIT: Duration = Duration::from_secs(60);
 
-/// The database of a study; no other process can write into its folder while it is taken.
+/// The database of a study; it locks the folder of the study against other writers.
 pub struct Store {
     connection: Connection,
     path: PathBuf,
@@ -37,7 +37,7 @@ impl Store {
     /// Takes the folder `out` for a plan; folder and database are created if they do not exist.
     ///
     /// # Errors
-    /// A folder of another study or of something else, one in use, or one that cannot be written.
+    /// The folder holds another study or other files, is in use, or cannot be written.
     pub fn take(plan: &Plan, out: &Path) -> Result<Self, StudyError> {
         Self::take_shard(plan, Shard::WHOLE, out)
     }
@@ -77,7 +77,7 @@ impl Store {
     /// Opens the database of any study in `folder` for reading.
     ///
     /// # Errors
-    /// A folder without a study.
+    /// The folder holds no study.
     pub fn read(folder: &Path) -> Result<Self, StudyError> {
         let path = folder.join(DATABASE);
         if !path.is_file() {
@@ -153,7 +153,7 @@ impl Store {
         })
     }
 
-    /// Refuses a database of other tests.
+    /// Rejects a database with the tests of another plan.
     fn check_tests(&self, folder: &Path, plan: &Plan) -> Result<(), StudyError> {
         let is_format = self.fact("format")?.as_deref() == Some(FORMAT);
         let is_same = self.fact("inputs_blake3")?.as_deref() == Some(plan.inputs_blake3());
@@ -169,7 +169,7 @@ impl Store {
         self.first_row(query, name, |row| row.get(0))
     }
 
-    /// The first row that a query finds, if it finds one.
+    /// Returns the first row that a query finds, if it finds one.
     fn first_row<T>(
         &self,
         query: &str,
@@ -184,10 +184,10 @@ impl Store {
         )
     }
 
-    /// The numbers of the tests that are not stored.
+    /// Returns the numbers of the tests that are not stored.
     ///
     /// # Errors
-    /// A search, whose tests are unknown before they are due.
+    /// The study is a search, whose tests are not known in advance.
     pub fn missing(&self, plan: &Plan) -> Result<Vec<u64>, StudyError> {
         if plan.is_search() {
             return Err(StudyError::no_shards());
@@ -210,7 +210,7 @@ impl Store {
     /// Stores the results of tests in one transaction; a test that is stored already does not change.
     ///
     /// # Errors
-    /// A full disk.
+    /// The database cannot be written, for instance because the disk is full.
     pub fn keep(&self, plan: &Plan, found: &[(Test, TestResult)]) -> Result<(), StudyError> {
         let rows: Vec<Vec<Value>> = found
             .iter()
@@ -232,7 +232,7 @@ impl Store {
         })
     }
 
-    /// The result of a test; none of one that is not stored.
+    /// Returns the result of a test; none if it is not stored.
     pub(crate) fn outputs(&self, row: u64, plan: &Plan) -> Result<Option<TestResult>, StudyError> {
         let (_, outputs) = plan.columns();
         let query = select(&outputs, ", reason");
@@ -244,7 +244,7 @@ impl Store {
         })
     }
 
-    /// The results of several tests; none if one of them is not stored.
+    /// Returns the results of several tests; none if one of them is not stored.
     pub(crate) fn outputs_of(
         &self,
         tests: &[Test],
@@ -254,7 +254,7 @@ impl Store {
         found.collect()
     }
 
-    /// Test `row` with its stored inputs, which for a search are stored nowhere else; none if it is not stored.
+    /// Returns test `row` with its stored inputs, which for a search are stored only here; none if it is not stored.
     pub(crate) fn test(&self, row: u64, plan: &Plan) -> Result<Option<Test>, StudyError> {
         let (inputs, _) = plan.columns();
         let values = self.first_row(&select(&inputs, ""), row as i64, |cells| {
@@ -268,7 +268,7 @@ impl Store {
         }))
     }
 
-    /// Adds the tests of another database; tests that are stored here already stay.
+    /// Adds the tests of another database; tests that are already stored do not change.
     pub(crate) fn take_all(&self, other: &Path) -> Result<(), StudyError> {
         self.checked(|connection| {
             connection.execute(
@@ -280,16 +280,16 @@ impl Store {
         })
     }
 
-    /// Number of stored tests.
+    /// Returns the number of stored tests.
     ///
     /// # Errors
-    /// A database that cannot be read.
+    /// The database cannot be read.
     pub fn count(&self) -> Result<u64, StudyError> {
         let count = |row: &rusqlite::Row<'_>| row.get::<_, i64>(0);
         self.checked(|one| Ok(one.query_row("SELECT count(*) FROM tests", [], count)? as u64))
     }
 
-    /// Tests that failed by their reasons, the most frequent first.
+    /// Returns the reasons of failed tests with their counts, the most frequent first.
     pub(crate) fn reasons(&self) -> Result<Vec<(String, u64)>, StudyError> {
         let query = "SELECT coalesce(reason, ''), count(*) AS many FROM tests WHERE status = 'failed' \
                      GROUP BY reason ORDER BY many DESC, reason";
@@ -301,7 +301,7 @@ impl Store {
         })
     }
 
-    /// The column called `name` for every test that is done.
+    /// Returns the column called `name` for every test that is done.
     pub(crate) fn column(&self, plan: &Plan, name: &str) -> Result<Column, StudyError> {
         let column = quoted(name);
         self.checked(|connection| {
@@ -367,7 +367,7 @@ impl Store {
     /// Writes the table into a file.
     ///
     /// # Errors
-    /// A file that cannot be written.
+    /// The file cannot be written.
     pub fn export_csv(&self, path: &Path) -> Result<(), StudyError> {
         let refused = StudyError::refused(path);
         let mut out = BufWriter::new(fs::File::create(path).map_err(&refused)?);
@@ -410,7 +410,7 @@ pub(crate) struct Column {
     pub words: Vec<String>,
 }
 
-/// Whether a folder exists and holds anything besides the lock of a study or run.
+/// Returns whether a folder exists and holds anything besides the lock of a study or run.
 pub(crate) fn holds_anything(folder: &Path) -> Result<bool, StudyError> {
     match fs::read_dir(folder) {
         Ok(mut entries) => {
@@ -421,12 +421,12 @@ pub(crate) fn holds_anything(folder: &Path) -> Result<bool, StudyError> {
     }
 }
 
-/// A name as SQL quotes it.
+/// Returns a name as SQL quotes it.
 fn quoted(name: &str) -> String {
     format!("\"{}\"", name.replace('"', "\"\""))
 }
 
-/// A query of these columns of one test.
+/// Returns the SQL query for these columns of one test.
 fn select(columns: &[&str], more: &str) -> String {
     let columns: Vec<String> = columns.iter().map(|name| quoted(name)).collect();
     format!(
@@ -462,7 +462,7 @@ fn cells(plan: &Plan, test: &Test, result: &TestResult) -> Vec<Value> {
     cells
 }
 
-/// A cell of CSV, quoted where needed.
+/// Returns a cell of CSV, quoted where needed.
 fn csv_cell(text: &str) -> String {
     if text.contains([',', '"', '\n', '\r']) {
         format!("\"{}\"", text.replace('"', "\"\""))

@@ -26,12 +26,12 @@ use crate::{
     statistics::{central_interval, correlation, extent, mean, standard_deviation},
 };
 
-/// Values this many standard deviations from the mean do not occur: such parts and set-ups are rejected.
+/// Largest deviation from the mean, in standard deviations: parts and set-ups beyond it are rejected.
 const MAX_DEVIATIONS: f64 = 3.0;
 
-/// All inputs that scatter: the name, the keys, which move together and of which a case may have some, one standard
-/// deviation as a part of the value or as a step in the unit of the key, and its source. The source of a deviation that was
-/// not measured states the assumption.
+/// All inputs that scatter. Columns: the name; the keys, which move together and of which a case may have some; one
+/// standard deviation as a part of the value or as a step in the unit of the key; its source. The source of a
+/// deviation that was not measured states the assumption.
 const SCATTERS: &str = include_str!("scatters.csv");
 
 /// An input that scatters from test to test.
@@ -53,7 +53,7 @@ fn scatters() -> impl Iterator<Item = Scatter> {
     })
 }
 
-/// The records of a table that the crate includes, without its head.
+/// Returns the records of a table that the crate includes, without its head.
 pub(crate) fn records<const N: usize>(
     table: &'static str,
 ) -> impl Iterator<Item = [&'static str; N]> {
@@ -73,7 +73,7 @@ impl Scatter {
         format!("{} {unit}", self.deviation)
     }
 
-    /// The input of a study whose values count standard deviations; without keys if the case has none.
+    /// Returns the input of a study whose values count standard deviations; without keys if the case has none.
     fn input(&self, case: &Case) -> Input {
         let variation = Variation::TruncatedNormal(TruncatedKeys {
             mean: Some(0.0),
@@ -130,7 +130,7 @@ struct Share {
     /// One standard deviation, with its unit.
     standard_deviation: String,
     source: &'static str,
-    /// 100 times the square of the correlation with each result; 0 of fewer than three tests.
+    /// 100 times the square of the correlation with each result; 0 for fewer than three tests.
     variance_percent: BTreeMap<&'static str, f64>,
 }
 
@@ -139,7 +139,7 @@ struct Share {
 struct Spread {
     /// The result of the case without changes.
     value: f64,
-    /// Its discretisation error; none where the case does not ask for it.
+    /// Its discretisation error; none if the case does not request it.
     discretisation: Option<f64>,
     mean: f64,
     standard_deviation: f64,
@@ -151,7 +151,7 @@ struct Spread {
     laws: Option<[f64; 2]>,
 }
 
-/// The results that sensitivity and uncertainty are about.
+/// Returns the results that sensitivity and uncertainty studies report.
 pub(crate) fn compared() -> impl Iterator<Item = &'static Scalar> {
     const KEYS: [&str; 5] = [
         "mass_loss_mg",
@@ -200,7 +200,7 @@ pub fn uncertainty(
     ))
 }
 
-/// The summary of a case, with its estimate of the error if it asks for one.
+/// Returns the summary of a case, with its error estimate if the case requests one.
 fn with_error(case: &Case) -> Result<Summary, RunError> {
     struct KeepNothing;
     impl RunKeeper for KeepNothing {
@@ -327,7 +327,7 @@ impl Uncertainty {
     }
 
     fn notes(&self) -> String {
-        // The standard deviation of a sample of n scatters by 1 / sqrt(2 (n - 1)) of itself.
+        // The standard deviation of a sample of size n has a relative standard error of 1 / sqrt(2 (n - 1)).
         let known = 100.0 / (2.0 * (self.runs as f64 - 1.0).max(1.0)).sqrt();
         let mut text = format!(
             "{} runs, seed {}: standard deviations are known to {known:.0} %.\n",

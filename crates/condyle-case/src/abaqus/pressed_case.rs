@@ -67,7 +67,7 @@ impl<'a> PressedCase<'a> {
         })
     }
 
-    /// The test with the unworn insert.
+    /// Returns the test with the unworn insert.
     pub fn unworn(&self) -> &March {
         &self.unworn
     }

@@ -17,40 +17,40 @@ const FORMAT: &str = "4";
 const HASH_LENGTH: usize = 32;
 /// Ending of the files that are kept; no other is ever removed.
 const ENDING: &str = "kept";
-/// So many are kept, the newest, and no more than so many bytes: of a mesh femur a file has about 3 MB, of a deformable
-/// insert 5 to 40, and a study over many of them must not fill the disk.
+/// Limits of the number of files and of their bytes; the newest are kept. A file has about 3 MB for a mesh femur and
+/// 5 to 40 MB for a deformable insert, and a study over many of them must not fill the disk.
 const MAX_FILES: usize = 20;
 const MAX_BYTES: u64 = 300_000_000;
 
 /// A folder of results that are kept from run to run.
 ///
-/// A file is found by the hash of all that its content follows from: the inputs, and the program.
-/// A failure is never an error: what cannot be read is computed again, and what cannot be written is not kept.
+/// The name of a file is the hash of everything that determines its content: the inputs and the program. A failure is
+/// never an error: content that cannot be read is computed again, and content that cannot be written is not kept.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Cache {
     folder: Option<PathBuf>,
 }
 
 impl Cache {
-    /// A cache that keeps nothing.
+    /// Creates a cache that keeps nothing.
     pub fn off() -> Self {
         Self::default()
     }
 
-    /// A cache in a folder, which is made when it is needed.
+    /// Creates a cache in a folder, which is created when it is needed.
     pub fn in_folder(folder: impl Into<PathBuf>) -> Self {
         let folder = Some(folder.into());
         Self { folder }
     }
 
-    /// The user's: in the folder that `CONDYLE_CACHE` names, none if that is `off`; else in `condyle`
-    /// in the user's folder for such files.
+    /// Creates the cache of the user: in the folder that `CONDYLE_CACHE` names, or none if that is `off`; otherwise
+    /// in `condyle` in the cache folder of the user.
     pub fn of_user() -> Self {
         Self::by_environment(|name| env::var_os(name))
     }
 
     fn by_environment(variable: impl Fn(&str) -> Option<OsString>) -> Self {
-        // The XDG specification has relative paths ignored.
+        // The XDG specification requires that relative paths are ignored.
         let path = |name: &str| {
             let path = PathBuf::from(variable(name)?);
             path.is_absolute().then_some(path)
@@ -79,7 +79,7 @@ impl Keep for Cache {
     fn keep(&self, what: &str, inputs: &[&[u8]], content: &[u8]) {
         if let Some(folder) = &self.folder {
             let key = key(what, inputs);
-            // Nobody misses what is not kept.
+            // A failure to write is harmless: the content is computed again.
             let _ = write(folder, &file(folder, what, &key), &key, content);
         }
     }

@@ -1,4 +1,4 @@
-//! Activities of the machine, each with inputs of its own.
+//! Activities of the machine, each with its own inputs.
 
 use condyle::machine::Waveform;
 
@@ -6,7 +6,7 @@ use super::machine::{Freedoms, Machine, Sign, Waveforms};
 use super::waveform::{CaseChannel, waveform_items};
 use crate::config::{Fault, Item, Log, Section, Settings, TableItem, Writer, settings, within};
 
-/// Shares whose sum is so near to 1 are whole: thirds are written with a few digits.
+/// Largest deviation of the sum of shares from 1: thirds are written with a few digits.
 const WHOLE: f64 = 1e-3;
 
 settings! {
@@ -29,7 +29,7 @@ settings! {
     }
 }
 
-/// A repeated motion of the machine with inputs of its own.
+/// A repeated motion of the machine with its own inputs.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Activity {
     /// Its name, share and numbers.
@@ -38,8 +38,7 @@ pub struct Activity {
     pub waveforms: Waveforms,
 }
 
-/// The activities of a case, in the order they are written; none where `[machine]` has the inputs of the only
-/// one.
+/// The activities of a case in the order of the file; empty if `[machine]` has the inputs of the only activity.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Activities {
     all: Vec<Activity>,
@@ -62,7 +61,7 @@ impl Activities {
         self.all.is_empty()
     }
 
-    /// The share of all cycles that each has; they sum up to 1.
+    /// Returns the share of each in all cycles; the shares add up to 1.
     pub(super) fn shares(&self) -> Vec<f64> {
         let parts: Vec<f64> = self.all.iter().map(Activity::part).collect();
         let sum: f64 = parts.iter().sum();
@@ -118,7 +117,7 @@ impl Settings for Activities {
 }
 
 impl Activity {
-    /// Its share, or its cycles in the sequence.
+    /// Returns its share, or its cycles in the sequence.
     fn part(&self) -> f64 {
         let cycles = self.keys.cycles_in_sequence.map(|cycles| cycles as f64);
         self.keys.share.or(cycles).unwrap_or_default()
@@ -146,7 +145,7 @@ impl Activity {
     }
 }
 
-/// Reports every waveform that an activity lacks: none is taken from another activity in silence.
+/// Reports every waveform that an activity lacks: activities do not inherit waveforms from each other.
 fn check_inputs(
     section: &Section<'_>,
     name: &str,
@@ -174,7 +173,7 @@ fn check_inputs(
     complete
 }
 
-/// Reports names that are no words of a path, or that two activities have.
+/// Reports names that are not valid in a path, and names that two activities share.
 fn check_names(sections: &[Section<'_>], all: &[Activity], log: &mut Log<'_>) {
     for (number, (section, activity)) in sections.iter().zip(all).enumerate() {
         let name = &activity.keys.name;

@@ -30,7 +30,7 @@ pub enum AssignmentError {
         /// As written.
         written: String,
     },
-    /// A value that is no number.
+    /// A value that is not a number.
     #[error("`{text}` is no value for `{key}`; write a number, such as 10 or 0.5")]
     NotNumber {
         /// The key.
@@ -120,17 +120,17 @@ impl Assignment {
         }
     }
 
-    /// The key: a dotted path, or its last word.
+    /// Returns the key: a dotted path, or its last word.
     pub fn key(&self) -> &str {
         &self.key
     }
 
-    /// The value as written.
+    /// Returns the value as written.
     pub fn text(&self) -> &str {
         &self.text
     }
 
-    /// The value as a finite number, in the unit of the key's name.
+    /// Returns the value as a finite number, in the unit of the key's name.
     pub fn as_number(&self) -> Option<f64> {
         let value = DeValue::parse(&self.text).ok()?;
         number(value.get_ref()).filter(|number| number.is_finite())
@@ -205,7 +205,7 @@ impl<'c> Lines<'c> {
         }
     }
 
-    /// Removes what does not go with a choice that was set, unless it was set too.
+    /// Removes the keys that do not apply to a choice that was set, unless they were set too.
     pub fn leave_out(&self, document: &mut DeTable<'_>, items: &[Item]) -> Vec<CaseNote> {
         let mut notes = Vec::new();
         for change in self.changes {

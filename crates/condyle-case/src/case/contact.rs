@@ -153,7 +153,7 @@ variants! {
 }
 
 impl Contact {
-    /// The pressure law of a foundation; `None` for a deformable insert, which has none.
+    /// Returns the pressure law of a foundation; `None` for a deformable insert, which has none.
     pub fn law(&self) -> Option<&PressureLawChoice> {
         match &self.model {
             ContactModelChoice::Foundation(foundation) => Some(&foundation.law),
@@ -161,7 +161,7 @@ impl Contact {
         }
     }
 
-    /// The settings of a deformable insert; `None` for a foundation.
+    /// Returns the settings of a deformable insert; `None` for a foundation.
     pub fn deformable(&self) -> Option<&DeformableContact> {
         match &self.model {
             ContactModelChoice::Foundation(_) => None,
@@ -218,7 +218,7 @@ impl PlasticityChoice {
         }
     }
 
-    /// The yield stress and its hardening, if the insert yields.
+    /// Returns the yield stress and its hardening, if the insert yields.
     pub(crate) fn hardening(&self) -> Option<Hardening> {
         match self {
             Self::None => None,

@@ -103,7 +103,7 @@ impl Case {
         out.into_text()
     }
 
-    /// The [`json_schema`] of a case that may choose from the wear laws that come with condyle.
+    /// Returns the [`json_schema`] of a case that may choose from the wear laws that come with condyle.
     pub fn json_schema() -> String {
         json_schema(WEAR_LAWS)
     }
@@ -163,10 +163,10 @@ impl Settings for Origin {
     fn write(&self, _: &mut Writer) {}
 }
 
-/// A remark on the reading of a case, for the user to know.
+/// A remark on the reading of a case, to be shown to the user.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(super) enum CaseNote {
-    /// A key that does not go with a choice set from outside, and was left out.
+    /// A key that does not apply to a choice set from outside, and was left out.
     LeftOut { written: String, chosen: String },
     /// A key under the name that it had in the previous version.
     Renamed {

@@ -39,10 +39,10 @@ pub struct Axes {
     words: [&'static str; 3],
 }
 
-/// Three words that are no frame.
+/// Three words that do not form a frame.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Error)]
 pub enum AxesError {
-    /// Two words on one line.
+    /// Two axes along one line.
     #[error("two of the axes lie along the same line, so one direction of space has none")]
     SameLine,
     /// A mirrored frame.
@@ -67,19 +67,20 @@ impl Axes {
         words: ["anterior", "superior", "right"],
     };
 
-    /// The axes of which [`Axes::rotation`] is `rotation`, in words that do not depend on the side.
+    /// Creates the axes with the rotation `rotation` (see [`Axes::rotation`]), in words that do not depend on the
+    /// side.
     pub fn of(rotation: &Mat3) -> Self {
         let words = [0, 1, 2].map(|axis| word(rotation.column(axis).into()));
         Self { words }
     }
 
-    /// The words for x, y and z.
+    /// Returns the words for x, y and z.
     pub fn words(&self) -> [&'static str; 3] {
         self.words
     }
 
-    /// The rotation from the file's frame to x anterior, y superior, z right of a `side` knee,
-    /// before a left knee is mirrored.
+    /// Returns the rotation from the file's frame to x anterior, y superior, z right of a `side` knee, before a left
+    /// knee is mirrored.
     ///
     /// # Errors
     /// Two axes along one line, or a left-handed frame.
@@ -156,7 +157,7 @@ fn three<'a, 'i>(array: &'a toml::de::DeArray<'i>) -> Option<[&'a Spanned<DeValu
     all.try_into().ok()
 }
 
-/// Reports axes that are no right-handed frame on a `side` knee.
+/// Reports axes that do not form a right-handed frame on a `side` knee.
 pub(crate) fn check_axes(axes: &Axes, side: Side, span: std::ops::Range<usize>, log: &mut Log<'_>) {
     if let Err(error) = axes.rotation(side) {
         let advice = "name where x, y and z of the file point; the third is the cross product of the first two, such as \

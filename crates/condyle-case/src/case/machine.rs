@@ -149,7 +149,7 @@ pub struct Machine {
     pub springs: Springs,
     /// The six freedoms.
     pub freedoms: Freedoms,
-    /// The waveforms that drive them, and no others.
+    /// The waveforms that drive the freedoms.
     pub waveforms: Waveforms,
 }
 
@@ -166,7 +166,7 @@ pub struct Freedom {
     pub damping: f64,
 }
 
-/// The six freedoms, one a joint; the drive of each is given.
+/// The six freedoms, one per joint, each with its drive.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Freedoms {
     rows: [Freedom; 6],
@@ -179,7 +179,7 @@ pub struct Waveforms {
 }
 
 impl Preset {
-    /// Returns the drive of a freedom that the case does not give.
+    /// Returns the drive of a freedom for which the case gives none.
     fn drive(self, freedom: &str) -> DriveWord {
         let prescribed: &[&str] = match self {
             Self::StanmoreForce => &["flexion"],
@@ -375,7 +375,7 @@ impl Waveforms {
         given.find_map(|(of, waveform)| (*of == channel).then_some(waveform))
     }
 
-    /// Reads those that `freedoms` need from their tables in `machine`; reports every other one.
+    /// Reads the waveforms that `freedoms` need from their tables in `machine`; reports any other waveform.
     pub(super) fn read(
         machine: &Section<'_>,
         freedoms: &Freedoms,

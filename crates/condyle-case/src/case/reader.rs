@@ -1,4 +1,4 @@
-//! Reading of cases from files, and the hash of what goes into a run.
+//! Reading of cases from files, and the hash of the inputs of a run.
 
 #[cfg(feature = "file-system")]
 use std::fs;
@@ -50,7 +50,7 @@ impl CaseReader {
     /// Reads the case file at `path`; paths in it are relative to its folder.
     ///
     /// # Errors
-    /// Every problem of the file, or that it cannot be read.
+    /// The file cannot be read, or it has problems; all of them are reported.
     pub fn read(&self, path: &Path) -> Result<Case, Problems> {
         self.case_of(&self.source(path)?, Base::of(&self.files, path), &[])
     }

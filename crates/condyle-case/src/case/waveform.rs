@@ -40,7 +40,7 @@ const NONE: NamedWaveform = NamedWaveform {
 };
 
 impl CaseChannel {
-    /// The load that presses the femur on the insert.
+    /// Creates the load that presses the femur on the insert.
     pub(super) fn load() -> Self {
         Self(&machine::knee::AXIAL_FORCE)
     }
@@ -70,7 +70,7 @@ impl CaseChannel {
         self.0.about
     }
 
-    /// The key that gives its knots in the case file.
+    /// Returns the key that gives its knots in the case file.
     pub fn knots_key(self) -> &'static str {
         match self.0.unit {
             ChannelUnit::Newton => "knots_n",
@@ -90,7 +90,7 @@ impl CaseChannel {
         }
     }
 
-    /// The keys of which exactly one gives the points: by name, from a file, or directly.
+    /// Returns the keys of which exactly one gives the points: by name, from a file, or directly.
     pub(super) fn ways(self) -> [&'static str; 3] {
         ["waveform", "file", self.knots_key()]
     }
@@ -112,7 +112,7 @@ impl CaseChannel {
         items
     }
 
-    /// The range of its values, in its unit.
+    /// Returns the range of its values, in its unit.
     pub fn limits(self) -> Limits {
         within(self.0.least, self.0.most)
     }

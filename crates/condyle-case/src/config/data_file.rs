@@ -38,10 +38,10 @@ impl PartialEq for DataFile {
 }
 
 impl DataFile {
-    /// The one of `files` at `written`, counted from `folder`.
+    /// Finds the file of `files` at the path `written`, relative to `folder`.
     ///
     /// # Errors
-    /// The path that was looked at, where there is no such file.
+    /// The file does not exist; the error is the path that was searched.
     pub fn find(files: &Arc<dyn Files>, written: &str, folder: &Path) -> Result<Self, PathBuf> {
         let (path, files) = (files.find(written, folder)?, Arc::clone(files));
         let written = path.clone();

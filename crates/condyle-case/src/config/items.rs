@@ -126,7 +126,7 @@ impl Choices {
 }
 
 impl Item {
-    /// The name of a key or table.
+    /// Returns the name of a key or table.
     pub fn name(&self) -> Option<&'static str> {
         match self {
             Self::Key(key) => Some(key.name),

@@ -134,14 +134,14 @@ impl Problems {
         Self { problems }
     }
 
-    /// A file that cannot be opened.
+    /// Creates a file that cannot be opened.
     pub(crate) fn unreadable(reason: impl Reason) -> Self {
         Self {
             problems: vec![Problem::nowhere(reason)],
         }
     }
 
-    /// The problems, one or more.
+    /// Returns the problems, one or more.
     pub fn problems(&self) -> &[Problem] {
         &self.problems
     }

@@ -30,8 +30,8 @@ const PLAIN_WIDTH: usize = 100;
 const MAX_SHOWN: usize = 20;
 
 impl Problems {
-    /// The first problems, each with its place, a caret under the spot, and what to do; of more than
-    /// twenty, how many more there are.
+    /// Returns the first problems, each with its place, a caret under the spot, and what to do; of more than twenty,
+    /// how many more there are.
     pub fn render(&self, style: RenderStyle) -> String {
         let (theme, width) = match style {
             RenderStyle::Plain => (GraphicalTheme::none(), PLAIN_WIDTH),

@@ -97,7 +97,7 @@ impl<'a> Section<'a> {
         &self.path
     }
 
-    /// The table as messages name it.
+    /// Returns the table as messages name it.
     pub(crate) fn name(&self) -> String {
         match self.path.as_str() {
             "" => "the top of the file".to_owned(),

@@ -17,7 +17,7 @@ pub(crate) trait Setting: Sized {
     /// Reads the value, or reports why it cannot be used.
     fn read(value: &Spanned<DeValue<'_>>, key: &Key, log: &mut Log<'_>) -> Option<Self>;
 
-    /// The value in TOML; `None` for a value that is left out.
+    /// Returns the value in TOML; `None` for a value that is left out.
     fn text(&self) -> Option<String>;
 
     /// Writes the value with the meaning of its key; one that is left out as a comment.
@@ -289,7 +289,7 @@ macro_rules! choice {
             /// The words of all choices.
             pub const WORDS: &'static [&'static str] = &[$($word),+];
 
-            /// The word of a file for this choice.
+            /// Returns the word of a file for this choice.
             pub fn word(self) -> &'static str {
                 match self { $( Self::$variant => $word, )+ }
             }

@@ -17,7 +17,7 @@ pub(crate) trait Settings: Sized {
     /// Writes every entry with its value.
     fn write(&self, out: &mut Writer);
 
-    /// The keys of the part itself, without those of tables inside.
+    /// Returns the keys of the part itself, without those of tables inside.
     fn keys() -> Vec<Key> {
         keys(&Self::items()).into_iter().cloned().collect()
     }
@@ -213,7 +213,7 @@ macro_rules! variants {
                 )
             }
 
-            /// The word of a file for this choice.
+            /// Returns the word of a file for this choice.
             pub fn word(&self) -> &'static str {
                 match self { $( Self::$variant { .. } => $word, )+ }
             }

@@ -78,7 +78,7 @@ impl Bound {
         })
     }
 
-    /// The distance of a value beyond the limits; 0 within them.
+    /// Returns the distance of a value beyond the limits; 0 within them.
     pub fn excess(&self, value: f64) -> f64 {
         let above = self.most.map_or(0.0, |most| value - most);
         let below = self.least.map_or(0.0, |least| least - value);
@@ -86,7 +86,7 @@ impl Bound {
     }
 }
 
-/// The output that the key `key` names.
+/// Returns the output that the key `key` names.
 pub(super) fn output(
     name: &str,
     key: &str,

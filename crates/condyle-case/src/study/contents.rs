@@ -49,7 +49,7 @@ pub struct Alternative {
 }
 
 impl Alternative {
-    /// A design that no file describes.
+    /// Creates a design that no file describes.
     pub fn new(name: String, set: Vec<Assignment>) -> Self {
         let span = 0..0;
         Self { name, set, span }
@@ -66,7 +66,7 @@ pub struct Correlation {
 }
 
 impl Study {
-    /// A study of the case at `case_path` that no file describes; it varies nothing yet.
+    /// Creates a study of the case at `case_path` that no file describes; it varies nothing yet.
     ///
     /// # Errors
     /// Everything that is wrong with the case.
@@ -94,7 +94,8 @@ impl Study {
         })
     }
 
-    /// The changes of the case in one test: those of the design, then the inputs'. An input without a value sets nothing.
+    /// Returns the changes of the case in one test: those of the design, then the inputs'. An input without a value
+    /// sets nothing.
     pub fn assignments(&self, alternative: usize, values: &[Option<Level>]) -> Vec<Assignment> {
         let of_design = self.alternatives.get(alternative);
         let design = of_design.into_iter().flat_map(|design| design.set.clone());
@@ -106,7 +107,7 @@ impl Study {
         design.chain(inputs.flat_map(set)).collect()
     }
 
-    /// The case with some of its values changed.
+    /// Returns the case with some of its values changed.
     ///
     /// # Errors
     /// As [`CaseReader::read_changed`].
@@ -114,7 +115,7 @@ impl Study {
         self.cases.read_changed(&self.case_path, changes)
     }
 
-    /// The value of an input in the case without changes; none where the case leaves it out.
+    /// Returns the value of an input in the case without changes; none where the case leaves it out.
     pub fn value_of_case(&self, input: &Input) -> Option<Level> {
         let number = self.case.number_at_or_written(&input.key);
         let number = number.map(Level::Number);

@@ -46,7 +46,7 @@ pub struct ScaledKey {
 }
 
 impl Input {
-    /// An input of real numbers that no file describes.
+    /// Creates an input of real numbers that no file describes.
     pub fn new(key: &str, variation: Variation) -> Self {
         Self {
             key: key.to_owned(),
@@ -89,7 +89,7 @@ impl Input {
         })
     }
 
-    /// The changes of the case for a value; files are relative to `folder`, that of the study.
+    /// Returns the changes of the case for a value; files are relative to `folder`, that of the study.
     pub fn assignments(&self, folder: &Path, level: &Level) -> Vec<Assignment> {
         let number = |number: f64| {
             if number.fract() == 0.0 && number.abs() < 1e15 {
@@ -121,7 +121,7 @@ impl Input {
         !matches!(self.variation, Variation::Levels(_))
     }
 
-    /// Values that the case must accept to accept all: the ends of a distribution, or levels.
+    /// Returns the values that the case must accept to accept all: the ends of a distribution, or levels.
     pub(super) fn ends(&self) -> Vec<Level> {
         let (low, high) = match &self.variation {
             Variation::Uniform(keys) => (keys.low, keys.high),
@@ -140,7 +140,7 @@ impl Input {
         [low, high].map(|end| self.level(end)).to_vec()
     }
 
-    /// A number as this input takes it.
+    /// Returns a number as this input takes it.
     pub fn level(&self, number: f64) -> Level {
         Level::Number(if self.is_whole {
             number.round()
@@ -150,12 +150,12 @@ impl Input {
     }
 }
 
-/// A number to twelve digits: sums of decimal numbers end in digits that nobody wrote.
+/// Rounds a number to twelve digits, which removes the rounding errors of sums of decimal numbers.
 fn rounded(number: f64) -> f64 {
     format!("{number:.11e}").parse().unwrap_or(number)
 }
 
-/// The smallest and the largest number, and every word: if the case accepts these, it accepts all.
+/// Returns the smallest and the largest number, and every word: if the case accepts these, it accepts all.
 fn decisive(levels: impl Iterator<Item = Level>) -> Vec<Level> {
     let (mut low, mut high) = (f64::INFINITY, f64::NEG_INFINITY);
     let (mut words, mut seen) = (Vec::new(), BTreeSet::new());
@@ -297,7 +297,7 @@ fn split(text: &str) -> Result<Table, Vec<Placed>> {
     }
 }
 
-/// The lines that are neither blank nor comments.
+/// Returns the lines that are neither blank nor comments.
 fn lines(text: &str) -> impl Iterator<Item = Range<usize>> + '_ {
     let mut start = 0;
     let spans = text.split_inclusive('\n').map(move |line| {

@@ -38,7 +38,7 @@ impl Study {
         Self::read_in(Disk, path)
     }
 
-    /// The same from `files`, which have the case and the files that it names as well.
+    /// Creates the same from `files`, which have the case and the files that it names as well.
     ///
     /// # Errors
     /// As [`Self::read`].
@@ -116,7 +116,7 @@ fn read_study(
     Some(study)
 }
 
-/// The tables of a list, or none if one of them has a problem.
+/// Returns the tables of a list, or none if one of them has a problem.
 fn listed<T>(
     root: &Section<'_>,
     name: &str,
@@ -232,7 +232,7 @@ impl Study {
         }
     }
 
-    /// The reason why the case does not accept changes, and the remedy.
+    /// Returns the reason why the case does not accept changes, and the remedy.
     fn refusal(&self, set: &[Assignment]) -> Option<(String, Option<String>)> {
         match self.changed_case(set) {
             Ok(_) => None,

@@ -33,9 +33,9 @@ pub(crate) struct Effect {
     pub words: Vec<String>,
     /// Largest less smallest mean of the output, in its unit.
     pub span: f64,
-    /// The 95th percentile of the span of an inactive input; none where the tests are no sample.
+    /// The 95th percentile of the span of an inactive input; none if the tests are not a random sample.
     pub span_by_chance: Option<f64>,
-    /// Values of the input and the output in some of the tests, for a picture.
+    /// Values of the input and the output in a subset of the tests, for a picture.
     #[serde(skip)]
     pub points: Vec<(f64, f64)>,
 }
@@ -69,8 +69,8 @@ pub(crate) fn effects(data: &Data<'_>) -> Vec<Effect> {
     effects
 }
 
-/// The values of an input and an output in each test that is done. In a one-at-a-time design, tests in which another
-/// input moves do not count.
+/// Returns the values of an input and an output in each test that is done. In a one-at-a-time design, tests that
+/// change another input do not count.
 fn pairs(data: &Data<'_>, place: usize, output: &[f64]) -> Vec<(f64, f64)> {
     let is_one_at_a_time = matches!(data.plan.study().design, Design::OneAtATime(_));
     let counts = |row: usize| {
@@ -85,7 +85,7 @@ fn pairs(data: &Data<'_>, place: usize, output: &[f64]) -> Vec<(f64, f64)> {
     done.map(|(_, (x, y))| (*x, *y)).collect()
 }
 
-/// The pairs at each value if there are few, otherwise in slices; `sorted` by the input.
+/// Returns the pairs at each value if there are few, otherwise in slices; `sorted` by the input.
 fn slices(sorted: &[(f64, f64)]) -> Vec<&[(f64, f64)]> {
     let by_value: Vec<&[(f64, f64)]> = sorted.chunk_by(|one, other| one.0 == other.0).collect();
     if by_value.len() <= SLICES {
@@ -95,20 +95,20 @@ fn slices(sorted: &[(f64, f64)]) -> Vec<&[(f64, f64)]> {
     }
 }
 
-/// Mean of the input and of the output.
+/// Returns the mean of the input and of the output.
 fn means(slice: &[(f64, f64)]) -> (f64, f64) {
     let (x, y): (Vec<f64>, Vec<f64>) = slice.iter().copied().unzip();
     (mean(&x), mean(&y))
 }
 
-/// Largest less smallest value; 0 for none.
+/// Returns the largest less smallest value; 0 for none.
 fn span(values: impl Iterator<Item = f64>) -> f64 {
     let [low, high] = extent(values);
     (high - low).max(0.0)
 }
 
-/// The 95th percentile of the span of the means of these slices if the output did not depend on the input, by random
-/// permutations of the outputs.
+/// Returns the 95th percentile of the span of the means of these slices if the output did not depend on the input, by
+/// random permutations of the outputs.
 fn span_by_chance(slices: &[&[(f64, f64)]]) -> f64 {
     let values: Vec<f64> = slices.concat().into_iter().map(|pair| pair.1).collect();
     let spans = (0..SHUFFLES).map(|number| {
@@ -141,7 +141,7 @@ pub(crate) struct Elementary {
     pub walks: usize,
 }
 
-/// The elementary effects of a Morris design; none of others.
+/// Returns the elementary effects of a Morris design; empty for other designs.
 pub(crate) fn elementary_effects(data: &Data<'_>) -> Vec<Elementary> {
     let study = data.plan.study();
     let Design::Morris(keys) = &study.design else {
@@ -158,7 +158,7 @@ pub(crate) fn elementary_effects(data: &Data<'_>) -> Vec<Elementary> {
     all
 }
 
-/// The effects of every input, one for each walk; steps from or to a test that failed are left out.
+/// Returns the effects of every input, one for each walk; steps from or to a test that failed are left out.
 fn of_walks(inputs: usize, walk: &dyn Fn(u64) -> Walk, values: &[f64]) -> Vec<Vec<f64>> {
     let mut effects = vec![Vec::new(); inputs];
     for (number, tests) in (0..).zip(values.chunks_exact(inputs + 1)) {

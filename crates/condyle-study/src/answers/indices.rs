@@ -30,7 +30,7 @@ pub(crate) struct Indices {
     pub bases: usize,
 }
 
-/// The indices of a Saltelli design; none of others.
+/// Returns the indices of a Saltelli design; empty for other designs.
 pub(crate) fn indices(data: &Data<'_>) -> Vec<Indices> {
     let study = data.plan.study();
     if !matches!(study.design, Design::Saltelli(_)) {
@@ -76,7 +76,8 @@ fn of_output(output: &'static str, inputs: &[&str], values: &[f64]) -> Vec<Indic
 struct Bases(Vec<Vec<f64>>);
 
 impl Bases {
-    /// The bases with all tests done. Subtracting the mean reduces the scatter of the estimate of the first index.
+    /// Creates the bases with all tests done. Subtracting the mean reduces the scatter of the estimate of the first
+    /// index.
     fn new(inputs: usize, values: &[f64]) -> Self {
         let whole = values.chunks_exact(inputs + 2);
         let mut whole: Vec<Vec<f64>> = whole
@@ -92,15 +93,15 @@ impl Bases {
         Self(whole)
     }
 
-    /// As many bases, drawn with replacement.
+    /// Draws a bootstrap sample: as many bases, with replacement.
     fn resample(&self, number: u64) -> Vec<usize> {
         let mut numbers = Random::stream(SEED, number);
         let count = self.0.len();
         (0..count).map(|_| numbers.index(count)).collect()
     }
 
-    /// First and total index of an input from some bases:
-    /// S = mean(b (c - a)) / V (Saltelli et al. 2010), T = mean((a - c)^2) / 2 V (Jansen 1999).
+    /// Returns the first and total index of an input from some bases: S = mean(b (c - a)) / V (Saltelli et al. 2010),
+    /// T = mean((a - c)^2) / 2 V (Jansen 1999).
     fn indices(&self, input: usize, bases: &[usize]) -> (f64, f64) {
         let count = bases.len() as f64;
         let [mut sum, mut squares, mut first, mut total] = [0.0; 4];

@@ -226,7 +226,7 @@ impl Answers {
         })
     }
 
-    /// For designs without a table of their own.
+    /// Returns the table of effects, for designs without a specific table.
     fn table_of_effects(&self) -> Vec<Vec<String>> {
         if !self.indices.is_empty() || !self.elementary.is_empty() || self.best.is_some() {
             return Vec::new();
@@ -269,7 +269,7 @@ fn largest_first<'a, T>(own: impl Iterator<Item = &'a T>, size: impl Fn(&T) -> f
     own
 }
 
-/// The head and a row for each of `all`.
+/// Returns the head and a row for each of `all`.
 pub(crate) fn table<T>(
     head: &[&str],
     all: &[T],
@@ -279,7 +279,8 @@ pub(crate) fn table<T>(
     std::iter::once(head).chain(all.iter().map(row)).collect()
 }
 
-/// The same of the inputs that matter most, all of which the page has in its pictures; empty where there are none.
+/// Returns the same table for the inputs with the largest effects; the pictures of the page show all inputs. Empty if
+/// there are no inputs.
 fn table_of_most<T>(
     head: &[&str],
     all: &[&T],
@@ -292,7 +293,7 @@ fn table_of_most<T>(
     table(head, &all[..all.len().min(MAX_ROWS)], |one| row(one))
 }
 
-/// A number with four significant digits.
+/// Returns a number with four significant digits.
 pub(crate) fn shown(value: f64) -> String {
     if value == 0.0 || !value.is_finite() {
         return format!("{value:.0}");

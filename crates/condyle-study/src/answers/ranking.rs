@@ -29,7 +29,7 @@ pub(crate) struct RankedDesign {
     pub name: String,
     pub mean: f64,
     pub standard_deviation: f64,
-    /// Share of the disturbances under which every limit is kept.
+    /// Share of the disturbances under which the design is within every limit.
     pub within_limits: f64,
     /// Share of the disturbances under which no other design is better.
     pub best: f64,
@@ -47,7 +47,7 @@ struct Outcomes {
 }
 
 impl Ranking {
-    /// None where no designs are compared.
+    /// Ranks the designs of a study; none if it compares no designs.
     pub fn read(data: &Data<'_>, store: &Store) -> Result<Option<Self>, StudyError> {
         let study = data.plan.study();
         if study.alternatives.is_empty() {
@@ -81,7 +81,7 @@ impl Ranking {
     }
 }
 
-/// The designs by how often no other is better, then by the mean.
+/// Returns the designs sorted by how often no other is better, then by the mean.
 fn ranked(all: &[Outcomes]) -> Vec<RankedDesign> {
     let best = |design: &Outcomes| {
         let is_best = |row: &usize| {
@@ -119,7 +119,7 @@ fn ranked(all: &[Outcomes]) -> Vec<RankedDesign> {
     ranked.collect()
 }
 
-/// The number of disturbances under which one value is smaller than the other, ties counted half.
+/// Returns the number of disturbances under which one value is smaller than the other, ties counted half.
 fn wins(one: &[f64], other: &[f64]) -> f64 {
     let win = |(one, other): (&f64, &f64)| match one.total_cmp(other) {
         std::cmp::Ordering::Less => 1.0,
@@ -133,7 +133,7 @@ fn wins(one: &[f64], other: &[f64]) -> f64 {
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub(crate) struct Best {
     pub minimised: &'static str,
-    /// The best test that keeps every limit; none where none does.
+    /// The best test within every limit, if there is one.
     pub row: Option<u64>,
     pub inputs: Vec<(String, f64)>,
     pub outputs: Vec<(&'static str, f64)>,
@@ -147,10 +147,10 @@ pub(crate) struct Best {
 }
 
 impl Best {
-    /// None of a study that is no search.
+    /// Returns the optimum; none for a study that is not a search.
     pub fn read(data: &Data<'_>, store: &Store) -> Result<Option<Self>, StudyError> {
         let plan = data.plan;
-        // The search is repeated on its stored tests, which ends in the state in which it ended.
+        // The search is repeated on its stored tests, and ends in the same state.
         let searched = search(plan, &mut |tests| store.outputs_of(tests, plan))?;
         let (Some(searched), Design::Optimise(keys)) = (searched, &plan.study().design) else {
             return Ok(None);
@@ -181,7 +181,7 @@ impl Best {
     }
 }
 
-/// The test with the smallest value that keeps every limit, and the improvements up to it.
+/// Returns the test with the smallest value that keeps every limit, and the improvements up to it.
 fn least(values: &[f64], within: &[bool]) -> (Option<usize>, Vec<(f64, f64)>) {
     let (mut best, mut progress) = (None, Vec::new());
     let allowed = values.iter().zip(within).enumerate();
@@ -211,7 +211,7 @@ pub(crate) struct Front {
 const MAX_POINTS: usize = 1000;
 
 impl Front {
-    /// None where the study asks about one output.
+    /// Returns the front; none if the study has a single output.
     pub fn read(data: &Data<'_>, store: &Store) -> Result<Option<Self>, StudyError> {
         let Some(outputs) = data.plan.study().answers.pareto else {
             return Ok(None);
@@ -236,7 +236,8 @@ impl Front {
     }
 }
 
-/// The front, by the first output. After sorting, a test belongs to it if its second output is below all before.
+/// Returns the front, by the first output. After sorting, a test belongs to it if its second output is below all
+/// before.
 fn undominated(mut tests: Vec<(u64, f64, f64)>) -> Vec<(u64, f64, f64)> {
     tests.sort_by(|a, b| {
         a.1.total_cmp(&b.1)

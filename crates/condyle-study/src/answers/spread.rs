@@ -87,8 +87,8 @@ impl Beyond {
     }
 }
 
-/// Whether a row of a design is one of a random sample. In a Saltelli design the points A and B are, their mixtures are
-/// not independent of them.
+/// Returns whether a row belongs to a random sample. In a Saltelli design the points A and B do; their mixtures
+/// depend on them.
 pub(crate) fn is_sampled(plan: &Plan, row: usize) -> bool {
     let study = plan.study();
     match &study.design {

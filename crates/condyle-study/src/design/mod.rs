@@ -1,4 +1,4 @@
-//! Designs: the places of the inputs in every test, each found by the number of the test alone.
+//! Designs: the places of the inputs in every test, each computed from the number of the test alone.
 
 pub(crate) mod sobol;
 
@@ -11,7 +11,8 @@ use crate::{
     random::{Random, mixed},
 };
 
-/// Every combination of values, `counts[i]` of input `i`; the last input changes fastest.
+/// Returns the places of test `row` of a factorial design: every combination of values, `counts[i]` of input `i`; the
+/// last input changes fastest.
 pub(crate) fn factorial_places(row: u64, counts: &[u64]) -> Vec<Place> {
     let mut rest = row;
     let mut places: Vec<Place> = Vec::with_capacity(counts.len());
@@ -23,7 +24,7 @@ pub(crate) fn factorial_places(row: u64, counts: &[u64]) -> Vec<Place> {
     places
 }
 
-/// First all inputs as the case has them, then each in turn at its values.
+/// Returns the first all inputs as the case has them, then each in turn at its values.
 pub(crate) fn one_at_a_time_places(row: u64, counts: &[u64]) -> Vec<Place> {
     let mut places = vec![Place::OfCase; counts.len()];
     let Some(mut rest) = row.checked_sub(1) else {
@@ -39,13 +40,13 @@ pub(crate) fn one_at_a_time_places(row: u64, counts: &[u64]) -> Vec<Place> {
     places
 }
 
-/// Value `number` of `count` evenly spaced ones.
+/// Returns the value `number` of `count` evenly spaced ones.
 fn along(number: u64, count: u64) -> Place {
     Place::Along(number as f64 / (count - 1).max(1) as f64)
 }
 
-/// A Latin hypercube: for each input, one test lies in each of `tests` slices of equal probability (McKay, Beckman and
-/// Conover 1979).
+/// Returns the places of test `row` of a Latin hypercube: for each input, one test lies in each of `tests` slices of
+/// equal probability (McKay, Beckman and Conover 1979).
 pub(crate) fn latin_places(row: u64, tests: u64, inputs: usize, seed: u64) -> Vec<Place> {
     let place = |input: usize| {
         let mut numbers = Random::stream(seed, input as u64);
@@ -59,7 +60,7 @@ pub(crate) fn latin_places(row: u64, tests: u64, inputs: usize, seed: u64) -> Ve
 /// Rounds of the network: four suffice with good rounds (Luby and Rackoff 1988), and these are simple ones.
 const ROUNDS: usize = 6;
 
-/// A random permutation of the numbers below a count, each found without the others.
+/// A random permutation of the numbers below a count, each computed without the others.
 ///
 /// A Feistel network permutes the numbers of an even count of bits whatever its rounds are; a result beyond the count is
 /// permuted again until it lies below (cycle walking).
@@ -79,7 +80,7 @@ impl Permutation {
         }
     }
 
-    /// The number at `place` below the count.
+    /// Returns the number at `place` below the count.
     pub fn at(&self, place: u64) -> u64 {
         let mut found = self.permuted(place);
         while found >= self.count {
@@ -103,7 +104,7 @@ impl Permutation {
 pub(crate) struct Copula(DMatrix<f64>);
 
 impl Copula {
-    /// None if the matrix of correlations is not positive definite.
+    /// Creates the copula; none if the matrix of correlations is not positive definite.
     pub fn new(inputs: usize, correlations: &[Correlation]) -> Option<Self> {
         let mut matrix = DMatrix::identity(inputs, inputs);
         for correlation in correlations {
@@ -143,8 +144,8 @@ pub(crate) struct Walk {
 }
 
 impl Walk {
-    /// Walk `number` over an even number of `levels` of each input. A step covers levels / (2 (levels - 1)) of the range,
-    /// so that all levels are equally likely.
+    /// Creates walk `number` over an even number of `levels` of each input. A step covers levels / (2 (levels - 1))
+    /// of the range, so that all levels are equally likely.
     pub fn new(number: u64, inputs: usize, levels: u64, seed: u64) -> Self {
         let mut numbers = Random::stream(seed, number);
         let (half, last) = (levels / 2, (levels - 1) as f64);
@@ -166,7 +167,7 @@ impl Walk {
         }
     }
 
-    /// The input that steps from test `step` of the walk to the next, and its signed step.
+    /// Returns the input that steps from test `step` of the walk to the next, and its signed step.
     pub fn step(&self, step: usize) -> (usize, f64) {
         let input = self.order[step];
         (input, self.steps[input])
@@ -184,7 +185,7 @@ impl Walk {
     }
 }
 
-/// The walks of Morris, each of one test more than there are inputs.
+/// Returns the places of test `row` in the walks of Morris, each of which has one test more than there are inputs.
 pub(crate) fn morris_places(row: u64, inputs: usize, levels: u64, seed: u64) -> Vec<Place> {
     let tests = inputs as u64 + 1;
     Walk::new(row / tests, inputs, levels, seed).at((row % tests) as usize)
@@ -200,7 +201,7 @@ pub(crate) enum Saltelli {
 }
 
 impl Saltelli {
-    /// The number of the base of a row, and the test of that base.
+    /// Returns the number of the base of a row, and the test of that base.
     pub fn of(row: u64, inputs: usize) -> (u64, Self) {
         let tests = inputs as u64 + 2;
         let test = match (row % tests) as usize {
@@ -211,8 +212,8 @@ impl Saltelli {
         (row / tests, test)
     }
 
-    /// The places of the inputs (Saltelli et al. 2010): A and B are the halves of one Sobol point of twice the dimension,
-    /// which keeps them independent.
+    /// Returns the places of the inputs (Saltelli et al. 2010): A and B are the halves of one Sobol point of twice
+    /// the dimension, which keeps them independent.
     pub fn places(row: u64, inputs: usize, seed: u64) -> Vec<Place> {
         let (base, test) = Self::of(row, inputs);
         let both = sobol_places(base, 2 * inputs, seed);

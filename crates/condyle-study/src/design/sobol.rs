@@ -11,8 +11,9 @@ use crate::{
 pub(crate) const MAX_AXES: usize = 64;
 const BITS: usize = 32;
 
-/// The coordinates of Sobol point `row`, with the directions of Joe and Kuo (2008), every axis scrambled independently by
-/// Owen's method (1995). Of the first 2^m points one lies in each of as many equal slices of every axis.
+/// Returns the coordinates of Sobol point `row`, with the directions of Joe and Kuo (2008), every axis scrambled
+/// independently by Owen's method (1995). Of the first 2^m points one lies in each of as many equal slices of every
+/// axis.
 pub(crate) fn sobol_places(row: u64, axes: usize, seed: u64) -> Vec<Place> {
     let place = |axis: usize| {
         let scrambled = scrambled(point(row, axis), Random::stream(seed, axis as u64).next());
@@ -21,14 +22,14 @@ pub(crate) fn sobol_places(row: u64, axes: usize, seed: u64) -> Vec<Place> {
     (0..axes).map(place).collect()
 }
 
-/// Point `row` along `axis` as a binary fraction.
+/// Returns point `row` along `axis` as a binary fraction.
 fn point(row: u64, axis: usize) -> u32 {
     let directions = directions(axis);
     let set = (0..BITS).filter(|bit| row >> bit & 1 == 1);
     set.fold(0, |point, bit| point ^ directions[bit])
 }
 
-/// The directions of an axis, by the recurrence of its primitive polynomial (Bratley and Fox 1988).
+/// Returns the directions of an axis, by the recurrence of its primitive polynomial (Bratley and Fox 1988).
 fn directions(axis: usize) -> [u32; BITS] {
     let mut directions = std::array::from_fn(|bit| 1 << (BITS - 1 - bit));
     let Some((polynomial, first)) = axis.checked_sub(1).map(|row| &DIRECTIONS[row]) else {

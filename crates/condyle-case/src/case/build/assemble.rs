@@ -18,7 +18,7 @@ use super::machine::start_flexion_rad;
 use super::shared::SharedBodies;
 use crate::cache::{Keep, KeepNothing};
 
-/// Smallest part of a backside in a plane with which it rests on a flat tray.
+/// Smallest flat part of a backside that can rest on a flat tray.
 const MIN_FLAT_PART: f64 = 0.5;
 
 const STICK_SLIP_EXPLICIT: &str = "[contact.deformable] friction_model = \"stick-slip\" goes from one solved increment to the \
@@ -26,11 +26,11 @@ const STICK_SLIP_EXPLICIT: &str = "[contact.deformable] friction_model = \"stick
 const RESTING_EXPLICIT: &str = "[contact.deformable] backside = \"resting\" goes from one solved increment to the next, and \
      [time] integrator = \"explicit\" solves none; take integrator = \"implicit\", or backside = \"bonded\"";
 
-/// A wear test ready to run, and remarks on the way to it.
+/// A wear test ready to run, and the remarks of its construction.
 pub struct Built {
     /// The test, always of a right knee: a left one is mirrored, and its results must be mirrored back.
     pub test: WearTest,
-    /// Repairs and other remarks, for the user to know.
+    /// Repairs and other remarks, to be shown to the user.
     pub warnings: Vec<BuildWarning>,
 }
 
@@ -179,7 +179,7 @@ impl Case {
         Ok(law)
     }
 
-    /// Refuses settings that a resting backside cannot be combined with.
+    /// Rejects settings that cannot be combined with a resting backside.
     fn check_backside(
         &self,
         contact: &DeformableContact,

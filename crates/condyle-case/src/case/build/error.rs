@@ -106,13 +106,13 @@ pub enum BuildError {
     /// A mesh file that cannot be read.
     #[error(transparent)]
     MeshFile(#[from] MeshFileError),
-    /// An insert that is no elastic solid.
+    /// An insert that cannot be modelled as an elastic solid.
     #[error("[contact] model = \"deformable\": {0}")]
     Solid(#[from] SolidError),
     /// An insert that cannot be used.
     #[error("the insert cannot be used: {0}")]
     Insert(#[from] InsertError),
-    /// Axes that are no right-handed frame.
+    /// Axes that do not form a right-handed frame.
     #[error("`axes`: {0}")]
     Axes(#[from] AxesError),
     /// Settings that cannot be combined.
@@ -141,7 +141,7 @@ impl BuildError {
         Self::Mesh { file, fault }
     }
 
-    /// The mesh file at fault.
+    /// Returns the mesh file at fault.
     pub fn file(&self) -> Option<&Path> {
         match self {
             Self::MeshFile(error) => error.path(),
@@ -150,7 +150,7 @@ impl BuildError {
         }
     }
 
-    /// The keys of the body's table that may be at fault, the likeliest first.
+    /// Returns the keys of the body's table that may be at fault, the likeliest first.
     pub(in crate::case) fn keys(&self) -> &'static [&'static str] {
         match self {
             Self::MeshFile(_) => &["file"],
@@ -219,7 +219,7 @@ pub enum MeshFault {
     /// Triangles that are no shell.
     #[error("{0}")]
     Shell(RepairError),
-    /// A height to cut at outside the body.
+    /// A height of the cut that is outside the body.
     #[error(
         "`clip_below_mm` = {height_mm} cuts nothing off or all: with its axes turned, the body reaches from y = {low_mm:.2} mm to {high_mm:.2} mm"
     )]
@@ -231,7 +231,7 @@ pub enum MeshFault {
         /// The highest point of the body.
         high_mm: f64,
     },
-    /// An insert in one piece with its tray or stem, of which the shape does not show the boundary.
+    /// An insert in one piece with its tray or stem, whose boundary the shape does not show.
     #[error(
         "this body reaches {reach_mm:.1} mm below its dishes, as an insert does that is one with its tray or stem, and \
          its shape does not show for certain where the polyethylene ends; write [insert] {heights}"
@@ -345,10 +345,10 @@ fn listed(names: &[String]) -> String {
     }
 }
 
-/// A remark on a case or its meshes, for the user to know.
+/// A remark on a case or its meshes, to be shown to the user.
 #[derive(Clone, Debug, PartialEq, Error)]
 pub enum BuildWarning {
-    /// A key that does not go with a choice set from outside.
+    /// A key that does not apply to a choice set from outside.
     #[error("{written}: left out, since it does not go with {chosen}, which is set")]
     LeftOutKey {
         /// The key with its value, or the table.
@@ -428,7 +428,7 @@ pub enum MeshRemark {
     /// Part of the mesh lies far from the rest.
     #[error("{0}; delete it unless it is part of it")]
     StrayPiece(StrayPiece),
-    /// Parts of the file that are not of the insert.
+    /// Parts of the file that do not belong to the insert.
     #[error("left out, since they are no part of the insert: {}", parts_listed(.0))]
     LeftOut(Vec<LeftOut>),
     /// An insert that was cut off the tray in its file.

@@ -229,13 +229,13 @@ fn axis_ahead_mm(flexion_axis_mm: (f64, f64), flexion_rad: f64) -> f64 {
     axis.x * cosine - axis.y * sine
 }
 
-/// Triangles for a femur that is no mesh already, as many as Knight 2007 has: they come within a hundredth of a
-/// millimetre of its surface.
+/// Number of triangles for a femur that is not a mesh, as in Knight 2007: they lie within a hundredth of a millimetre
+/// of its surface.
 pub const FEMUR_TRIANGLES: f64 = 25_000.0;
 const ICOSAHEDRON: f64 = 20.0;
 
 impl Case {
-    /// The surface of the femur of `test`, which this case built, in the femoral frame of a right knee, mm;
+    /// Returns the surface of the femur of `test`, which this case built, in the femoral frame of a right knee, mm;
     /// triangles anticlockwise seen from outside. A mesh has its own; other shapes get about so many.
     ///
     /// # Errors

@@ -67,7 +67,7 @@ impl Case {
             limits: &self.limits,
         };
         let built = insert.build(around, warnings)?;
-        // With a stray piece the dishes are not where they seem.
+        // With a stray piece the positions of the dishes are unreliable.
         let is_whole = !warnings.iter().any(|warning| {
             let BuildWarning::Mesh { remark, .. } = warning else {
                 return false;
@@ -109,7 +109,8 @@ fn meshing(edge_mm: f64, layers: u64) -> Meshing {
     Meshing { edge_mm, layers }
 }
 
-/// Refuses hexahedra that would not fit into memory, before there are any: `size_mm` long and wide, in a mesh.
+/// Rejects a mesh of hexahedra that would not fit into memory before it is created; `size_mm` is its length and
+/// width.
 fn check_node_count(
     (length_mm, width_mm): (f64, f64),
     meshing: Meshing,
@@ -200,7 +201,7 @@ fn from_mesh(
     Ok(built)
 }
 
-/// Removes a tray that is in the same file; the orientation is checked again for what remains.
+/// Removes a tray that is in the same file; the orientation of the remaining insert is checked again.
 fn insert_alone(
     insert: &MeshInsert,
     shell: CheckedMesh,

@@ -176,7 +176,7 @@ fn check_clip(
     }
 }
 
-/// Adds a warning for each repair of a file, and for what looks wrong in it.
+/// Adds a warning for each repair of a file, and for each suspicious property.
 pub(super) fn warn(file: &DataFile, shell: &CheckedMesh, warnings: &mut Vec<BuildWarning>) {
     let counted =
         |count: usize, remark: fn(usize) -> MeshRemark| (count > 0).then(|| remark(count));

@@ -48,7 +48,7 @@ pub(super) fn check_orientation(
     Ok(false)
 }
 
-/// Warns of a femur, in the frame of a right knee, that looks like one of the other knee.
+/// Warns of a femur, in the frame of a right knee, with the shape of the other knee's femur.
 pub(super) fn check_side(
     file: &DataFile,
     mesh: &TriangleMesh,
@@ -124,10 +124,11 @@ fn lies(turn: &Mat3) -> &'static str {
     }
 }
 
-/// The dishes may have their middle so far to a side of the origin, mm: each mm moves 2 % of the load to one of them ...
+/// Largest distance of the middle between the dishes to a side of the origin, mm: each mm moves 2 % of the load to
+/// one of them ...
 pub(in crate::case) const MAX_ACROSS_MM: f64 = 2.5;
-/// ... and so far in front or behind, mm: dishes are lowest behind the middle of an insert, and flat ones at no certain
-/// place.
+/// ... and to the front or back, mm: dishes are lowest behind the middle of an insert, and the lowest place of flat
+/// ones is uncertain.
 const MAX_ALONG_MM: f64 = 10.0;
 
 /// Returns a warning if the dishes lie off the origin of their file, whatever the placement.

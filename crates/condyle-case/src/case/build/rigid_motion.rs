@@ -6,7 +6,7 @@ use condyle::{Mat3, Vec3};
 use super::super::femur::FemurPlacement;
 use super::super::insert::{InsertOrigin, InsertPlacement};
 
-/// Spacing of the points at which an insert's dishes are searched, mm.
+/// Spacing of the points among which an insert's dishes are searched, mm.
 const LOOKED_AT_EVERY_MM: f64 = 0.5;
 
 /// p' = R p + t
@@ -59,8 +59,8 @@ impl InsertPlacement {
 impl FemurPlacement {
     /// Returns the motion of a component that flexes about (x, y) of the femoral frame; `None` for no motion.
     ///
-    /// The component on its bone goes the other way than the bone over the component: Ry(-external) Rx(varus)
-    /// Rz(-flexion).
+    /// A component moves on its bone in the direction opposite to that of the bone over the component: Ry(-external)
+    /// Rx(varus) Rz(-flexion).
     pub(super) fn motion(&self, (x, y): (f64, f64)) -> Option<RigidMotion> {
         let rotation = rotation(
             -self.flexion_deg,

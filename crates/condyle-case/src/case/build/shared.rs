@@ -16,14 +16,15 @@ use super::error::BuildWarning;
 use super::femur::BuiltFemur;
 use crate::cache::Keep;
 
-/// Bodies of each kind that are kept, the newest: those of a few levels or designs, whatever the number of cases.
+/// Number of bodies of each kind that are kept, the newest: enough for a few levels or designs, whatever the number
+/// of cases.
 const MAX_KEPT: usize = 8;
-/// Inserts as elastic bodies that are kept, the newest: each has some hundred megabytes.
+/// Number of elastic inserts that are kept, the newest: each takes some hundred megabytes.
 const MAX_ELASTIC: usize = 2;
 
-/// Built bodies, shared by cases that have the same; sharing does not change a bit of a result.
+/// Built bodies, shared by cases with equal bodies; sharing does not change any result.
 ///
-/// A mesh file must not change meanwhile.
+/// Mesh files must not change while they are shared.
 pub struct SharedBodies {
     inserts: Kept<InsertInputs, geometry::Insert>,
     femurs: Kept<FemurInputs, BuiltFemur>,
@@ -43,11 +44,11 @@ impl Default for SharedBodies {
 /// A body, with the warnings of its build.
 pub(super) type WithWarnings<T> = (Arc<T>, Vec<BuildWarning>);
 
-/// All that an insert follows from.
+/// Everything that determines an insert.
 #[derive(PartialEq)]
 pub(super) struct InsertInputs(Insert, Side, Limits);
 
-/// All that a femur follows from; last its flexion at the start, rad.
+/// Everything that determines a femur; the last field is its flexion at the start, rad.
 #[derive(PartialEq)]
 pub(super) struct FemurInputs(Femur, Side, Limits, f64);
 
@@ -106,7 +107,7 @@ impl<I: PartialEq, T> Kept<I, T> {
         Self { most, made }
     }
 
-    /// Returns the result for the same inputs, made if necessary; two threads at once may both make it.
+    /// Returns the result for the same inputs, computed if necessary; two threads may both compute it.
     fn found_or_made<E>(
         &self,
         inputs: I,
@@ -159,8 +160,8 @@ impl Case {
         found.map_or(Ok(()), |known| law.know(insert, known))
     }
 
-    /// Keeps what is known of the compliance of a test's insert, if that is about more than so many pairs of tiles of its
-    /// surface; about how many anything is kept then. Nothing of a foundation.
+    /// Keeps the known compliance of a test's insert if it covers more than the given number of pairs of tiles of the
+    /// surface, and returns the number of pairs that are then kept. Keeps nothing for a foundation.
     pub fn keep_compliance(
         &self,
         test: &WearTest,
@@ -174,7 +175,7 @@ impl Case {
         let Some(known) = known else {
             return more_than_pairs;
         };
-        // Room for all at once: it may be tens of megabytes.
+        // Room for all is reserved at once: it may be tens of megabytes.
         let room = Vec::with_capacity(known.bytes());
         if let Ok(content) = postcard::to_extend(&known, room) {
             let inputs = self.inputs_of_compliance(&test.insert);
@@ -190,7 +191,7 @@ impl Case {
     }
 }
 
-/// All that the compliance of an unworn insert follows from, as bytes.
+/// Everything that determines the compliance of an unworn insert, as bytes.
 struct Inputs([Vec<u8>; 6]);
 
 impl Inputs {
@@ -205,7 +206,7 @@ impl Inputs {
             numbers(&places.collect::<Vec<f64>>()),
             whole(&mut insert.mesh().hexes.iter().flatten().copied()),
             whole(&mut insert.surface_faces().iter().flatten().copied()),
-            // What of the backside is held.
+            // The held part of the backside.
             vec![u8::from(rests)],
             whole(
                 &mut [insert.surface_nodes(), insert.backside_nodes()]

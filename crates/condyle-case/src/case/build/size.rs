@@ -11,11 +11,11 @@ use super::error::{BuildError, MeshFault, StrayPiece};
 /// Smallest and largest length of a part of a knee, mm.
 const MIN_MM: f64 = 5.0;
 const MAX_MM: f64 = 500.0;
-/// Another unit is the right one if it makes the body this long, mm: as femoral components and
-/// inserts are, so that no two units do.
+/// Lengths of femoral components and inserts, mm. Another unit is the right one if it gives such a length; no two
+/// units do.
 const USUAL_MM: std::ops::RangeInclusive<f64> = 20.0..=200.0;
 
-/// Refuses triangles of the wrong size for a part of a knee.
+/// Rejects triangles whose size does not fit a part of a knee.
 pub(super) fn check_triangles(
     file: &Path,
     mesh: &TriangleMesh,
@@ -39,7 +39,7 @@ pub(super) fn check_points(
         .iter()
         .fold(none, |(low, high), point| (low.inf(point), high.sup(point)));
     let size_mm = (high - low).max();
-    // Without points there is no size, which others refuse.
+    // A body without points has no size; other checks reject it.
     if points.is_empty() || is_possible(size_mm) {
         return Ok(());
     }
@@ -87,8 +87,8 @@ impl Piece {
     }
 }
 
-/// The piece farthest from the largest, if more than half as far as that is large: the two
-/// condyles or plateaus of a knee in two parts are nearer to one another.
+/// Returns the piece farthest from the largest one, if its distance exceeds half of the size of the largest: the two
+/// condyles or plateaus of a knee in two parts are nearer to each other.
 pub(super) fn stray_piece(mesh: &TriangleMesh) -> Option<StrayPiece> {
     let pieces = pieces(mesh);
     let larger = |a: &&Piece, b: &&Piece| a.diagonal_mm().total_cmp(&b.diagonal_mm());

@@ -1,4 +1,4 @@
-//! The insert of a file that holds its tray and stem too.
+//! The insert of a file that also contains its tray and stem.
 
 use condyle::geometry::Underside;
 use condyle_mesh::repair::{CheckedMesh, RepairError};
@@ -13,10 +13,10 @@ const ROUNDING: f64 = 1e-6;
 /// Usual thickness of a tray's plate, mm, as a hint.
 const USUAL_PLATE_MM: f64 = 4.0;
 
-/// The insert of a file, cut off its tray where the shape shows where that is.
+/// Returns the insert of a file, cut off its tray if the shape shows the boundary.
 ///
 /// # Errors
-/// [`MeshFault::UnclearUnderside`] where it does not, and what a shell is refused for.
+/// [`MeshFault::UnclearUnderside`] if it does not, and the errors of a shell.
 pub(super) fn without_tray(
     file: &DataFile,
     shell: CheckedMesh,
@@ -51,10 +51,10 @@ pub(super) fn without_tray(
     }
 }
 
-/// The insert of a construct above a height, mm; what was left out of the file before stays known.
+/// Returns the insert of a construct above a height, mm, with the parts of the file that were left out before.
 ///
 /// # Errors
-/// What a shell is refused for.
+/// The errors of a shell.
 pub(in crate::case) fn cut_at(
     whole: CheckedMesh,
     height_mm: f64,

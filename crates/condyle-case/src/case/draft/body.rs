@@ -48,7 +48,7 @@ impl<'a> Concluded<'a> {
         })
     }
 
-    /// The orientations that its shape leaves, best first.
+    /// Returns the orientations that agree with its shape, best first.
     pub fn best(&self) -> Vec<Orientation> {
         self.recognition
             .iter()
@@ -56,8 +56,8 @@ impl<'a> Concluded<'a> {
             .collect()
     }
 
-    /// How it lies: as the other body may lie, where its own shape leaves that, since files of one
-    /// implant mostly share their axes.
+    /// Returns its orientation: that of the other body if its own shape permits it, since the files of one implant
+    /// mostly share their axes.
     pub fn orientation(&self, of_other: &[Orientation]) -> Orientation {
         let Some(recognition) = &self.recognition else {
             return of_other.first().copied().unwrap_or(Orientation::ISB);
@@ -71,7 +71,7 @@ impl<'a> Concluded<'a> {
         self.mesh.clone().mapped(|vertex| rotation * vertex)
     }
 
-    /// The same, mended and checked as a run does it.
+    /// Returns the mesh, repaired and checked as in a run.
     pub fn shell(&self, lies: &Orientation) -> Result<CheckedMesh, DraftError> {
         checks_of(self.body)
             .check(self.placed(lies))
@@ -162,7 +162,7 @@ impl Alone {
         matches!(self.underside, Underside::Ledge { .. }) || !self.shell.left_out.is_empty()
     }
 
-    /// The height at which it is cut.
+    /// Returns the height at which it is cut.
     pub fn key(&self) -> String {
         match &self.underside {
             Underside::Ledge { height_mm, .. } => {
@@ -204,8 +204,8 @@ impl Alone {
     }
 }
 
-/// Recognises an insert in one with its tray, which is none by its shape: it is cut off as it would be in every
-/// orientation, until one shows an insert that lies so.
+/// Recognises an insert that forms one body with its tray, whose shape is not that of an insert: the tray is cut off
+/// for every orientation in turn, until the remaining body is an insert in that orientation.
 pub(super) fn recognised_alone(mesh: &TriangleMesh) -> Option<Recognition> {
     Orientation::all().find_map(|lies| {
         let rotation: Mat3 = lies.rotation();

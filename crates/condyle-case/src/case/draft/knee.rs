@@ -19,7 +19,7 @@ pub(super) struct ConcludedSide {
 }
 
 impl ConcludedSide {
-    /// Of a femur that lies x anterior, y superior, z right, of which the user may have said the side.
+    /// Concludes the side from a femur with x anterior, y superior, z right; `said` is the side that the user states.
     pub fn of(femur: &TriangleMesh, said: Option<Side>) -> Self {
         let shown = flange_lead_mm(femur).map(|lead| {
             let side = if lead > 0.0 { Side::Right } else { Side::Left };
@@ -53,10 +53,11 @@ pub(super) struct ConcludedOrigin {
 }
 
 impl ConcludedOrigin {
-    /// That of the file, unless the dishes lie off it; then between them, where the insert is moved to.
+    /// Returns the origin of the file, unless the dishes lie off it; then the insert is moved so that the origin lies
+    /// between the dishes.
     pub fn centred(insert: &mut TriangleMesh) -> Self {
         let middle = middle_of_mesh(insert);
-        // Flat dishes are lowest at no certain place along: only what is far off is taken for another origin.
+        // The lowest place of flat dishes along x is uncertain: only a distant one indicates another origin.
         let is_far = middle.z.abs() > MAX_ACROSS_MM || middle.x.abs() > FAR_ALONG_MM;
         if !is_far {
             return Self {
@@ -82,12 +83,12 @@ pub enum DraftError {
     /// A file that cannot be read.
     #[error(transparent)]
     MeshFile(#[from] MeshFileError),
-    /// Triangles that are no shell.
+    /// Triangles that do not form a shell.
     #[error("{}: {source}", file.display())]
     Shell {
         /// The file.
         file: PathBuf,
-        /// Why.
+        /// The defect.
         source: RepairError,
     },
     /// A body that no unit makes as large as a knee's.
@@ -104,7 +105,7 @@ pub enum DraftError {
         /// Its longest extent, in the unit of the file.
         size: f64,
     },
-    /// The draft is no case.
+    /// The draft is not a valid case.
     #[error(transparent)]
     Case(#[from] Problems),
 }

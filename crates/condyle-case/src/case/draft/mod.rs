@@ -33,17 +33,17 @@ pub struct Draft<'a> {
 /// A case drafted from meshes.
 #[derive(Clone, Debug)]
 pub struct Drafted {
-    /// The case file, with what was concluded and how sure it is as remarks.
+    /// The case file, with the conclusions and their certainty as remarks.
     pub text: String,
-    /// The conclusions, one a line.
+    /// The conclusions, one per line.
     pub remarks: Vec<String>,
 }
 
 impl Draft<'_> {
-    /// The case, to be kept in `folder`.
+    /// Returns the case, to be kept in `folder`.
     ///
     /// # Errors
-    /// A file that cannot be read, is no shell, or by its size no part of a knee.
+    /// A file that cannot be read, does not form a shell, or does not have the size of a part of a knee.
     pub fn drafted(&self, folder: &Path) -> Result<Drafted, DraftError> {
         let femur = Concluded::from(Body::Femur, self.femur)?;
         let insert = Concluded::from(Body::Insert, self.insert)?;
