@@ -373,7 +373,7 @@ fn sides() -> impl TypedValueParser<Value = Side> {
         .try_map(|word| Side::from_word(&word).ok_or("it is neither side"))
 }
 
-/// The presets of a case, with what each is.
+/// Returns the presets of a case, with what each is.
 fn presets() -> impl TypedValueParser<Value = Preset> {
     let possible = |preset: &Preset| PossibleValue::new(preset.word()).help(preset.about());
     PossibleValuesParser::new(Preset::ALL.iter().map(possible))

@@ -39,7 +39,7 @@ fn write(text: &str) -> io::Result<()> {
     written.or_else(forgive_a_closed_pipe)
 }
 
-/// A reader that has closed the pipe, such as `head`, is no error.
+/// Ignores the error of a pipe that its reader, such as `head`, has closed.
 fn forgive_a_closed_pipe(error: io::Error) -> io::Result<()> {
     match error.kind() {
         // The reader needs no more output.
@@ -61,7 +61,7 @@ fn ended(written: io::Result<()>, kept: &str) -> ExitCode {
     }
 }
 
-/// A result as JSON, with a line end.
+/// Returns a result as JSON, with a line end.
 pub fn json(result: &impl Serialize) -> String {
     let text = serde_json::to_string_pretty(result);
     text.expect("numbers and text always serialise") + "\n"

@@ -74,7 +74,7 @@ impl Progress {
     }
 }
 
-/// The progress of a run, such as `3 updates are done, 1500000 of 5000000 cycles`.
+/// Returns the progress of a run, such as `3 updates are done, 1500000 of 5000000 cycles`.
 pub fn in_words(reached: &Reached) -> String {
     let Reached {
         updates,

@@ -69,7 +69,7 @@ pub fn run(arguments: &Run) -> ExitCode {
     }
 }
 
-/// The shell command that resumes a run.
+/// Returns the shell command that resumes a run.
 fn command_to_go_on(arguments: &Run, options: &RunOptions) -> String {
     let (case, out) = (arguments.case.display(), options.out.display());
     let changes = arguments.changes.set.iter().map(|change| {
@@ -80,7 +80,7 @@ fn command_to_go_on(arguments: &Run, options: &RunOptions) -> String {
     format!("condyle run {case} --out {out} --resume{changes}")
 }
 
-/// A flag that the first Ctrl-C (or SIGTERM) raises; a second ends the program at once.
+/// Returns a flag that the first Ctrl-C (or SIGTERM) raises; a second ends the program at once.
 pub fn stop_on_interrupt() -> Arc<AtomicBool> {
     let stop = Arc::new(AtomicBool::new(false));
     let flag = Arc::clone(&stop);
@@ -143,7 +143,7 @@ fn for_paraview(out: &Path) -> String {
 
 type SummaryLine = (&'static str, String);
 
-/// The numbers of the catalogue, then creep and the parts of the error.
+/// Returns the numbers of the catalogue, then creep and the parts of the error.
 fn rows(summary: &Summary) -> Vec<SummaryLine> {
     let mut rows: Vec<SummaryLine> = Vec::new();
     for scalar in catalogue::scalars().filter(|scalar| scalar.prominence >= Prominence::Printed) {
@@ -169,7 +169,7 @@ fn rows(summary: &Summary) -> Vec<SummaryLine> {
     rows
 }
 
-/// The value of a number with its unit, its estimated discretisation error and the cycle that has it.
+/// Returns the value of a number with its unit, its estimated discretisation error and the cycle that has it.
 fn in_words(summary: &Summary, scalar: &Scalar) -> Option<String> {
     let with_unit = |value: f64| {
         let text = format!("{} {}", scalar.text(value), scalar.shown_unit());
@@ -224,7 +224,7 @@ fn rows_of_creep(creep: &CreepSummary) -> Vec<SummaryLine> {
     rows
 }
 
-/// The parts of the discretisation error, with the sign of the change that finer values would make.
+/// Returns the parts of the discretisation error, with the sign of the change that finer values would make.
 fn rows_of_error(error: &ErrorEstimate) -> [SummaryLine; 3] {
     [
         (

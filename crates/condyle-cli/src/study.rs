@@ -122,7 +122,7 @@ fn answer_in_memory<T: serde::Serialize>(
     }
 }
 
-/// The number of threads asked for, or that of the machine's cores.
+/// Returns the number of threads asked for, or that of the machine's cores.
 pub fn threads(asked_for: Option<u16>) -> usize {
     let cores = || thread::available_parallelism().map_or(1, usize::from);
     asked_for.map_or_else(cores, usize::from)

@@ -31,7 +31,7 @@ impl Compliance {
         self.values.len() / (3 * self.forces.max(1))
     }
 
-    /// The number of forces.
+    /// Returns the number of forces.
     pub fn forces(&self) -> usize {
         self.forces
     }
@@ -42,7 +42,7 @@ impl Compliance {
         &self.values
     }
 
-    /// Displacement of a node by a force, both counted as they were given.
+    /// Returns the displacement of a node by a force, both counted as they were given.
     ///
     /// # Panics
     /// If there are not as many.
@@ -200,7 +200,7 @@ impl ElasticSolid {
 }
 
 impl HalfSolved {
-    /// The number of forces.
+    /// Returns the number of forces.
     pub fn forces(&self) -> usize {
         self.forces
     }

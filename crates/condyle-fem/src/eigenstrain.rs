@@ -41,7 +41,7 @@ impl ElasticSolid {
         (displacements, stresses)
     }
 
-    /// Mean stress of every element under displacements of the nodes: that of its centre, where stress is
+    /// Returns the mean stress of every element under displacements of the nodes: that of its centre, where stress is
     /// most exact.
     ///
     /// # Panics
@@ -50,8 +50,8 @@ impl ElasticSolid {
         self.stresses_with(displacements, &BTreeMap::new())
     }
 
-    /// The same where some elements have eigenstrains at their Gauss points, and the displacements are those
-    /// under them too.
+    /// Returns the mean stresses if some elements have eigenstrains at their Gauss points, and the displacements are
+    /// those under them too.
     ///
     /// # Panics
     /// If there are fewer displacements than nodes.
@@ -113,7 +113,7 @@ pub struct YieldingElement {
 }
 
 impl ElementMean {
-    /// Mean stress under displacements of the nodes, and a mean eigenstrain.
+    /// Returns the mean stress under displacements of the nodes, and a mean eigenstrain.
     pub fn stress(&self, nodes: &[Vec3; 8], eigenstrain: &Strain) -> Stress {
         // The incompatible modes add nothing to the mean.
         let mut gradient = Matrix3::zeros();
@@ -141,8 +141,8 @@ impl YieldingElement {
         std::array::from_fn(|p| material.respond(&strains[p], &before[p]).point)
     }
 
-    /// The largest part of the yield stress that is used up at a Gauss point, more than 1 where it will flow: under
-    /// displacements of the nodes, with the plastic strains remembered.
+    /// Returns the largest part of the yield stress that is used up at a Gauss point, more than 1 where it will flow:
+    /// under displacements of the nodes, with the plastic strains remembered.
     pub fn use_of_yield<M: Material>(
         &self,
         solid: &ElasticSolid,
@@ -189,7 +189,7 @@ mod tests {
     use super::*;
     use crate::tests::{distorted, standing};
 
-    /// A block that is held at one corner and against turning, so that it is free to swell.
+    /// Returns a block that is held at one corner and against turning, so that it is free to swell.
     fn free() -> ElasticSolid {
         let mesh = distorted([4, 3, 3]);
         let supports = [

@@ -246,7 +246,7 @@ impl Element {
         }
     }
 
-    /// Numbers of every function and axis, all Gauss points side by side.
+    /// Returns the numbers of every function and axis, all Gauss points side by side.
     fn sides(&self, of: impl Fn(&Point, usize, usize) -> f64) -> [[Side; 3]; FUNCTIONS] {
         std::array::from_fn(|f| {
             std::array::from_fn(|k| Side::from_fn(|p| of(&self.points[p], f, k)))
@@ -271,7 +271,7 @@ impl Element {
         )
     }
 
-    /// Strain at every Gauss point.
+    /// Returns the strain at every Gauss point.
     pub(crate) fn strains(&self, nodes: &[Vec3; 8], modes: &Modes) -> [Strain; POINTS] {
         let amplitude = |f: usize| match f.checked_sub(8) {
             None => nodes[f],
@@ -302,7 +302,8 @@ impl Element {
         std::array::from_fn(|p| elastic.stress(&strains[p].less(&eigenstrains[p])))
     }
 
-    /// The mean over the volume of the gradient of every nodal function; that of the incompatible modes is zero.
+    /// Returns the mean over the volume of the gradient of every nodal function; that of the incompatible modes is
+    /// zero.
     pub(crate) fn mean_gradients(&self) -> [Vec3; 8] {
         let volume: f64 = self.points.iter().map(|point| point.volume).sum();
         std::array::from_fn(|node| {
@@ -314,7 +315,7 @@ impl Element {
         })
     }
 
-    /// Share of every Gauss point of the volume.
+    /// Returns the share of every Gauss point of the volume.
     pub(crate) fn volumes(&self) -> [f64; POINTS] {
         std::array::from_fn(|p| self.points[p].volume)
     }

@@ -24,7 +24,7 @@ pub struct InteriorFollower {
 }
 
 impl InteriorFollower {
-    /// A follower of `mesh` whose `held` nodes take a given displacement, and the rest follow.
+    /// Creates a follower of `mesh` whose `held` nodes take a given displacement, and the rest follow.
     ///
     /// # Panics
     /// If `held` or an element names a node that the mesh does not have.
@@ -161,7 +161,7 @@ impl Neighbours {
         Self { first, nodes }
     }
 
-    /// The neighbours of row `k`.
+    /// Returns the neighbours of row `k`.
     #[inline]
     pub(crate) fn of(&self, k: usize) -> &[u32] {
         &self.nodes[self.first[k]..self.first[k + 1]]

@@ -81,7 +81,7 @@ impl HexMesh {
         is_shared
     }
 
-    /// A quad by its number: six to an element.
+    /// Returns a quad by its number: six to an element.
     fn quad(&self, number: usize) -> [u32; 4] {
         let (hex, face) = (number / HEX_FACES.len(), number % HEX_FACES.len());
         HEX_FACES[face].map(|corner| self.hexes[hex][corner])
@@ -143,8 +143,8 @@ pub fn trilinear_volume(corners: &[Vec3; 8]) -> f64 {
         .sum()
 }
 
-/// Volume of the cone from the origin to a bilinear quad; positive if it is anticlockwise seen
-/// from outside. Over a closed surface these add up to the volume inside.
+/// Returns the volume of the cone from the origin to a bilinear quad; positive if it is anticlockwise seen from
+/// outside. Over a closed surface these add up to the volume inside.
 pub fn volume_below([a, b, c, d]: &[Vec3; 4]) -> f64 {
     // Mean of the two ways to cut the quad into triangles.
     let triple = |p: &Vec3, q: &Vec3, r: &Vec3| p.dot(&q.cross(r));
@@ -158,8 +158,8 @@ const LANES: usize = 4;
 type Vec3x4 = Vector3<f64x4>;
 
 impl HexMesh {
-    /// The scaled Jacobian of every element, the smallest over its eight corners: 1 for a brick, 0 or
-    /// less where the element is flat or inverted at a corner.
+    /// Returns the scaled Jacobian of every element, the smallest over its eight corners: 1 for a brick, 0 or less
+    /// where the element is flat or inverted at a corner.
     ///
     /// At each corner with edges $e, f, h$ it is $e \cdot (f \times h)/(|e| |f| |h|)$. Taken to the end it panics
     /// if an element names a node that there is not.
@@ -178,7 +178,7 @@ impl HexMesh {
         })
     }
 
-    /// Smallest scaled Jacobian of all elements; 0 or less means that one is flat or inverted.
+    /// Returns the smallest scaled Jacobian of all elements; 0 or less means that one is flat or inverted.
     pub fn worst_quality(&self) -> f64 {
         self.qualities().fold(f64::INFINITY, f64::min)
     }
@@ -193,7 +193,7 @@ impl HexMesh {
     }
 }
 
-/// The smallest square of the scaled Jacobian over all corners, with its sign: so one root is enough.
+/// Returns the smallest square of the scaled Jacobian over all corners, with its sign: so one root is enough.
 ///
 /// The corners of the bottom and of the top are anticlockwise seen from the top.
 #[inline(always)]
@@ -203,7 +203,7 @@ fn least_signed_squares(bottom: &[Vec3x4; 4], top: &[Vec3x4; 4]) -> f64x4 {
     around(bottom, &upright).min(around(top, &upright))
 }
 
-/// The same over the corners of the bottom or the top.
+/// Returns the same square over the corners of the bottom or the top.
 ///
 /// With e and f the edges that lead to a corner and on from it, and h the upright one, the triple
 /// product is e x f . h, at the bottom as at the top.
@@ -349,7 +349,7 @@ mod tests {
         assert!((volume - exact).abs() < 1e-13, "{volume} {exact}");
     }
 
-    /// The definition, corner by corner.
+    /// Returns the definition, corner by corner.
     fn scaled_jacobian(corners: &[Vec3; 8]) -> f64 {
         const ENDS: [[usize; 3]; 8] = [
             [1, 3, 4],

@@ -203,7 +203,7 @@ impl Hardening {
         })
     }
 
-    /// A yield stress that stays.
+    /// Creates a constant yield stress.
     ///
     /// # Errors
     /// If it is not positive.
@@ -227,7 +227,7 @@ impl Hardening {
         stress + slope * (strain - start)
     }
 
-    /// The plastic strain that brings an equivalent stress down to the yield surface, and the slope of the
+    /// Returns the plastic strain that brings an equivalent stress down to the yield surface, and the slope of the
     /// curve there; none if it does not yield.
     ///
     /// Solves `trial - softening * step = yield_stress(before + step)`, piece by piece, so exactly.
@@ -244,7 +244,7 @@ impl Hardening {
         })
     }
 
-    /// Number of the piece in which a plastic strain lies.
+    /// Returns the number of the piece in which a plastic strain lies.
     fn piece_of(&self, strain: f64) -> usize {
         let after = self.points.partition_point(|point| point.0 <= strain);
         after.saturating_sub(1)
@@ -266,7 +266,7 @@ mod tests {
     use super::*;
     use crate::tests::material;
 
-    /// The stress that yielding takes away under a small strain.
+    /// Returns the stress that yielding removes under a small strain.
     fn lost(softening: &Softening, strain: &Strain) -> Stress {
         let deviator = Stress(strain.0).deviator();
         let along = softening.along_flow * softening.flow.dot(&deviator);

@@ -143,7 +143,7 @@ impl ElasticSolid {
         self.displacements_by(&all)
     }
 
-    /// Displacement of all nodes under a force on every node.
+    /// Returns the displacement of all nodes under a force on every node.
     pub(crate) fn displacements_by(&self, forces: &[Vec3]) -> Vec<Vec3> {
         let order = &self.factor.dissection.order;
         let mut x = Rhs::<1>::new(self.factor.freedoms());

@@ -89,7 +89,7 @@ impl Factor {
         Ok(Self { dissection, fronts })
     }
 
-    /// The number of freedoms.
+    /// Returns the number of freedoms.
     pub(crate) fn freedoms(&self) -> usize {
         3 * self.dissection.order.len()
     }
@@ -101,7 +101,7 @@ impl Factor {
 }
 
 impl<S: FnMut(usize) -> NodalStiffness> Assembly<'_, S> {
-    /// The front of a group before its elimination.
+    /// Returns the front of a group before its elimination.
     fn front(
         &mut self,
         group: &Group,
@@ -204,12 +204,12 @@ impl<const W: usize> Rhs<W> {
         }
     }
 
-    /// The number at a row and a column.
+    /// Returns the number at a row and a column.
     pub(crate) fn at(&self, row: usize, column: usize) -> f64 {
         self.rows[row][column / 4].as_array()[column % 4]
     }
 
-    /// The number at a row and a column.
+    /// Returns the number at a row and a column.
     pub(crate) fn at_mut(&mut self, row: usize, column: usize) -> &mut f64 {
         &mut self.rows[row][column / 4].as_mut_array()[column % 4]
     }
@@ -282,7 +282,7 @@ impl Factor {
         3 * own.start as usize..3 * own.end as usize
     }
 
-    /// The groups of some places, and all groups above them.
+    /// Returns the groups of some places, and all groups above them.
     pub(crate) fn paths(&self, places: impl Iterator<Item = u32>) -> Vec<bool> {
         let mut on_path = vec![false; self.fronts.len()];
         for place in places {

@@ -10,19 +10,19 @@ use crate::Vec3;
 pub struct Stress(pub [f64; 6]);
 
 impl Stress {
-    /// The mean of the three normal stresses.
+    /// Returns the mean of the three normal stresses.
     pub fn mean(&self) -> f64 {
         (self.0[0] + self.0[1] + self.0[2]) / 3.0
     }
 
-    /// The deviator, $\sigma - \tfrac{1}{3} \operatorname{tr} \sigma$.
+    /// Returns the deviator, $\sigma - \tfrac{1}{3} \operatorname{tr} \sigma$.
     pub fn deviator(&self) -> Self {
         let [xx, yy, zz, xy, yz, zx] = self.0;
         let mean = self.mean();
         Self([xx - mean, yy - mean, zz - mean, xy, yz, zx])
     }
 
-    /// Length of the tensor, $\sqrt{\sigma : \sigma}$.
+    /// Returns the length of the tensor, $\sqrt{\sigma : \sigma}$.
     pub fn norm(&self) -> f64 {
         self.dot(self).sqrt()
     }
@@ -62,7 +62,7 @@ impl Stress {
         values
     }
 
-    /// Largest shear stress: half of the difference of the outer principal stresses.
+    /// Returns the largest shear stress: half of the difference of the outer principal stresses.
     pub fn max_shear(&self) -> f64 {
         let [first, _, third] = self.principal();
         0.5 * (first - third)
@@ -74,7 +74,7 @@ impl Stress {
 pub struct Strain(pub [f64; 6]);
 
 impl Strain {
-    /// The symmetric part of a displacement gradient.
+    /// Creates the symmetric part of a displacement gradient.
     pub(crate) fn from_gradient(gradient: &Matrix3<f64>) -> Self {
         let both = |i, j| 0.5 * (gradient[(i, j)] + gradient[(j, i)]);
         Self([
@@ -102,7 +102,7 @@ impl Strain {
         Self(std::array::from_fn(|i| self.0[i] + factor * stress.0[i]))
     }
 
-    /// The same shear with another change of volume.
+    /// Returns a tensor with the same shear and another change of volume.
     pub(crate) fn with_trace(mut self, trace: f64) -> Self {
         let add = (trace - self.trace()) / 3.0;
         for normal in &mut self.0[..3] {

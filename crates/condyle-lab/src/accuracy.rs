@@ -1,13 +1,14 @@
 //! Estimated discretisation errors of a run.
 //!
-//! Two cycles on the way are solved again with finer increments, and with a looser slip tolerance;
-//! the first one, on the unworn insert, with a coarser mesh. The change of their wear and the order of
-//! convergence give the error of the run. The error of the march's steps is known from the march
-//! itself; of an insert that creeps, from a march of half as many.
+//! Two cycles during the march are solved again with finer increments and with a looser slip tolerance; the first
+//! cycle, on the unworn insert, is solved again with a coarser mesh. The change of their wear and the order of
+//! convergence give the error of the run. The march itself estimates the error of its steps; if the insert creeps, a
+//! march of half as many steps does.
 //!
-//! Ranges of motion are those of the first cycle, which is solved again with each of the changes, and so is a peak
-//! that the first cycle has. A peak of a later cycle is looked at in the later of the two on the way: solved again as
-//! well on a coarser mesh that is as deep, and with the surface lowered by what the march's steps have missed.
+//! Errors of ranges of motion, and of a peak in the first cycle, come from the first cycle, solved again with each
+//! change. Errors of a peak in a later cycle come from the later of the two cycles during the march, which is also
+//! solved again on a coarser mesh worn to the same depth, and with the surface lowered by the error of the march's
+//! steps.
 
 mod worn_surface;
 
@@ -36,23 +37,23 @@ use condyle_results::{
 
 use worn_surface::WornSurface;
 
-// Richardson's factors: the error that is left, from the change that a coarser or finer value makes.
-/// Error of a run from the change that twice the increments make: 1 / (1 - 1/2^2), second order.
+// Richardson's factors: the ratio of the remaining error to the change that a coarser or finer value causes.
+/// For twice the increments: 1 / (1 - 1/2^2), second order.
 const FINER_INCREMENTS: f64 = 4.0 / 3.0;
-/// From the change that twice the slip tolerance makes: first order.
+/// For twice the slip tolerance: first order.
 const LOOSER_SLIP: f64 = -1.0;
-/// From the change that twice the edge makes: second order.
+/// For twice the edge length: second order.
 const COARSER_MESH: f64 = -1.0 / 3.0;
-/// From the change that the errors of the steps so far make.
+/// For a surface corrected by the errors of the steps so far.
 const MISSED: f64 = 1.0;
-/// From the change that half the updates make where the insert creeps: steps of creep are of first order and those of
-/// wear of second, and twice the updates leave a third of the error, so that half of them make three times of it.
+/// For half the updates if the insert creeps. Steps of creep are of first order and steps of wear of second; twice
+/// the updates leave a third of the error, so that half the updates triple it.
 const HALF_THE_UPDATES: f64 = -1.0 / 2.0;
 
 enum Without {
     /// The user asked to stop.
     Stopped,
-    /// A test changed so could not be solved.
+    /// The changed test could not be solved.
     Reason(String),
 }
 
@@ -78,7 +79,7 @@ struct OnTheWay {
 
 struct PartEstimate {
     wear: Stated<OfWear>,
-    /// Of the later cycle on the way.
+    /// Peaks of the later cycle during the march.
     later: Stated<Peaks>,
     first: Stated<FirstCycle>,
 }
@@ -109,8 +110,7 @@ fn each<const N: usize>(stated: Stated<[f64; N]>) -> [Stated<f64>; N] {
     }
 }
 
-/// The estimated error of a march that is done, none of one that did nothing; a break if `watch` asks to
-/// stop.
+/// Estimates the error of a finished march; none for a march without updates. Breaks if `watch` requests a stop.
 pub(crate) fn estimate(
     case: &Case,
     march: &March,
@@ -136,7 +136,7 @@ pub(crate) fn estimate(
     ControlFlow::Continue(Some(estimate))
 }
 
-/// Passes a stop on; every other reason in words.
+/// Propagates a stop, and converts every other reason to words.
 fn stated<T>(found: Found<T>) -> ControlFlow<(), Stated<T>> {
     match found {
         Ok(percent) => ControlFlow::Continue(Ok(percent)),
@@ -162,13 +162,13 @@ fn has_later_peak(summary: &Summary) -> bool {
     summary[&PEAK_PRESSURE_CYCLE] > 0.0 || summary[&PEAK_CONTACT_AREA_CYCLE] > 0.0
 }
 
-/// The last update; none of a march with one update, which cannot be compared.
+/// Returns the last update; an error for a march with one update, which cannot be compared.
 fn last_of_several(state: &MarchState) -> Stated<&UpdateRecord> {
     let last = state.updates.last().filter(|_| state.updates.len() > 1);
     last.ok_or_else(|| "one update has no other to be compared with".to_owned())
 }
 
-/// The march's own estimate of the error of its steps, % of volume loss and of maximum depth.
+/// Returns the march's own estimate of the error of its steps, % of volume loss and of maximum depth.
 fn of_updates(state: &MarchState) -> Stated<OfWear> {
     let last = last_of_several(state)?;
     let error = state.step_error;
@@ -178,7 +178,7 @@ fn of_updates(state: &MarchState) -> Stated<OfWear> {
     ])
 }
 
-/// A test whose first cycle the changes of it are compared with, and what that cycle is like.
+/// A reference test, with whose first cycle changed tests are compared, and the results of that cycle.
 struct Base {
     test: WearTest,
     first: FirstCycle,
@@ -187,9 +187,9 @@ struct Base {
 /// Cycles of a run, solved again.
 struct Again<'a> {
     march: &'a March,
-    /// Wear of the run's first cycles, and the motions that they ended with.
+    /// Wear of the run's first cycles, and the machine states at their ends.
     first: &'a (StepRecord, Vec<MachineState>),
-    /// Steps on the way that represent all; one if both are the same.
+    /// Steps that represent the whole march; one if both are the same.
     snapshots: Vec<&'a Snapshot>,
     worn: WornSurface,
     growth: OfWear,
@@ -210,7 +210,7 @@ impl<'a> Again<'a> {
         })
     }
 
-    /// The test of the run again, but so short that nothing to speak of is worn, and no time is left to creep.
+    /// Returns the test of the run shortened so far that wear and creep are negligible.
     fn as_run(&self) -> WearTest {
         WearTest {
             schedule: Schedule::fixed(1.0, 1),
@@ -221,7 +221,8 @@ impl<'a> Again<'a> {
         }
     }
 
-    /// The estimate by a coarser mesh; and a test whose first cycle is solved quickly, on that mesh if there is one.
+    /// Estimates the error by a coarser mesh; also returns a test whose first cycle is solved quickly, on that mesh
+    /// if it exists.
     fn by_mesh(
         &mut self,
         coarser: &Stated<Arc<Insert>>,
@@ -259,7 +260,8 @@ impl<'a> Again<'a> {
         })
     }
 
-    /// Errors of wear by the mesh: of the depth at least what the deepest place between the nodes lies deeper.
+    /// Returns the errors of wear by the mesh; the error of the depth is at least the excess of the deepest place
+    /// between the nodes.
     fn between_the_nodes_too(&self, [mass, depth]: OfWear) -> OfWear {
         let missed = 100.0 * self.worn.missed_between_nodes();
         [mass, if missed > depth.abs() { missed } else { depth }]
@@ -277,7 +279,7 @@ impl<'a> Again<'a> {
         base: &Base,
         looser: &Arc<dyn ContactLaw>,
     ) -> ControlFlow<(), PartEstimate> {
-        // The slip tolerance has much the same effect all the way: the last snapshot represents it.
+        // The slip tolerance has nearly the same effect throughout the march: the last snapshot represents it.
         let test = with_contact(self.as_run(), Arc::clone(looser));
         let on_the_way = stated(self.at(self.snapshots.len() - 1, LOOSER_SLIP, &test))?;
         let test = with_contact(base.test.clone(), Arc::clone(looser));
@@ -285,7 +287,7 @@ impl<'a> Again<'a> {
         ControlFlow::Continue(told(on_the_way, first))
     }
 
-    /// The first cycle knows nothing of updates.
+    /// Estimates the errors by the updates, on which the first cycle does not depend.
     fn by_updates(&mut self, summary: &Summary) -> ControlFlow<(), PartEstimate> {
         let later = if has_later_peak(summary) {
             stated(self.as_deep_as_exact())?
@@ -304,9 +306,10 @@ impl<'a> Again<'a> {
         })
     }
 
-    /// Errors of a march that creeps, in %: what half as many updates make of it.
+    /// Estimates the errors of a march with creep, in %, from a march with half as many updates.
     ///
-    /// The march knows the error of its steps of wear, but not of those of creep, which change the wear after them.
+    /// The march estimates the error of its steps of wear, but not of its steps of creep, which change the later
+    /// wear.
     fn with_half_the_updates(&mut self) -> Found<OfWear> {
         let state = self.march.state();
         let last = last_of_several(state).map_err(Without::Reason)?;
@@ -324,8 +327,8 @@ impl<'a> Again<'a> {
         Ok(errors(HALF_THE_UPDATES, halved, worn(last)))
     }
 
-    /// Errors in %: `factor` times what a changed test makes on the way; of the wear the mean of the snapshots, of
-    /// the peaks that of the later one.
+    /// Returns errors in %: `factor` times the change of a changed test during the march. Errors of the wear are the
+    /// mean over the snapshots; errors of the peaks come from the later snapshot.
     fn on_the_way(&mut self, factor: f64, changed: &WearTest) -> Found<OnTheWay> {
         let count = self.snapshots.len();
         let (mut mean, mut peaks) = ([0.0; 2], [0.0; 2]);
@@ -353,8 +356,8 @@ impl<'a> Again<'a> {
         March::from_snapshot(test.clone(), snapshot, self.march.state().zero_mm)
     }
 
-    /// Errors of the peaks in the later cycle on the way, in %: of a surface that is as deep as the march makes it,
-    /// less what it would be if its steps were exact.
+    /// Returns the errors of the peaks in the later cycle, in %: the difference between the surface of the march and
+    /// the surface that exact steps would give.
     fn as_deep_as_exact(&mut self) -> Found<Peaks> {
         let test = self.as_run();
         let Some(snapshot) = self.snapshots.last().copied() else {
@@ -364,7 +367,7 @@ impl<'a> Again<'a> {
         self.peaks_at(MISSED, &test, &exact, snapshot.update)
     }
 
-    /// Errors of the peaks in the later cycle on the way, in %, by a coarser mesh that is worn as deep.
+    /// Returns the errors of the peaks in the later cycle, in %, from a coarser mesh worn to the same depth.
     fn worn_on(&mut self, coarser: &WearTest) -> Found<Peaks> {
         let Some(snapshot) = self.snapshots.last().copied() else {
             return Ok([0.0; 2]);
@@ -388,7 +391,7 @@ impl<'a> Again<'a> {
         Ok(errors(factor, first_peaks(march.state()), reference))
     }
 
-    /// Errors of wear in % by a coarser mesh, unworn; and its first cycle.
+    /// Returns the errors of wear in % from an unworn coarser mesh, and its first cycle.
     fn unworn(&mut self, coarser: &WearTest) -> Found<(OfWear, FirstCycle)> {
         let march = self.started(coarser.clone())?;
         let reference = worn(&self.first.0, &self.worn.weights());
@@ -397,7 +400,7 @@ impl<'a> Again<'a> {
         Ok((wear, first_cycle(march.state())))
     }
 
-    /// Errors of the first cycle in %, by a change of a test's own first cycle.
+    /// Returns the errors of the first cycle in %, from a change of the test.
     fn again_first(&mut self, factor: f64, changed: WearTest, base: &Base) -> Found<FirstCycle> {
         let march = self.started(changed)?;
         Ok(errors(factor, first_cycle(march.state()), base.first))
@@ -438,7 +441,7 @@ fn unknown(why: &str) -> PartEstimate {
     }
 }
 
-/// The estimate by cycles on the way and the first one.
+/// Returns the estimate from the cycles during the march and the first cycle.
 fn told(on_the_way: Stated<OnTheWay>, first: Stated<FirstCycle>) -> PartEstimate {
     let (wear, later) = match on_the_way {
         Ok(OnTheWay { wear, peaks }) => (Ok(wear), Ok(peaks)),
@@ -447,10 +450,10 @@ fn told(on_the_way: Stated<OnTheWay>, first: Stated<FirstCycle>) -> PartEstimate
     PartEstimate { wear, later, first }
 }
 
-/// Errors in %: `factor` times by how much `now` differs from what it was; nothing of what does not change.
+/// Returns errors in %: `factor` times the relative difference of `now` from `reference`; 0 where they are equal.
 fn errors<const N: usize>(factor: f64, now: [f64; N], reference: [f64; N]) -> [f64; N] {
     std::array::from_fn(|i| {
-        // Both may be 0, of which the quotient is NaN.
+        // Both may be 0, and their quotient would be NaN.
         if now[i] == reference[i] {
             return 0.0;
         }
@@ -466,7 +469,7 @@ fn first_peaks(state: &MarchState) -> Peaks {
     state.updates.first().map_or([0.0; 2], peaks_of)
 }
 
-/// The peaks of the first cycle of a march, and the ranges of its motion, in the units of files.
+/// Returns the peaks of the first cycle of a march, and the ranges of its motion, in the units of files.
 fn first_cycle(state: &MarchState) -> FirstCycle {
     let [pressure, area] = first_peaks(state);
     let cycles = state.activities.first().map(|own| &own.first_and_last);
@@ -477,12 +480,12 @@ fn first_cycle(state: &MarchState) -> FirstCycle {
 
 fn snapshots(state: &MarchState) -> Vec<&Snapshot> {
     let mut snapshots: Vec<&Snapshot> = state.snapshots.iter().flatten().collect();
-    // Of a short march both snapshots are of one step.
+    // In a short march both snapshots belong to one step.
     snapshots.dedup_by(|a, b| a.depths == b.depths);
     snapshots
 }
 
-/// The volume that a cycle wore, and the mean of its depth by `weights`.
+/// Returns the volume that a cycle wore, and the mean of its depth by `weights`.
 fn worn(step: &StepRecord, weights: &[f64]) -> [f64; 2] {
     [
         step.volume_per_cycle_mm3(),
@@ -496,11 +499,11 @@ impl<E: std::error::Error> From<E> for Without {
     }
 }
 
-/// The powers of the rates with which volume loss and maximum depth grow.
+/// Returns the powers of the rates with which volume loss and maximum depth grow.
 ///
-/// Rates that are 1 % higher all along are a test that is 1 % longer: volume and depth grow by
-/// rate x cycles / (all so far) of that, with the rate of the end. A scar that spreads deepens
-/// more slowly in the end than on the average, and so forgives.
+/// Rates that are 1 % higher throughout correspond to a test that is 1 % longer: volume and depth grow by 1 % times
+/// rate x cycles / (total so far), with the rate at the end. A spreading scar deepens more slowly at the end than on
+/// average, which reduces the error.
 fn growth(state: &MarchState, worn_surface: &WornSurface) -> Option<[f64; 2]> {
     let (last, step) = (state.updates.last()?, state.last_step.as_ref()?);
     let weights = worn_surface.weights();

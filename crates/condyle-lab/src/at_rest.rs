@@ -1,4 +1,4 @@
-//! The settled femur on the insert: where it stands, and how it presses.
+//! The settled femur on the insert: its position and its contact.
 
 use condyle::{
     Vec3,
@@ -38,11 +38,11 @@ pub struct AtRest {
     pub(crate) nodes_near: usize,
 }
 
-/// Nodes that are as near as this at rest touch under the loads of a cycle, about, mm.
+/// Distance at rest below which nodes approximately touch under the loads of a cycle, mm.
 const NEAR_MM: f64 = 0.25;
 
 impl AtRest {
-    /// The bodies of a march that has not begun.
+    /// Creates the bodies of a march that has not begun.
     pub(crate) fn of(march: &March) -> Self {
         let test = march.test();
         let positions = settled(march);
@@ -81,7 +81,7 @@ impl AtRest {
     }
 }
 
-/// Positions after settling, and not yet where a cycle leads them.
+/// Returns the positions after settling, before any cycle.
 fn settled(march: &March) -> [f64; 6] {
     let mut positions = march.state().activities[0].machine.now.positions;
     for (position, joint) in positions.iter_mut().zip(&march.test().machine().joints) {

@@ -37,7 +37,7 @@ pub struct Preview {
     pub title: String,
     /// The side of the knee.
     pub side: &'static str,
-    /// Corrections and doubts of the input.
+    /// Corrections of the input, and remarks on suspicious input.
     pub warnings: Vec<String>,
     /// The femoral component.
     pub femur: BodyFacts,
@@ -57,16 +57,16 @@ pub struct Preview {
 }
 
 impl Preview {
-    /// Goes with the case at `case_path`, some of its values changed, as far as a run goes before its first cycle:
-    /// the file, the meshes, and that the femur settles on the insert.
+    /// Carries out a run of the case at `case_path`, with some of its values changed, up to its first cycle: it reads
+    /// the file and the meshes, and settles the femur on the insert.
     ///
     /// # Errors
-    /// Those of a run that cannot start.
+    /// The errors of a run that cannot start.
     pub fn of(case_path: &Path, changes: &[Assignment], threads: usize) -> Result<Self, RunError> {
         Self::of_case(Case::read_changed(case_path, changes)?, threads)
     }
 
-    /// The same of a case that is read already.
+    /// Previews a case that has been read.
     ///
     /// # Errors
     /// As [`Preview::of`].
@@ -125,7 +125,7 @@ impl Preview {
     }
 }
 
-/// So far around the lowest place of a dish it is thinnest under the femur, mm.
+/// Radius around the lowest place of a dish within which the thickness under the femur is smallest, mm.
 const AROUND_DISH_MM: f64 = 10.0;
 
 /// A body and its source.
@@ -137,7 +137,7 @@ pub struct BodyFacts {
     pub file: Option<String>,
     /// Size antero-posterior, supero-inferior and medio-lateral, mm.
     pub size_mm: [f64; 3],
-    /// Triangles of its file; none of hexahedra and of a shape by measures.
+    /// Triangles of its file; none for hexahedra and for a shape by dimensions.
     pub triangles: Option<usize>,
     /// Defects of its file.
     pub defects: Vec<String>,
@@ -219,9 +219,10 @@ fn least_around(dish: &Vec3, places: &[Vec3], values: &[f64]) -> f64 {
 const CYCLES_AN_UPDATE: f64 = 1.15;
 /// Contact evaluations for an increment.
 const EVALUATIONS_AN_INCREMENT: f64 = 2.3;
-/// Updates that a march takes which finds them itself, about.
+/// Approximate number of updates of a march that determines them itself.
 const OWN_UPDATES: f64 = 8.0;
-/// Evaluations that are timed, on a path of so many steps, each so long, mm: as in a cycle other nodes press at each.
+/// Number of timed evaluations, and the length of the steps between them, mm: as in a cycle, each step loads other
+/// nodes.
 const TIMED: usize = 8;
 const STEP_MM: f64 = 0.1;
 /// Lowerings of the femur until it carries the mean load of the cycle.
@@ -239,7 +240,7 @@ pub struct Expected {
 }
 
 impl Expected {
-    /// Of a march that was built in `built_in`.
+    /// Estimates time and memory of a march that was built in the time `built_in`.
     fn of(case: &Case, march: &March, at_rest: &AtRest, built_in: Duration) -> Self {
         Self {
             memory_mb: memory_mb(case, march, at_rest),
@@ -262,7 +263,8 @@ fn solving_s(case: &Case, march: &March, at_rest: &AtRest) -> f64 {
     again * evaluations * evaluation_s(march, at_rest)
 }
 
-/// Seconds in which the contact under the mean load answers, with its derivatives: the shorter of two times on a path.
+/// Returns the time of a contact evaluation under the mean load with derivatives, s: the shorter of two times on a
+/// path.
 fn evaluation_s(march: &March, at_rest: &AtRest) -> f64 {
     let surface = march.insert().surface();
     let memory = ContactMemory::default();
@@ -277,18 +279,19 @@ fn evaluation_s(march: &March, at_rest: &AtRest) -> f64 {
                 RelativeMotion::at_rest(Pose::new(pose.rotation, pose.translation + along));
             contact.begin_increment(step);
             std::hint::black_box(contact.respond(&motion).tangent());
-            // An insert that flows takes its time to settle. A load that it does not carry is told by the run.
+            // The time includes settling, which is long for an insert that yields. The run reports a load that the
+            // insert does not carry.
             let settled = contact.settle(&motion);
             std::hint::black_box(settled.is_ok());
             contact.accept(&motion);
         }
         began.elapsed().as_secs_f64() / TIMED as f64
     };
-    // What a contact computes once is no part of the second time.
+    // The second time excludes what a contact computes only once.
     once().min(once())
 }
 
-/// The pose at rest with the femur lowered until it carries a load, about.
+/// Returns the pose at rest with the femur lowered until it approximately carries a load.
 fn lowered(contact: &mut dyn ContactModel, at_rest: &AtRest, load_n: f64) -> Pose {
     let mut pose = at_rest.pose;
     for _ in 0..LOWERINGS {
@@ -319,7 +322,7 @@ fn of_quads(nodes: &[Vec3], quads: &[[u32; 4]]) -> BodySurface {
     ))
 }
 
-/// Faces of the articulating surface of which most corners are pressed.
+/// Returns the faces of the articulating surface with most corners under pressure.
 fn pressed(march: &March, at_rest: &AtRest) -> BodySurface {
     const MAX_CORNERS: usize = 3;
     let places = march.test().insert.surface().positions;
@@ -337,7 +340,7 @@ fn pressed(march: &March, at_rest: &AtRest) -> BodySurface {
     of_quads(&places, &faces)
 }
 
-/// As the files have it: a left knee is computed as a right one.
+/// Mirrors a body to the side of the files: a left knee is computed as a right one.
 fn mirrored(mut body: BodySurface, side: Side) -> BodySurface {
     body.vertices
         .iter_mut()

@@ -64,12 +64,12 @@ impl Channel {
         }
     }
 
-    /// The channel of a column.
+    /// Returns the channel of a column.
     pub(crate) fn find(column: &str) -> Option<&'static Self> {
         CHANNELS.iter().find(|channel| channel.column == column)
     }
 
-    /// A chart of the channel over the cycle.
+    /// Returns a chart of the channel over the cycle.
     pub(crate) fn panel(&self, curves: Vec<Curve>) -> Panel {
         Panel {
             id: format!("k-{}", self.column),
@@ -98,7 +98,7 @@ pub(crate) struct Cycle {
     pub(crate) rows: Vec<usize>,
 }
 
-/// The first and the last cycle of a table; one entry where it holds only one.
+/// Returns the first and the last cycle of a table; one entry where it holds only one.
 pub(crate) fn first_and_last(table: &Table) -> Vec<Cycle> {
     let rows = 0..table.rows();
     let Some(counts) = table.column("cycles") else {
@@ -134,7 +134,7 @@ pub(crate) fn cycle_captions(table: &Table) -> Option<[String; 2]> {
     Some([first, last].map(caption))
 }
 
-/// All charts of a run.
+/// Returns all charts of a run.
 pub(crate) fn all(results: &Results) -> Vec<Panel> {
     let mut charts = wear(results);
     charts.extend(cycle(results));
@@ -210,7 +210,7 @@ pub(crate) fn wear(results: &Results) -> Vec<Panel> {
     wear_up_to(results, cycles_of(results))
 }
 
-/// The cycles at the last update.
+/// Returns the cycles at the last update.
 pub(crate) fn cycles_of(results: &Results) -> f64 {
     let table = results.wear.as_ref();
     let cycles = table.and_then(|table| table.column("cycles"));

@@ -1,4 +1,4 @@
-//! Reports of results folders as pages and pictures; this crate knows no solver.
+//! Reports of results folders as pages and pictures; this crate does not depend on a solver.
 //!
 //! [`write_report`] writes `report.html`: one file that requests nothing from a network, with bodies in 3-D and interactive
 //! charts, and with the same content in print and without scripts. [`report_html`] renders the page without scripts.

@@ -87,7 +87,7 @@ pub(crate) static MAPS: [MappedField; 6] = [
 ];
 
 impl MappedField {
-    /// The map of a surface; `None` without the field.
+    /// Returns the map of a surface; `None` without the field.
     pub(crate) fn of<'a>(
         &self,
         surface: &'a SurfaceFields,
@@ -171,7 +171,7 @@ struct SlipPath {
     slips: Vec<(f64, f64)>,
 }
 
-/// The paths of `slip_paths.csv`; `None` if it lacks a column.
+/// Returns the paths of `slip_paths.csv`; `None` if it lacks a column.
 fn slip_paths(table: &Table) -> Option<Vec<SlipPath>> {
     let column = |name| table.column(name);
     let (numbers, x, z) = (column("path")?, column("x_mm")?, column("z_mm")?);
@@ -189,7 +189,7 @@ fn slip_paths(table: &Table) -> Option<Vec<SlipPath>> {
 }
 
 impl SlipPath {
-    /// The path with its middle at its place, and a dot there.
+    /// Returns the path with its middle at its place, and a dot there.
     fn svg(&self, map: &Map<'_>) -> String {
         let mut at = (0.0, 0.0);
         let mut points = vec![at];

@@ -49,7 +49,7 @@ pub fn compared_kinematics_svg(title: &str, curves: &[ComparedCurve]) -> String 
     sheet(title, desc, &panels, 2, &key)
 }
 
-/// The points, with a break where instants are missing.
+/// Returns the points, with a break where instants are missing.
 fn with_gaps(points: &[[f64; 3]], value: fn(&[f64; 3]) -> f64) -> Vec<(f64, f64)> {
     let steps = points.windows(2).map(|pair| pair[1][0] - pair[0][0]);
     let usual = steps.fold(f64::INFINITY, f64::min);

@@ -35,7 +35,7 @@ pub(crate) fn significant(value: f64, digits: i32) -> String {
     fixed(value, (digits - 1 - magnitude).max(0) as usize)
 }
 
-/// A number of cycles in words: 5 million, 250 000, 1.
+/// Returns a number of cycles in words: 5 million, 250 000, 1.
 pub(crate) fn cycles_in_words(count: f64) -> String {
     if count < 1e6 {
         return fixed(count, 0);
@@ -45,12 +45,12 @@ pub(crate) fn cycles_in_words(count: f64) -> String {
     format!("{shortest} million")
 }
 
-/// The unit that a key ends in, as it is printed; empty for a pure number.
+/// Returns the unit that a key ends in, as it is printed; empty for a pure number.
 pub(crate) fn printed_unit(key: &str) -> String {
     with_powers(split_unit(key).1.unwrap_or_default())
 }
 
-/// A text with the powers of its units as they are printed: mm2 is mm\u{b2}.
+/// Returns a text with the powers of its units as they are printed: mm2 is mm\u{b2}.
 pub(crate) fn with_powers(text: &str) -> String {
     text.replace("mm2", "mm\u{b2}").replace("mm3", "mm\u{b3}")
 }

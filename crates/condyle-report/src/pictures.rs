@@ -23,7 +23,8 @@ pub struct Picture {
     pub svg: String,
 }
 
-/// All pictures of a report that a folder has the numbers for: maps, slip paths, wear over the test, motion and load.
+/// Returns all pictures of a report for which a folder has the numbers: maps, slip paths, wear over the test, motion
+/// and load.
 pub fn pictures(results: &Results) -> Vec<Picture> {
     let maps = maps::drawn(&MAPS, results, PX_PER_MM, map_file).into_iter();
     let maps = maps.map(|map| (map.file, Some(map.svg)));
@@ -58,14 +59,14 @@ fn motion_sheet(panels: &[Panel]) -> Option<String> {
     (!panels.is_empty()).then(|| sheet(title, desc, panels, 3, &key))
 }
 
-/// The entry of measured curves in the key, where a panel has some.
+/// Returns the entry of measured curves in the key, where a panel has some.
 fn measured(panels: &[Panel], word: &'static str) -> Option<(&'static str, &'static str)> {
     let mut curves = panels.iter().flat_map(|panel| &panel.curves);
     let is_there = curves.any(|curve| curve.class == MEASURED);
     is_there.then_some((MEASURED, word))
 }
 
-/// The text of the SVG file of a picture, by its name.
+/// Returns the text of the SVG file of a picture, by its name.
 ///
 /// # Errors
 /// The folder cannot be read, or lacks the numbers of the picture.

@@ -7,13 +7,14 @@ use resvg::{
     usvg::{Options, Tree, fontdb::Database},
 };
 
-/// Letters of the pictures, whatever a machine has: the same picture has the same bytes everywhere.
+/// Fonts of the pictures, independent of the fonts of the machine: the same picture has the same bytes everywhere.
 const FONTS: [&[u8]; 2] = [
     include_bytes!("../fonts/Inter-Regular-subset.otf"),
     include_bytes!("../fonts/Inter-SemiBold-subset.otf"),
 ];
 
-/// The bytes of a PNG file of a picture with so many dots to a point of it; `None` for what is no picture or has no size.
+/// Returns the bytes of a PNG file of a picture with `dots` dots per point; `None` if `svg` is not a picture or has
+/// no size.
 pub fn png(svg: &str, dots: f32) -> Option<Vec<u8>> {
     let mut fonts = Database::new();
     for font in FONTS {

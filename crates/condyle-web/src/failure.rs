@@ -31,7 +31,7 @@ struct Wrong {
 }
 
 impl Failure {
-    /// Something without a place.
+    /// Creates a failure without a place.
     pub fn of_words(words: impl Display) -> Self {
         Self {
             message: format!("error: {words}"),
@@ -40,7 +40,7 @@ impl Failure {
         }
     }
 
-    /// A file that cannot be read or written.
+    /// Creates the failure for a file that cannot be read or written.
     pub fn of_file(path: &Path, error: &io::Error) -> Self {
         Self::of_words(format!("{}: {error}", path.display()))
     }

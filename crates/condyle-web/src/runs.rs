@@ -42,7 +42,7 @@ pub fn keep(case: &Path, out: &Path) -> Result<(), Failure> {
     let options = RunOptions {
         out: out.to_owned(),
         resume: false,
-        // The folder is in the memory of the page, which makes it for this run.
+        // The folder is in the memory of the page, which creates it for this run.
         force: true,
         threads: 1,
         cache: Cache::off(),

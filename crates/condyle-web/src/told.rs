@@ -11,7 +11,7 @@ use crate::failure::Failure;
 #[derive(Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Told {
-    /// A correction or a doubt of the input.
+    /// A correction of the input, or a remark on suspicious input.
     Warning(String),
     /// Progress of a run.
     Reached(Reached),

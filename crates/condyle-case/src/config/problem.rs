@@ -134,7 +134,7 @@ impl Problems {
         Self { problems }
     }
 
-    /// Creates a file that cannot be opened.
+    /// Creates the problem of a file that cannot be opened.
     pub(crate) fn unreadable(reason: impl Reason) -> Self {
         Self {
             problems: vec![Problem::nowhere(reason)],

@@ -38,7 +38,7 @@ impl Study {
         Self::read_in(Disk, path)
     }
 
-    /// Creates the same from `files`, which have the case and the files that it names as well.
+    /// Reads a study from `files`, which also contain the case and the files that it names.
     ///
     /// # Errors
     /// As [`Self::read`].

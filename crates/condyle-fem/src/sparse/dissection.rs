@@ -80,7 +80,7 @@ impl Dissection {
         Some(self.places[node as usize]).filter(|&place| place != HELD)
     }
 
-    /// The group that eliminates a place.
+    /// Returns the group that eliminates a place.
     pub(crate) fn group_of(&self, place: u32) -> usize {
         self.groups.partition_point(|group| group.own.end <= place)
     }
@@ -176,7 +176,7 @@ fn elements_around(mesh: &HexMesh) -> Vec<Vec<u32>> {
     around
 }
 
-/// The axis along which some points lie farthest apart.
+/// Returns the axis along which some points lie farthest apart.
 fn longest_side(points: impl Iterator<Item = Vec3>) -> usize {
     let nothing = [f64::INFINITY, f64::NEG_INFINITY].map(Vec3::repeat);
     let [low, high] = points.fold(nothing, |[low, high], p| [low.inf(&p), high.sup(&p)]);

@@ -49,14 +49,14 @@ impl Triangle {
         &self.vectors[start_of_row(t)..start_of_row(t + 1)]
     }
 
-    /// The number at a row and a column not after it.
+    /// Returns the number at a row and a column not after it.
     #[inline(always)]
     pub(crate) fn at_mut(&mut self, row: usize, column: usize) -> &mut f64 {
         let vector = &mut self.vectors[start_of_row(row / TILE) + column];
         &mut vector.as_mut_array()[row % TILE]
     }
 
-    /// The number at a row and a column not after it.
+    /// Returns the number at a row and a column not after it.
     #[inline(always)]
     pub(crate) fn at(&self, row: usize, column: usize) -> f64 {
         self.vectors[start_of_row(row / TILE) + column].as_array()[row % TILE]
@@ -203,7 +203,7 @@ pub(crate) struct Front {
 }
 
 impl Front {
-    /// The first `columns` of an eliminated triangle.
+    /// Creates the first `columns` of an eliminated triangle.
     pub(crate) fn from_triangle(triangle: &Triangle, columns: usize, rows: usize) -> Self {
         let (mut starts, mut vectors) = (vec![0], Vec::with_capacity(columns * rows / TILE));
         for t in 0..rows / TILE {
@@ -244,7 +244,7 @@ pub(crate) struct Layout {
 }
 
 impl Layout {
-    /// The layout for given numbers of own nodes and of nodes on the boundary.
+    /// Creates the layout for given numbers of own nodes and of nodes on the boundary.
     pub(crate) fn new(own: usize, boundary: usize) -> Self {
         let columns = (3 * own).next_multiple_of(TILE);
         Self {

@@ -1,4 +1,4 @@
-//! Depths at the nodes of a surface, and what they are on another mesh.
+//! Depths at the nodes of a surface, and their transfer to another mesh.
 
 use condyle::{
     evolve::{March, weight_of_depth},
@@ -6,17 +6,17 @@ use condyle::{
 };
 use nalgebra::{Matrix2, Matrix6, Vector2, Vector6};
 
-/// Nodes whose depths a place between them takes the mean of.
+/// Number of nodes whose mean depth a place between them takes.
 const NEIGHBOURS: usize = 4;
 
-/// Nodes that a paraboloid is fitted to: a node of a grid and those around it.
+/// Number of nodes to which a paraboloid is fitted: a node of a grid and those around it.
 const FITTED: usize = 9;
 
 /// (x, z) of the nodes of a surface, and their depth.
 pub(super) struct WornSurface(Vec<([f64; 2], f64)>);
 
 impl WornSurface {
-    /// The worn surface of a march, each depth as a part of the largest.
+    /// Creates the worn surface of a march, each depth as a part of the largest.
     pub fn of(march: &March) -> Self {
         let worn_mm = march.state().depths.wear_mm();
         let deepest = worn_mm.iter().copied().fold(f64::MIN_POSITIVE, f64::max);
@@ -24,18 +24,18 @@ impl WornSurface {
         Self(places(march.insert()).zip(depths).collect())
     }
 
-    /// Depths of the nodes of an insert.
+    /// Creates a surface from the depths of the nodes of an insert.
     pub fn with(insert: &Insert, depth_mm: &[f64]) -> Self {
         Self(places(insert).zip(depth_mm.iter().copied()).collect())
     }
 
-    /// The weight of every node in the maximum depth.
+    /// Returns the weight of every node in the maximum depth.
     pub fn weights(&self) -> Vec<f64> {
         let depths = self.0.iter().map(|(_, depth)| depth);
         depths.map(|depth| weight_of_depth(*depth)).collect()
     }
 
-    /// The same on another mesh, whose nodes are as deep as the nearest one here.
+    /// Returns the weights on another mesh, whose nodes are as deep as the nearest node here.
     pub fn weights_on(&self, insert: &Insert) -> Vec<f64> {
         let depth = |place: [f64; 2]| {
             let nodes = self.0.iter();
@@ -53,10 +53,10 @@ impl WornSurface {
         places(insert).map(|place| self.depth_at(place)).collect()
     }
 
-    /// The depth between nodes beyond that of the deepest node, as a part of it.
+    /// Returns the depth between nodes beyond that of the deepest node, as a part of it.
     ///
-    /// The lowest place of the paraboloid that fits the nine nodes around best; none if that is no hollow, or lies
-    /// farther away than they do.
+    /// The lowest place of the paraboloid that fits the nine nodes around best; none if the paraboloid is not a
+    /// hollow, or if its lowest place lies farther away than they do.
     pub fn missed_between_nodes(&self) -> f64 {
         let deepest = self.0.iter().max_by(|a, b| a.1.total_cmp(&b.1));
         let Some(&(place, depth)) = deepest else {
@@ -98,7 +98,7 @@ struct Paraboloid {
 }
 
 impl Paraboloid {
-    /// The paraboloid nearest to heights at places around `middle`; none where they do not determine one.
+    /// Creates the paraboloid nearest to heights at places around `middle`; none where they do not determine one.
     fn fit([x, z]: [f64; 2], nodes: &[&([f64; 2], f64)]) -> Option<Self> {
         let (mut matrix, mut right) = (Matrix6::zeros(), Vector6::zeros());
         for &&([node_x, node_z], height) in nodes {
@@ -115,7 +115,7 @@ impl Paraboloid {
         })
     }
 
-    /// Its highest place, if it has one that is no farther away than the root of `reach2`.
+    /// Returns its highest value, if its maximum is not farther away than the root of `reach2`.
     fn top(&self, reach2: f64) -> Option<f64> {
         let to_top = (-self.bend).cholesky()?.solve(&self.slope);
         let top = self.height + self.slope.dot(&to_top) / 2.0;

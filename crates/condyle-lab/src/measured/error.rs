@@ -11,16 +11,16 @@ use thiserror::Error;
 /// The reason why a run and a measurement cannot be compared.
 #[derive(Debug, Error)]
 pub enum CompareError {
-    /// The file of measured data.
+    /// The file of measured data cannot be read.
     #[error(transparent)]
     Measured(#[from] Problems),
-    /// The results folder.
+    /// The results folder cannot be read.
     #[error(transparent)]
     Results(#[from] ReportError),
-    /// A mesh of the results folder that is no longer as the run wrote it.
+    /// A mesh of the results folder that has changed since the run wrote it.
     #[error(transparent)]
     Damaged(#[from] DamagedFile),
-    /// A mesh of the results folder.
+    /// A mesh of the results folder cannot be read.
     #[error(transparent)]
     Mesh(#[from] MeshFileError),
     /// Results or measurements that lack what the comparison needs, with the remedy.
@@ -37,7 +37,7 @@ pub enum CompareError {
 }
 
 impl CompareError {
-    /// A file of the results folder that the table `[table]` of measured data is compared with.
+    /// Creates a file of the results folder that the table `[table]` of measured data is compared with.
     pub(crate) fn missing_file(path: &Path, table: &str) -> Self {
         let path = path.display();
         Self::NotComparable(format!(
@@ -51,7 +51,7 @@ impl CompareError {
         ))
     }
 
-    /// A run that ends before the weighings do.
+    /// Creates the error for a run that ends before the weighings.
     pub(crate) fn run_too_short(weighings: usize) -> Self {
         Self::NotComparable(format!(
             "the run ends before the second weighing that counts: it reaches {weighings} of them, of which two are \

@@ -39,7 +39,7 @@ pub struct GravimetricComparison {
     pub inside_interval_of_weighings: bool,
     /// Whether it lies within the interval of the mean of the specimens; none for one specimen.
     pub inside_interval_of_specimens: Option<bool>,
-    /// The rate that calibration aims at.
+    /// The kind of rate that calibration fits.
     #[serde(skip)]
     aim: IntervalWord,
 }
@@ -55,7 +55,7 @@ pub struct Weighing {
     pub loss_mg: Vec<f64>,
     /// Predicted loss, mg; none after the run's end.
     pub predicted_loss_mg: Option<f64>,
-    /// Whether it is in the lines.
+    /// Whether the weighing is used for the lines.
     pub in_line: bool,
 }
 
@@ -131,7 +131,7 @@ pub(crate) fn compare(
 }
 
 impl GravimetricComparison {
-    /// The measured rate that calibration aims at, with its interval.
+    /// Returns the measured rate that calibration fits, with its interval.
     pub(crate) fn aim(&self) -> &Rate {
         match self.aim {
             IntervalWord::Weighings => &self.all,
@@ -139,7 +139,7 @@ impl GravimetricComparison {
         }
     }
 
-    /// The measured rate that calibration aims at, with its scatter.
+    /// Returns the measured rate that calibration fits, with its scatter.
     pub(crate) fn observation(&self) -> Observation {
         let rate = self.aim().mg_per_million_cycles;
         if self.counts_specimens() {
@@ -165,17 +165,17 @@ impl GravimetricComparison {
         }
     }
 
-    /// Whether intervals count specimens rather than weighings.
+    /// Returns whether intervals count specimens rather than weighings.
     pub(crate) fn counts_specimens(&self) -> bool {
         self.aim == IntervalWord::Specimens
     }
 
-    /// Whether both have intervals of one kind.
+    /// Returns whether both have intervals of one kind.
     pub(crate) fn has_intervals_like(&self, other: &Self) -> bool {
         self.aim == other.aim && self.confidence_percent == other.confidence_percent
     }
 
-    /// Rate of a predicted loss given as (cycles, mg), by the same regression at the same cycles.
+    /// Returns the rate of a predicted loss given as (cycles, mg), by the same regression at the same cycles.
     pub(crate) fn rate_of(&self, predicted: &[(f64, f64)]) -> Option<f64> {
         let points: Vec<(f64, f64)> = counted(&self.weighings)
             .filter_map(|weighing| Some((weighing.cycles, at(predicted, weighing.cycles)?)))
@@ -184,7 +184,7 @@ impl GravimetricComparison {
     }
 }
 
-/// The loss at a number of cycles, linear between updates; none after the last.
+/// Returns the loss at a number of cycles, linear between updates; none after the last.
 fn at(curve: &[(f64, f64)], cycles: f64) -> Option<f64> {
     let after = curve.partition_point(|point| point.0 < cycles);
     let &(x, y) = curve.get(after)?;
@@ -274,12 +274,12 @@ pub struct Interval {
 }
 
 impl Interval {
-    /// Whether `value` lies inside, the ends included.
+    /// Returns whether `value` lies inside, the ends included.
     pub(crate) fn holds(&self, value: f64) -> bool {
         (self.low..=self.high).contains(&value)
     }
 
-    /// The interval that reaches `half` to either side of `middle`.
+    /// Creates the interval that reaches `half` to either side of `middle`.
     pub(crate) fn around(middle: f64, half: f64) -> Self {
         Self {
             low: middle - half,
@@ -289,7 +289,7 @@ impl Interval {
 }
 
 impl Line {
-    /// None for fewer than two points, or all at one x.
+    /// Fits the line; none for fewer than two points, or if all have the same x.
     fn through(points: &[(f64, f64)]) -> Option<Self> {
         let mean = |of: fn(&(f64, f64)) -> f64| mean(&points.iter().map(of).collect::<Vec<_>>());
         let (x, y) = (mean(|point| point.0), mean(|point| point.1));
@@ -333,7 +333,7 @@ pub(crate) fn mean_interval(values: &[f64], confidence: f64) -> Option<Interval>
     Some(Interval::around(middle, quantile * standard_error))
 }
 
-/// Mean of values; NaN for none.
+/// Returns the mean of values; NaN for none.
 pub(crate) fn mean(values: &[f64]) -> f64 {
     values.iter().sum::<f64>() / values.len() as f64
 }

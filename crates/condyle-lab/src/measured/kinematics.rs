@@ -65,7 +65,7 @@ pub struct PhaseErrors {
     pub start_percent: f64,
     /// Its end, percent of the cycle.
     pub end_percent: f64,
-    /// None where nothing was measured in it.
+    /// The errors; none if the phase has no measurements.
     pub errors: Option<Errors>,
 }
 
@@ -188,8 +188,8 @@ const CYCLE: f64 = 100.0;
 /// Closer instants are the same, percent.
 const SAME: f64 = 1e-9;
 
-/// The value at an instant, linear between the neighbouring points, across the end of the cycle where no points are at
-/// both of its ends; none where the neighbours are more than `largest_gap` apart.
+/// Returns the value at an instant, linear between the neighbouring points, across the end of the cycle if the ends
+/// have no points; none if the neighbours are more than `largest_gap` apart.
 pub(crate) fn value_at(samples: &[Sample], percent: f64, largest_gap: f64) -> Option<f64> {
     if let Some(sample) = samples.iter().find(|s| (s.percent - percent).abs() < SAME) {
         return Some(sample.value);
@@ -200,7 +200,7 @@ pub(crate) fn value_at(samples: &[Sample], percent: f64, largest_gap: f64) -> Op
     (gap <= largest_gap + SAME).then_some(before.value + share * (after.value - before.value))
 }
 
-/// The neighbouring points, moved by a cycle where they lie beyond its end.
+/// Returns the neighbouring points, moved by a cycle where they lie beyond its end.
 fn around(samples: &[Sample], percent: f64) -> Option<(Sample, Sample)> {
     let after = samples.partition_point(|sample| sample.percent < percent);
     let moved = |sample: &Sample, by: f64| Sample {

@@ -37,7 +37,7 @@ pub struct Comparison {
     pub gravimetric: Option<GravimetricComparison>,
     /// Wear by scanning.
     pub surface: Option<SurfaceComparison>,
-    /// Which knee it is.
+    /// The side of the knee.
     #[serde(skip)]
     pub side: Side,
 }

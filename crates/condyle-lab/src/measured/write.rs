@@ -78,8 +78,8 @@ impl KinematicsComparison {
         compared_kinematics_svg(&title, &curves)
     }
 
-    /// The aligned measurement, a row for each instant of the run's cycle and a column for each measured one; empty where
-    /// nothing was measured.
+    /// Returns the aligned measurement, a row for each instant of the run's cycle and a column for each measured one;
+    /// empty where nothing was measured.
     fn csv(&self) -> String {
         let columns: String = self
             .columns
@@ -105,7 +105,7 @@ impl KinematicsComparison {
 }
 
 impl GravimetricComparison {
-    /// The soak-corrected losses, a row for each weighing and a column for each specimen.
+    /// Returns the soak-corrected losses, a row for each weighing and a column for each specimen.
     fn csv(&self) -> String {
         let specimens = 1..=self.specimens.len();
         let head: String = specimens.map(|one| format!(",specimen_{one}_mg")).collect();
@@ -144,7 +144,7 @@ impl GravimetricComparison {
 }
 
 impl SurfaceComparison {
-    /// A row for each node that the scan covers.
+    /// Returns a row for each node that the scan covers.
     fn csv(&self) -> String {
         let mut text = String::from("x_mm,y_mm,z_mm,predicted_mm,scanned_mm,difference_mm\n");
         let SurfaceFields { nodes, fields, .. } = &self.fields;

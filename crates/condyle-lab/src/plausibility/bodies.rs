@@ -1,4 +1,4 @@
-//! Checks of where an insert wears and what it bears.
+//! Checks of the places where an insert wears and of the pressures that it bears.
 
 use condyle::{
     machine::{Chain, knee::KNEE},
@@ -13,21 +13,21 @@ use condyle_results::{
 
 use super::finished::{Finished, SolvedCycle};
 
-/// Nearer than this to the rim a foundation over-estimates pressure, and that of an elastic body has no limit, mm: about the reach of its neighbours that it
-/// does not have there.
+/// Distance from the rim, mm, within which a foundation over-estimates pressure and the pressure of an elastic body
+/// is unbounded: about the reach of the neighbours that are missing there.
 const NEAR_RIM_MM: f64 = 1.5;
 const MAX_AT_RIM_PERCENT: f64 = 1.0;
 /// Yield stress of UHMWPE, MPa (approximate: facts remembered, not read).
 const YIELD_MPA: f64 = 14.0;
-/// Below the middle of a ball's contact the material yields first when the peak pressure is this many times the
-/// yield stress [johnson1985].
+/// Ratio of the peak pressure under a ball to the yield stress at which the material first yields, below the middle
+/// of the contact [johnson1985].
 const FIRST_YIELD: f64 = 1.6;
 /// A ball has sunk into material that flows all round it when the mean pressure is 2.8 times the yield stress; the
 /// peak of an elastic contact is 1.5 times its mean [johnson1985].
 const FULL_FLOW: f64 = 1.5 * 2.8;
-/// An insert that lifts more than this off its tray, mm, rocks: twice the deflection of the polyethylene under a knee's load.
+/// Lift off the tray beyond which an insert rocks, mm: twice the deflection of the polyethylene under a knee's load.
 const MAX_LIFT_MM: f64 = 0.3;
-/// Under less the stresses in polyethylene rise steeply, mm [bartel1986]; approximate.
+/// Thickness below which the stresses in polyethylene rise steeply, mm [bartel1986]; approximate.
 const MIN_THICKNESS_MM: f64 = 6.0;
 /// Depth of the scar's edge, as a part of the deepest wear.
 const SCAR: f64 = 0.1;
@@ -62,7 +62,7 @@ pub(crate) fn wear_at_rim(finished: &Finished<'_>) -> Option<PlausibilityWarning
     })
 }
 
-/// The node that is pressed hardest, in the first or the last cycle, lies within 1.5 mm of the rim.
+/// Warns if the node with the highest pressure, in the first or the last cycle, lies within 1.5 mm of the rim.
 pub(crate) fn pressure_at_rim(finished: &Finished<'_>) -> Option<PlausibilityWarning> {
     let at_rim = pressures(finished)
         .into_iter()
@@ -91,7 +91,8 @@ pub(crate) fn pressure_at_rim(finished: &Finished<'_>) -> Option<PlausibilityWar
     })
 }
 
-/// Highest pressure at every surface node in the first and in the last cycle, MPa; once where they are the same.
+/// Returns the highest pressure at every surface node in the first and in the last cycle, MPa; once if both cycles
+/// are the same.
 fn pressures<'a>(finished: &Finished<'a>) -> Vec<(&'static str, &'a [f64])> {
     let state = finished.march.state();
     let last = state.fields.as_ref().filter(|_| state.updates.len() > 1);
@@ -100,7 +101,7 @@ fn pressures<'a>(finished: &Finished<'a>) -> Vec<(&'static str, &'a [f64])> {
     [first].into_iter().chain(last).collect()
 }
 
-/// Pressure that polyethylene cannot bear, since it flows under less.
+/// Warns of pressure that polyethylene cannot bear, since it flows at a lower one.
 pub(crate) fn pressure_beyond_flow(finished: &Finished<'_>) -> Option<PlausibilityWarning> {
     let limit = FULL_FLOW * YIELD_MPA;
     let peak = finished.summary[&PEAK_PRESSURE_MPA];
@@ -120,7 +121,8 @@ pub(crate) fn pressure_beyond_flow(finished: &Finished<'_>) -> Option<Plausibili
     })
 }
 
-/// Pressure beyond what polyethylene bears without yielding below the surface, of an insert that does not yield.
+/// Warns of pressure at which polyethylene would yield below the surface, for an insert that is modelled without
+/// yield.
 pub(crate) fn pressure_beyond_yield(finished: &Finished<'_>) -> Option<PlausibilityWarning> {
     let limit = FIRST_YIELD * YIELD_MPA;
     let peak = finished.summary[&PEAK_PRESSURE_MPA];
@@ -145,7 +147,7 @@ pub(crate) fn pressure_beyond_yield(finished: &Finished<'_>) -> Option<Plausibil
     })
 }
 
-/// The area above a limit of pressure in a cycle, and its time, in words.
+/// Returns the area above a limit of pressure in a cycle, and its time, in words.
 fn extent(finished: &Finished<'_>, cycle: &str, pressures: &[f64], limit_mpa: f64) -> String {
     let shares = pressures.iter().zip(&finished.surface.shares);
     let above = shares.filter(|(pressure_mpa, _)| **pressure_mpa > limit_mpa);
@@ -156,7 +158,8 @@ fn extent(finished: &Finished<'_>, cycle: &str, pressures: &[f64], limit_mpa: f6
     )
 }
 
-/// Part of the first or the last cycle with a pressure above a limit, in the activity that has most of it, %.
+/// Returns the part of the first or the last cycle with a pressure above a limit, in the activity that has most of
+/// it, %.
 fn time_above_percent(finished: &Finished<'_>, cycle: &str, limit_mpa: f64) -> f64 {
     let solved = finished.cycles().filter(|solved| solved.name == cycle);
     let percents =
@@ -164,7 +167,7 @@ fn time_above_percent(finished: &Finished<'_>, cycle: &str, limit_mpa: f64) -> f
     percents.fold(0.0, f64::max)
 }
 
-/// An insert that rocks on its tray, which the lock of the model does not hold down.
+/// Warns of an insert that rocks on its tray; the lock of the model does not hold it down.
 pub(crate) fn insert_rocks(finished: &Finished<'_>) -> Option<PlausibilityWarning> {
     let lift_mm = finished.summary.get(&BACKSIDE_LIFT_MM)?;
     (lift_mm > MAX_LIFT_MM).then(|| PlausibilityWarning {
@@ -202,11 +205,12 @@ pub(crate) fn thin_polyethylene(finished: &Finished<'_>) -> Option<PlausibilityW
     })
 }
 
-/// Part of a cycle that a condyle may be beyond the rim, %: a choice of ours.
+/// Largest part of a cycle during which a condyle may be beyond the rim, %; our choice.
 const MAX_BEYOND_PERCENT: f64 = 1.0;
-/// Nearer than this a condyle is at the surface, mm, pressed or not; how far a mesh's field is sure of gaps.
+/// Distance within which a condyle counts as being at the surface, loaded or not, mm: the gap up to which a mesh's
+/// field is reliable.
 const NEAR_MM: f64 = 1.5;
-/// Instants of a cycle that are looked at, at most.
+/// Largest number of instants of a cycle that are examined.
 const INSTANTS: usize = 50;
 
 struct Beyond {
@@ -215,7 +219,7 @@ struct Beyond {
     cycle: &'static str,
 }
 
-/// A condyle that comes nearest to the insert at the rim of the articulating surface, pressed there or not: its
+/// Warns of a condyle that is nearest to the insert at the rim of the articulating surface, loaded there or not: its
 /// middle is on the rim or beyond.
 pub(crate) fn femur_beyond_rim(finished: &Finished<'_>) -> Option<PlausibilityWarning> {
     let beyond = finished.cycles().flat_map(|cycle| beyond(finished, &cycle));
@@ -235,7 +239,7 @@ pub(crate) fn femur_beyond_rim(finished: &Finished<'_>) -> Option<PlausibilityWa
     })
 }
 
-/// Of every side, in which part of a cycle its condyle is nearest to the rim.
+/// Returns, for every side, the part of a cycle during which its condyle is nearest to the rim.
 fn beyond(finished: &Finished<'_>, cycle: &SolvedCycle<'_>) -> Vec<Beyond> {
     let test = finished.march.test();
     let machine = finished.machine(cycle);

@@ -20,7 +20,7 @@ pub(crate) struct Finished<'a> {
     rim_nodes: BTreeSet<u32>,
 }
 
-/// The first or the last cycle that was solved of an activity.
+/// The first or the last solved cycle of an activity.
 #[derive(Clone, Copy)]
 pub(crate) struct SolvedCycle<'a> {
     /// `first` or `last`.
@@ -32,7 +32,7 @@ pub(crate) struct SolvedCycle<'a> {
 }
 
 impl SolvedCycle<'_> {
-    /// Part of the cycle whose rows satisfy a condition, %.
+    /// Returns the part of the cycle whose rows satisfy a condition, %.
     pub fn percent_of_rows(&self, is_so: impl Fn(&CycleRow) -> bool) -> f64 {
         let count = self.rows.iter().filter(|row| is_so(row)).count();
         100.0 * count as f64 / self.rows.len().max(1) as f64
@@ -52,7 +52,7 @@ impl<'a> Finished<'a> {
         }
     }
 
-    /// Distance of a surface node from the rim, mm.
+    /// Returns the distance of a surface node from the rim, mm.
     pub fn distance_to_rim_mm(&self, node: usize) -> f64 {
         let place = self.surface.positions[node];
         let edges = self.rim.iter();
@@ -66,7 +66,7 @@ impl<'a> Finished<'a> {
         self.rim_nodes.contains(&(node as u32))
     }
 
-    /// The first and the last cycle of every activity, once where they are the same.
+    /// Returns the first and the last cycle of every activity, once if both are the same.
     pub fn cycles(&self) -> impl Iterator<Item = SolvedCycle<'a>> {
         let activities = self.march.state().activities.iter().enumerate();
         activities.flat_map(|(activity, state)| {
@@ -83,13 +83,13 @@ impl<'a> Finished<'a> {
         })
     }
 
-    /// The machine of a cycle.
+    /// Returns the machine of a cycle.
     pub fn machine(&self, cycle: &SolvedCycle<'_>) -> &'a Machine {
         &self.march.test().activities[cycle.activity].machine
     }
 }
 
-/// Edges that one face alone has.
+/// Returns the edges that belong to a single face.
 fn rim_of(insert: &Insert) -> Vec<[u32; 2]> {
     let mut faces_at = BTreeMap::<[u32; 2], usize>::new();
     for face in insert.surface_faces() {

@@ -1,4 +1,4 @@
-//! Checks of what the machine applies: loads that it reaches, and springs that have not come to their end.
+//! Checks of the machine: whether it reaches its loads, and whether its springs stay within their travel.
 
 use condyle::machine::{
     CycleRow, Drive, JointIndex, JointKind, Machine, Spring, Waveform,
@@ -8,17 +8,17 @@ use condyle_results::{PlausibilityWarning, joint_range};
 
 use super::finished::{Finished, SolvedCycle};
 
-/// A load of the machine, and how it has to be reached.
+/// A load of the machine, and the accuracy with which it must be reached.
 struct Applied {
     joint: JointIndex,
     name: &'static str,
-    /// It is reached where what is left of it is within this part of its largest.
+    /// Largest unbalanced part at which the load counts as reached, relative to the largest load.
     within: f64,
-    /// Part of a cycle in which it may not be, %.
+    /// Largest part of a cycle in which it may be missed, %.
     most_percent: f64,
 }
 
-/// Choices of ours: the axial force hardly feels inertia, the others do where friction lets go.
+/// Our choices: inertia hardly affects the axial force, but it affects the others when friction releases.
 const APPLIED: [Applied; 3] = [
     Applied {
         joint: IS,
@@ -39,14 +39,14 @@ const APPLIED: [Applied; 3] = [
         most_percent: 10.0,
     },
 ];
-/// Farther beyond its free play than springs of machines are made to go, mm: a choice of ours, for the model's
-/// springs have no end.
+/// Largest plausible motion of a spring beyond its free play, mm; our choice, since the model's springs have
+/// unlimited travel.
 const FARTHEST_MM: f64 = 10.0;
 
 /// A load of the machine that contact and springs do not balance.
 struct Missed {
     percent: f64,
-    /// Most of the load that is missed, N or N mm.
+    /// Largest missed part of the load, N or N mm.
     most: f64,
     load: f64,
     cycle: &'static str,
@@ -85,7 +85,7 @@ fn not_reached_by(applied: &Applied, missed: &Missed) -> PlausibilityWarning {
     }
 }
 
-/// The part of a load that is missed in a cycle; none of a joint without a load.
+/// Returns the part of a load that is missed in a cycle; none for a joint without a load.
 fn missed(machine: &Machine, cycle: &SolvedCycle<'_>, applied: &Applied) -> Option<Missed> {
     let joint = applied.joint;
     let Drive::Loaded(waveform) = &machine.joint(joint).drive else {
@@ -111,8 +111,8 @@ fn load(waveform: &Waveform, row: &CycleRow) -> f64 {
     waveform.at(row.percent / 100.0).0
 }
 
-/// The part of a load that contact and springs leave, N or N mm: of the axial force the part that the contact does not carry, of
-/// another what inertia and damping take, M a + C v.
+/// Returns the part of a load that contact and springs leave, N or N mm: for the axial force the part that the
+/// contact does not carry, for other loads the part that inertia and damping take, M a + C v.
 fn missing(
     machine: &Machine,
     rows: &[CycleRow],
@@ -120,7 +120,7 @@ fn missing(
     index: JointIndex,
     waveform: &Waveform,
 ) -> f64 {
-    // The axial joint is balanced by contact alone, so that what the contact lacks is missed.
+    // Contact alone balances the axial joint, so that the part that it does not carry is missed.
     if index == IS {
         return load(waveform, &rows[row]).abs() - rows[row].axial_force_n;
     }
@@ -143,12 +143,12 @@ struct Pulled {
     cycle: &'static str,
 }
 
-/// A spring farther beyond its free play than springs of machines go.
+/// Warns of a spring farther beyond its free play than the springs of machines permit.
 pub(crate) fn springs_far(finished: &Finished<'_>) -> Option<PlausibilityWarning> {
     let pulled = finished.cycles().flat_map(|cycle| {
         let machine = finished.machine(&cycle);
         let springs = machine.springs.iter();
-        // Where the motion is given a spring changes nothing.
+        // A spring has no effect on a prescribed motion.
         let springs = springs.filter(|spring| machine.joint(spring.along).is_loaded());
         springs
             .flat_map(|spring| cycle.rows.iter().map(|row| pulled(spring, row, cycle.name)))
@@ -192,19 +192,19 @@ fn far(pulled: Pulled) -> PlausibilityWarning {
     }
 }
 
-/// A freedom, and more than knees move along it in walking and stairs, in the unit of files.
+/// A freedom, and an upper bound of the motion of knees along it in walking and stairs, in the unit of files.
 type MostMotion = (JointIndex, f64);
 
-/// Generous choices of ours.
+/// Our choices, with a margin.
 const MOST: [MostMotion; 5] = [(AP, 25.0), (IE, 35.0), (ML, 10.0), (VV, 8.0), (IS, 10.0)];
-/// A side that carries less of the load is lifted off, as a part.
+/// Part of the load below which a side counts as lifted off.
 const LIFTED: f64 = 0.01;
 /// Part of the largest load below which a lift has no meaning.
 const LITTLE_LOAD: f64 = 0.1;
-/// Part of a cycle that one side may be lifted off, %: a choice of ours.
+/// Largest part of a cycle during which one side may be lifted off, %; our choice.
 const MAX_LIFTED_PERCENT: f64 = 5.0;
 
-/// The range of a freedom in the first or the last cycle, whichever is larger.
+/// Warns of large ranges of the freedoms: that of the first or the last cycle, whichever is larger.
 pub(crate) fn ranges(finished: &Finished<'_>) -> Vec<PlausibilityWarning> {
     let beyond = MOST.iter().filter_map(|&limit| range(finished, limit));
     beyond.collect()
@@ -233,7 +233,7 @@ fn range(finished: &Finished<'_>, (joint, most): MostMotion) -> Option<Plausibil
     })
 }
 
-/// One side carries nothing while the joint is loaded.
+/// Warns if one side carries no load while the joint is loaded.
 pub(crate) fn lift_off(finished: &Finished<'_>) -> Option<PlausibilityWarning> {
     let lifted = finished
         .cycles()

@@ -19,7 +19,7 @@ use condyle_results::{
 
 use finished::Finished;
 
-/// A check of one number: none where the run is as it should be.
+/// A check of one number; none if the run is plausible.
 type Check = fn(&Finished<'_>) -> Option<PlausibilityWarning>;
 
 /// Place of the femur on the insert, and impossible pressure.
@@ -59,24 +59,24 @@ pub(crate) fn warnings(march: &March, summary: &Summary) -> Vec<PlausibilityWarn
     warnings
 }
 
-/// The two counts of the worn volume may differ by this, %.
+/// Largest difference between the two values of the worn volume, %.
 const COUNTS_PERCENT: f64 = 1.0;
-/// Scaled Jacobian below which an element is about to fold.
+/// Scaled Jacobian below which an element is nearly inverted.
 const MIN_QUALITY: f64 = 0.1;
-/// Inertia added, as a multiple of the machine's own: a choice of ours.
+/// Largest added inertia, as a multiple of the machine's own; our choice.
 const MAX_ADDED_INERTIA: f64 = 1.0;
-/// Wear in one step, as a multiple of what evens out the pressure at the bottom of the scar: a tenth of the depth is
-/// then of the wrong shape at most. A choice of ours.
+/// Largest wear in one step, as a multiple of the wear that evens out the pressure at the bottom of the scar: the
+/// shape of at most a tenth of the depth is then wrong. Our choice.
 const MAX_RELAXED: f64 = 0.2;
-/// Part of the depth's error that is due to updates, %: up to there the estimates of random designs held.
+/// Part of the depth's error that is due to updates, %, up to which the estimates held for random designs.
 const MAX_OF_UPDATES_PERCENT: f64 = 2.0;
 const MAX_ERROR_PERCENT: f64 = 5.0;
 
-/// The volume by depth times area compared with that of the mesh.
+/// Compares the volume from depth times area with that of the mesh.
 pub(crate) fn counts_of_volume(finished: &Finished<'_>) -> Option<PlausibilityWarning> {
     let [depth, mesh] =
         [&VOLUME_LOSS_MM3, &VOLUME_LOSS_MESH_MM3].map(|volume| finished.summary[volume]);
-    // Of a run without wear both are 0: MIN_POSITIVE makes that 0 % instead of NaN.
+    // Without wear both are 0: MIN_POSITIVE makes the result 0 % instead of NaN.
     let percent = 100.0 * (depth - mesh).abs() / depth.max(mesh).max(f64::MIN_POSITIVE);
     (percent > COUNTS_PERCENT).then(|| PlausibilityWarning {
         check: "counts_of_volume".to_owned(),
@@ -131,7 +131,8 @@ fn large_error(
     })
 }
 
-/// One update that digs the scar of the first cycle for all of them, so deep that its pressure would have changed.
+/// Warns of a single update that wears the scar of the first cycle for the whole test, so deep that the pressure
+/// would have changed.
 pub(crate) fn single_update(finished: &Finished<'_>) -> Option<PlausibilityWarning> {
     let state = finished.march.state();
     let step = state.last_step.as_ref()?;
@@ -149,7 +150,7 @@ pub(crate) fn single_update(finished: &Finished<'_>) -> Option<PlausibilityWarni
     })
 }
 
-/// Steps of the march so long that the estimate of what they cost is too small itself.
+/// Warns of steps of the march that are so long that the estimate of their error is too small.
 pub(crate) fn updates_too_few(finished: &Finished<'_>) -> Option<PlausibilityWarning> {
     let error = finished.summary.error.as_ref()?;
     let percent = error[&MAX_DEPTH_MM].percent.updates?.abs();

@@ -13,7 +13,7 @@ use nalgebra::{DMatrix, DVector, Rotation3};
 
 /// Pressures of the table's points, as parts of the highest pressure of the deformable insert.
 const PARTS: [f64; 9] = [0.03, 0.08, 0.15, 0.25, 0.4, 0.55, 0.7, 0.85, 1.0];
-/// The table goes up to this pressure at least.
+/// Smallest pressure at the end of the table.
 const MIN_PEAK_MPA: f64 = 1.0;
 /// Weight of the curvature of the table against relative errors of pressure and area: it places points that no pose
 /// reaches between the others.
@@ -24,7 +24,7 @@ const STEP: f64 = 1e-3;
 const MAX_ROUNDS: usize = 15;
 /// The fit ends with an iteration that reduces the sum of squares by a smaller part than this.
 const MIN_GAIN: f64 = 1e-4;
-/// Residual of an increment whose forces a table does not carry: far above any relative error.
+/// Residual of an increment in which a table cannot carry the forces: far above any relative error.
 const NOT_CARRIED: f64 = 10.0;
 
 /// A fit of a pressure table on the bodies of a deformable insert.
@@ -50,8 +50,9 @@ impl Trial {
 }
 
 impl Fit<'_> {
-    /// The table with the least squares of the relative errors of peak pressure and area, where every region carries the
-    /// force that it carries on the deformable insert: by the Levenberg-Marquardt method, from the linear law.
+    /// Returns the table with the least squares of the relative errors of peak pressure and area, with every region
+    /// under the force that it carries on the deformable insert: by the Levenberg-Marquardt method, from the linear
+    /// law.
     ///
     /// The parameters are logarithms of strain increments, so that every table rises.
     pub fn table(&self, modulus_mpa: f64) -> PressureTable {
@@ -74,7 +75,7 @@ impl Fit<'_> {
         self.table_of(&best.logarithms)
     }
 
-    /// A table with a smaller sum of squares; none where none is found.
+    /// Returns a table with a smaller sum of squares, if one is found.
     fn improved(&self, best: &Trial, damping: &mut f64) -> Option<Trial> {
         let slopes = self.slopes(best);
         let (normal, gradient) = (slopes.tr_mul(&slopes), slopes.tr_mul(&best.residuals));
@@ -213,7 +214,7 @@ pub(crate) struct Carried {
 }
 
 impl Target {
-    /// The targets of a cycle solved on a deformable insert.
+    /// Returns the targets of a cycle solved on a deformable insert.
     pub fn of(cycle: &SolvedCycle<'_>) -> Vec<Self> {
         let of_one = |(increment, row): (usize, &condyle::machine::CycleRow)| Self {
             percent: row.percent,
@@ -235,7 +236,7 @@ impl Target {
         forces(&evaluate(contact, &self.pose)).iter().sum()
     }
 
-    /// The mean over the regions, weighted by force.
+    /// Returns the mean over the regions, weighted by force.
     pub fn mean_by_force(&self, of_regions: [f64; MAX_REGIONS]) -> f64 {
         let pairs = self.region_force_n.iter().zip(of_regions);
         pairs.map(|(force_n, of)| force_n * of).sum::<f64>() / self.force_n()
@@ -303,7 +304,7 @@ impl Target {
         })
     }
 
-    /// The pose with the femur lowered over every region.
+    /// Returns the pose with the femur lowered over every region.
     fn lowered(&self, lower_mm: [f64; MAX_REGIONS]) -> Pose {
         let ([left, right], [left_arm, right_arm]) = (lower_mm, self.arms_mm);
         let mut forces = self.region_force_n.iter();
@@ -331,7 +332,7 @@ fn evaluate(contact: &mut dyn ContactModel, pose: &Pose) -> ContactResult {
     contact.evaluate(&motion)
 }
 
-/// Part of the axial force on every region of the surface, N.
+/// Returns the part of the axial force on every region of the surface, N.
 fn forces(result: &ContactResult) -> [f64; MAX_REGIONS] {
     let mut forces_n = [0.0; MAX_REGIONS];
     for node in &result.touched {

@@ -35,7 +35,7 @@ use crate::{
     run::{error::RunError, running::march_watched},
 };
 
-/// Increments of stance that the table is fitted to.
+/// Largest number of increments of stance to which the table is fitted.
 const MAX_FITTED: usize = 40;
 /// Increments with at least this part of the cycle's highest axial force are stance.
 const STANCE: f64 = 0.2;
@@ -47,7 +47,7 @@ pub struct CalibrateRequest {
     pub case: PathBuf,
     /// Changes of the case.
     pub changes: Vec<Assignment>,
-    /// Cases that the table is tried on without being fitted to them.
+    /// Cases on which the table is tested, but to which it is not fitted.
     pub held_out: Vec<PathBuf>,
 }
 
@@ -60,7 +60,7 @@ struct FittedIncrement {
     peak_mpa: f64,
     deformable_area_mm2: f64,
     area_mm2: f64,
-    /// Force of the foundation where the femur is as deep as in the deformable insert.
+    /// Force of the foundation with the femur as deep as in the deformable insert.
     force_at_same_approach_n: f64,
     /// Additional depth of the femur in the foundation under the same force.
     deeper_mm: f64,
@@ -84,7 +84,7 @@ pub struct CalibratedLaw {
     pub case: Case,
 }
 
-/// A case that the table was not fitted to.
+/// A case to which the table was not fitted.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 struct HeldOut {
     case: PathBuf,
@@ -100,7 +100,7 @@ struct HeldOut {
 /// `tell` receives the name of each step as it begins.
 ///
 /// # Errors
-/// A case that cannot be run, with one model or the other.
+/// The case does not run with one of the two models.
 pub fn calibrate(
     request: &CalibrateRequest,
     tell: &mut dyn FnMut(&str),
@@ -161,7 +161,7 @@ fn with_deformable(case: &Case) -> Case {
     case
 }
 
-/// The case with a foundation and its own law, or the linear one.
+/// Returns the case with a foundation and its own law, or the linear one.
 fn with_foundation(case: &Case) -> Case {
     let law = case.contact.law().cloned();
     with_law(case, law.unwrap_or(PressureLawChoice::Linear))
@@ -207,7 +207,7 @@ impl Recorded {
         }
     }
 
-    /// The table fitted to some increments of stance, and its errors in them.
+    /// Returns the table fitted to some increments of stance, and its errors in them.
     fn fitted(&self, case: &Case, march: &March) -> (PressureTable, Vec<FittedIncrement>) {
         let insert = self.insert.as_ref().expect("a run has an insert");
         let surface = insert.surface();
@@ -251,7 +251,7 @@ impl Recorded {
     }
 }
 
-/// The errors of a table in the increments that it was fitted to.
+/// Returns the errors of a table in the increments that it was fitted to.
 fn increments(fit: &Fit<'_>, table: &PressureTable) -> Vec<FittedIncrement> {
     let near = vec![[0.0; MAX_REGIONS]; fit.targets.len()];
     let carried = fit.carried(table, &near);
@@ -385,7 +385,7 @@ fn error_percent(found: f64, wanted: f64) -> f64 {
 }
 
 impl CalibratedLaw {
-    /// The table as a CSV file for `[contact.foundation] strain_table_file`.
+    /// Returns the table as a CSV file for `[contact.foundation] strain_table_file`.
     pub fn to_csv(&self) -> String {
         match self.case.contact.law() {
             Some(PressureLawChoice::TabulatedStrain(table)) => table.to_csv(),
@@ -393,7 +393,7 @@ impl CalibratedLaw {
         }
     }
 
-    /// A page in Markdown: the errors of a run, by increment, and on other cases, and the table.
+    /// Returns a page in Markdown: the errors of a run, by increment, and on other cases, and the table.
     pub fn markdown(&self) -> String {
         let mut page = format!(
             "# Calibrated pressure law\n\nWith this table the peak pressure of the rigid model is off by {} % at most in \
@@ -443,7 +443,7 @@ impl CalibratedLaw {
         page + &aligned(&rows)
     }
 
-    /// The errors of a run with the law before and with the table, in Markdown.
+    /// Returns the errors of a run with the law before and with the table, in Markdown.
     pub fn table_of_left(&self) -> String {
         table_of_errors(&self.left_before, &self.left)
     }
@@ -457,7 +457,7 @@ fn table_of_errors(before: &RunErrors, after: &RunErrors) -> String {
     aligned(&rows)
 }
 
-/// The names and the texts of the errors of a run.
+/// Returns the names and the texts of the errors of a run.
 fn in_words(errors: &RunErrors) -> [(&'static str, String); 9] {
     let in_stance = |off: StanceErrors| {
         let (mean, most, highest) = (off.mean_percent, off.most_percent, off.of_highest_percent);

@@ -16,13 +16,13 @@ use thiserror::Error;
 /// A failed run.
 #[derive(Debug, Error)]
 pub enum RunError {
-    /// The case file.
+    /// The case file has problems.
     #[error(transparent)]
     Case(#[from] Problems),
-    /// A change of the case that cannot be made.
+    /// The case cannot be changed as requested.
     #[error(transparent)]
     Change(#[from] AssignmentError),
-    /// The bodies that the case describes.
+    /// The bodies of the case cannot be built.
     #[error("{shown}")]
     Build {
         /// The cause.
@@ -33,10 +33,10 @@ pub enum RunError {
     /// A mesh that can no longer be read.
     #[error("a mesh of the case cannot be read: {0}; check the paths in the case")]
     Inputs(#[source] io::Error),
-    /// The results folder.
+    /// The results folder cannot be used.
     #[error(transparent)]
     Results(#[from] ResultsError),
-    /// The report.
+    /// The report cannot be written.
     #[error(transparent)]
     Report(#[from] condyle_report::ReportError),
     /// Bodies that do not settle on each other.
@@ -55,7 +55,7 @@ pub enum RunError {
         /// The same at the key of the case that causes it.
         shown: Problems,
     },
-    /// The physics.
+    /// The physics could not be solved.
     #[error("{source}{}", kept_in(out.as_deref()))]
     March {
         /// The cause.
@@ -106,7 +106,7 @@ impl RunError {
         )
     }
 
-    /// The error with its place in the case file, where it has one.
+    /// Returns the error with its place in the case file, if it has one.
     pub fn in_case(&self) -> Option<&Problems> {
         match self {
             Self::Case(shown)

@@ -1,4 +1,4 @@
-//! A run into a folder: found, built, marched, estimated, written.
+//! A run into a folder: from the state found in the folder to the written results.
 
 use std::path::Path;
 
@@ -19,9 +19,9 @@ use crate::run::{
 
 /// Runs the case at `case_path`, with some of its values changed.
 ///
-/// `on_event` receives every event and may stop the run by breaking; the updates done are then on
-/// the disk, and a run with `resume` gives the same bytes as one never stopped. A run that
-/// cannot start makes no folder, and one that is done is left as it is.
+/// `on_event` receives every event and may stop the run by breaking; the finished updates are then on the disk, and a
+/// run with `resume` gives the same bytes as an uninterrupted one. A run that cannot start creates no folder, and a
+/// finished run is not changed.
 ///
 /// # Errors
 /// A bad case, a change that cannot be made, a folder that cannot be used, or physics that cannot be solved.
@@ -35,7 +35,7 @@ pub fn run(
     run_read(&case, Some(case_path), options, on_event)
 }
 
-/// Runs a case that is read already, as [`run`] does.
+/// Runs a case that has been read, as [`run`] does.
 ///
 /// # Errors
 /// As [`run`].
@@ -58,7 +58,7 @@ fn run_read(
     let lock = ResultsFolder::lock(&options.out)?;
     let start_from = match found(case, case_path, options, &inputs_blake3)? {
         Found::Done(summary) => {
-            // It may have been stopped before it wrote the page; the same folder gives the same one.
+            // The run may have been stopped before it wrote the page; the same folder gives the same page.
             condyle_report::write_report(&options.out)?;
             ResultsFolder::existing(&options.out).finish()?;
             return Ok(Outcome::DoneBefore(summary));
@@ -85,8 +85,8 @@ fn run_read(
     Ok(outcome)
 }
 
-/// The part of a run that the folder holds; an error if a new run cannot be written to it, or with `resume` if there is
-/// no run in it.
+/// Returns the part of a run that the folder holds; an error if a new run cannot be written to it, or with `resume`
+/// if there is no run in it.
 fn found(
     case: &Case,
     case_path: Option<&Path>,
@@ -109,15 +109,15 @@ fn found(
 
 struct WrittenRun {
     folder: ResultsFolder,
-    /// Held until the run has ended.
+    /// The lock, held until the run ends.
     lock: Option<FolderLock>,
     inputs_blake3: String,
-    /// The femur that the frames of the first and last cycle show, where the case asks for them.
+    /// The femur of the frames of the first and last cycle, if the case requests them.
     in_frames: Option<TriangleMesh>,
 }
 
 impl WrittenRun {
-    /// A fresh run in a folder that is made if it is not there, or one that is resumed in its folder.
+    /// Starts a new run in its folder, which is created if necessary, or resumes one.
     fn new(
         options: &RunOptions,
         lock: Option<FolderLock>,
@@ -137,7 +137,7 @@ impl WrittenRun {
             in_frames,
         };
         if is_fresh {
-            // Before the folder is made: a femur that cannot be drawn leaves none behind.
+            // Done before the folder is created, so that a femur that cannot be drawn leaves no folder.
             let femur = run.femur_triangles(FEMUR_TRIANGLES)?;
             written.start(run.case, options)?;
             let side = run.case.heading.side;
@@ -147,12 +147,12 @@ impl WrittenRun {
         Ok(written)
     }
 
-    /// Makes the folder of a fresh run, locks it and writes the case.
+    /// Creates the folder of a new run, locks it and writes the case.
     fn start(&mut self, case: &Case, options: &RunOptions) -> Result<(), ResultsError> {
         let folder = ResultsFolder::create(&options.out)?;
         if self.lock.is_none() {
             self.lock = ResultsFolder::lock(folder.path())?;
-            // Another run may have come first since the folder was found not to be there.
+            // Another run may have created the folder since the check.
             ResultsFolder::free(folder.path())?;
         }
         if options.force {

@@ -1,4 +1,4 @@
-//! A case run into a results folder, from the start or from where it was stopped; or into memory.
+//! Runs of a case into a results folder, from the start or from a checkpoint; or into memory.
 
 pub(crate) mod error;
 pub(crate) mod folder;
@@ -43,15 +43,15 @@ impl Reached {
 /// An event while a case runs.
 #[derive(Clone, Debug)]
 pub enum RunEvent<'a> {
-    /// A correction or a doubt of the input.
+    /// A correction of the input, or a remark on suspicious input.
     Warning(String),
     /// The bodies are placed, or the checkpoint is read.
     Started(Reached),
     /// An increment is solved.
     Solved(Progress),
-    /// All updates are done, and an increment is solved to estimate how accurate they are.
+    /// All updates are done, and an increment is solved to estimate their errors.
     Estimating,
-    /// An update is done and kept.
+    /// An update is done and stored.
     Updated(&'a UpdateRecord),
 }
 
@@ -60,9 +60,9 @@ pub enum RunEvent<'a> {
 pub enum Outcome {
     /// All cycles are done.
     Done(Box<Summary>),
-    /// The folder holds the whole run already; nothing was computed.
+    /// The folder already holds the whole run; nothing was computed.
     DoneBefore(Box<Summary>),
-    /// The user asked to stop; the run is kept and can be resumed.
+    /// The user stopped the run; its updates are stored, and it can be resumed.
     Interrupted(Reached),
 }
 
@@ -71,9 +71,9 @@ pub enum Outcome {
 pub struct RunOptions {
     /// Folder for the results.
     pub out: PathBuf,
-    /// Go on with the run that is in the folder.
+    /// Resume the run in the folder.
     pub resume: bool,
-    /// Write over the run that is in the folder.
+    /// Replace the run in the folder.
     pub force: bool,
     /// Threads for the one-time work on a mesh; results do not depend on it.
     pub threads: usize,
@@ -88,7 +88,7 @@ pub(crate) struct Clock {
 }
 
 impl Clock {
-    /// The result of some work, whose time counts.
+    /// Does some work, and adds its time.
     pub fn time<T>(&mut self, work: impl FnOnce() -> T) -> T {
         let start = Instant::now();
         let result = work();

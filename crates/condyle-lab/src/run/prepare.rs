@@ -15,10 +15,10 @@ use condyle_case::{
 
 use crate::{at_rest::AtRest, run::error::RunError};
 
-/// The bodies of a case with the femur settled on the insert, before any cycle.
+/// Returns the bodies of a case with the femur settled on the insert, before any cycle.
 ///
 /// # Errors
-/// Those of a run that cannot start.
+/// The errors of a run that cannot start.
 pub fn settled(case: &Case, threads: usize, cache: &Cache) -> Result<March, RunError> {
     let built = build(case, threads, cache)?;
     start(case, built.test, &built.warnings)
@@ -28,7 +28,7 @@ pub(crate) fn build(case: &Case, threads: usize, cache: &Cache) -> Result<Built,
     build_sharing(case, threads, cache, &SharedBodies::default())
 }
 
-/// The bodies of a case, of which it may have some in common with other cases.
+/// Builds the bodies of a case, which may share some of them with other cases.
 pub(crate) fn build_sharing(
     case: &Case,
     threads: usize,
@@ -53,7 +53,7 @@ pub(crate) fn start(
     Ok(march)
 }
 
-/// Refuses a march whose settled femur presses at a hole.
+/// Rejects a march whose settled femur presses on a hole.
 ///
 /// # Errors
 /// [`MeshFault::PressedHole`].
@@ -70,7 +70,7 @@ pub(crate) fn check_at_rest(
     check_holes(case, march, warnings, touched, "as it settles")
 }
 
-/// Refuses a march in which the femur has pressed at a hole so far.
+/// Rejects a march in which the femur has pressed on a hole so far.
 ///
 /// # Errors
 /// [`MeshFault::PressedHole`].
@@ -125,26 +125,27 @@ fn check_holes(
 
 /// Memory of the program without a case, MB.
 const PROGRAM_MB: f64 = 6.0;
-/// Bytes of a touched node at an increment: the histories of a cycle and of the one before.
+/// Bytes per node in contact and increment: the histories of a cycle and of the previous one.
 const BYTES_A_TOUCH: f64 = 230.0;
 /// The estimate of the error keeps histories of twice the increments in addition.
 const WITH_ESTIMATE: f64 = 2.1;
-/// Nodes that the femur comes near in the life of an insert, over those near it at rest; approximate.
+/// Ratio of the nodes that come near the femur during a test to those near it at rest; approximate.
 const EVER_NEAR: f64 = 4.0;
 /// Samples of the load in a cycle.
 const LOOKED_AT: usize = 50;
 
-/// Memory that a march of `case` needs at its highest, about, MB.
+/// Estimates the peak memory of a march of `case`, MB.
 pub(crate) fn memory_mb(case: &Case, march: &March, at_rest: &AtRest) -> f64 {
-    // The area of a contact on a foundation goes with the root of its load.
+    // The area of a contact on a foundation is proportional to the root of its load.
     let larger = (mean_load_n(march) / at_rest.axial_force_n).max(1.0).sqrt();
     let most = march.insert().surface_nodes().len() as f64;
-    // No more nodes can touch than there are.
+    // The number of nodes in contact cannot exceed the number of nodes.
     let touched = (at_rest.touched.len() as f64 * larger).min(most);
     memory_mb_touching(case, march, touched, EVER_NEAR * at_rest.nodes_near as f64)
 }
 
-/// The same if so many nodes touch at an increment, and the femur ever comes near so many.
+/// Estimates the peak memory from the number of nodes in contact at an increment and the number of nodes that ever
+/// come near the femur.
 fn memory_mb_touching(case: &Case, march: &March, nodes_touched: f64, nodes_near: f64) -> f64 {
     let histories = if case.accuracy.estimate {
         WITH_ESTIMATE
@@ -164,7 +165,7 @@ fn memory_mb_touching(case: &Case, march: &March, nodes_touched: f64, nodes_near
     PROGRAM_MB + 1e-6 * bytes
 }
 
-/// Mean of the axial force over a cycle, N; none where the femur is not pressed by a waveform.
+/// Returns the mean of the axial force over a cycle, N; 0 without a waveform of axial force.
 pub(crate) fn mean_load_n(march: &March) -> f64 {
     let Drive::Loaded(load) = &march.test().machine().joint(IS).drive else {
         return 0.0;
@@ -174,14 +175,14 @@ pub(crate) fn mean_load_n(march: &March) -> f64 {
     sum / LOOKED_AT as f64
 }
 
-/// Refuses a march that would need more memory than its case allows.
+/// Rejects a march that would need more memory than its case allows.
 ///
 /// # Errors
 /// [`RunError::Memory`].
 pub(crate) fn check_memory(case: &Case, march: &March) -> Result<(), RunError> {
     let allowed_gb = case.limits.memory_gb;
     let whole_surface = march.insert().surface_nodes().len() as f64;
-    // Most cases fit even if all of the surface touched, and need no contact solved to know that.
+    // Most cases fit even with the whole surface in contact, which is known without solving a contact.
     if 1e-3 * memory_mb_touching(case, march, whole_surface, whole_surface) <= allowed_gb {
         return Ok(());
     }

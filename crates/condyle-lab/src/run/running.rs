@@ -18,7 +18,7 @@ use crate::run::{
 pub(crate) enum Start {
     /// From its first cycle.
     Fresh,
-    /// From a checkpoint, reached after so many seconds of the solver.
+    /// From a checkpoint, with the solver time in seconds so far.
     Resume(Box<Checkpoint>, f64),
 }
 
@@ -27,11 +27,11 @@ pub(crate) enum Start {
 pub(crate) struct RunContext<'a> {
     pub threads: usize,
     pub cache: &'a Cache,
-    /// Bodies that it may have in common with other runs.
+    /// Bodies that it may share with other runs.
     pub bodies: &'a SharedBodies,
-    /// The folder where it is kept, if in one.
+    /// The results folder, if there is one.
     pub out: Option<&'a Path>,
-    /// A law of wear that takes the place of the case's.
+    /// A law of wear that replaces that of the case.
     pub wear_law: Option<&'a NamedLaw>,
 }
 
@@ -44,7 +44,7 @@ pub(crate) struct Run<'a> {
     clock: Clock,
 }
 
-/// Keeps what a run has found after an update.
+/// Stores the results of a run after an update.
 type Keep<'a, 'b> = dyn FnMut(&Run<'b>) -> Result<(), RunError> + 'a;
 
 impl<'a> Run<'a> {
@@ -68,7 +68,7 @@ impl<'a> Run<'a> {
         }
         let march = match start_from {
             Start::Resume(checkpoint, spent_s) => {
-                // A negative or huge time, of a file that somebody edited, counts as none.
+                // A negative or huge time, from an edited file, counts as zero.
                 clock.spent += Duration::try_from_secs_f64(spent_s).unwrap_or_default();
                 clock.time(|| March::resume(built.test, checkpoint.state))
             }
@@ -84,7 +84,7 @@ impl<'a> Run<'a> {
         })
     }
 
-    /// The femur as triangles: those of its mesh, or about so many.
+    /// Returns the femur as triangles: those of its mesh, or about so many.
     pub fn femur_triangles(&self, about: f64) -> Result<TriangleMesh, RunError> {
         let triangles = self.case.femur_triangles(self.march.test(), about);
         triangles.map_err(|source| RunError::of_build(self.case, source))
@@ -95,7 +95,7 @@ impl<'a> Run<'a> {
         self.clock.spent
     }
 
-    /// Updates until all cycles are done or the user asks to stop, then returns the results.
+    /// Takes updates until all cycles are done or the user stops the run, then returns the results.
     pub fn complete(
         &mut self,
         keep: &mut Keep<'_, 'a>,
@@ -115,8 +115,8 @@ impl<'a> Run<'a> {
         Ok(Outcome::Interrupted(Reached::by(&self.march)))
     }
 
-    /// Updates until all cycles are done, then the march and what it found, of which no error is estimated and nothing
-    /// doubted; `watch` sees the march before the first update and after each.
+    /// Takes updates until all cycles are done, then returns the march and its results, without error estimate and
+    /// plausibility checks; `watch` receives the march before the first update and after each.
     pub fn marched(mut self, watch: &mut dyn FnMut(&March)) -> Result<(March, Summary), RunError> {
         watch(&self.march);
         let mut keep = |run: &Run<'_>| {
@@ -128,7 +128,7 @@ impl<'a> Run<'a> {
         Ok((self.march, summary))
     }
 
-    /// Updates until all cycles are done; a break if the user asked to stop before.
+    /// Takes updates until all cycles are done; a break if the user stops the run before.
     fn march_on(
         &mut self,
         keep: &mut Keep<'_, 'a>,
@@ -145,14 +145,14 @@ impl<'a> Run<'a> {
             })?;
             flow = self.updated(is_updated, keep, on_event)?;
         }
-        // A stop after the last update stops nothing.
+        // A stop after the last update has no effect.
         if self.march.is_done() {
             flow = ControlFlow::Continue(());
         }
         Ok(flow)
     }
 
-    /// Keeps and reports an update; a break if there was none.
+    /// Stores and reports an update; a break if there was none.
     fn updated(
         &self,
         is_updated: bool,
@@ -168,7 +168,7 @@ impl<'a> Run<'a> {
         Ok(on_event(RunEvent::Updated(update)))
     }
 
-    /// The summary, with its error if the case asks for that; a break if the user asked to stop.
+    /// Returns the summary, with its error if the case requests it; a break if the user stops the run.
     fn summary(&self, on_event: &mut Listener<'_>) -> ControlFlow<(), Summary> {
         let mut summary = self.summary_without_error();
         if self.case.accuracy.estimate {
@@ -207,7 +207,7 @@ impl<'a> Run<'a> {
     fn wear_laws(&self) -> Vec<LawWear> {
         let wear = &self.case.wear;
         match &self.means.wear_law {
-            // A law that a program brings along is not known to be approximate.
+            // For a law defined by a program it is unknown whether it is approximate.
             Some(named) => LawWear::of(&self.march, named.word, |word| {
                 word != named.word && wear.is_approximate(word)
             }),
@@ -218,13 +218,14 @@ impl<'a> Run<'a> {
     }
 }
 
-/// The summary of one of many runs: neither a hash of its inputs nor an estimate of its error, and bodies that it has in
-/// common with the others.
+/// Returns the summary of one of many runs that share bodies, without a hash of its inputs and without an error
+/// estimate.
 pub fn batch_run(case: &Case, cache: &Cache, bodies: &SharedBodies) -> Result<Summary, RunError> {
     march_watched(case, cache, bodies, &mut |_| ()).map(|(_, summary)| summary)
 }
 
-/// The march of such a run, which is done, and its summary; `watch` sees it before the first update and after each.
+/// Returns the finished march of such a run, and its summary; `watch` receives the march before the first update and
+/// after each.
 pub(crate) fn march_watched(
     case: &Case,
     cache: &Cache,
@@ -253,17 +254,17 @@ pub struct InMemory {
     pub wear_law: Option<NamedLaw>,
 }
 
-/// Receives the states of a run that are kept.
+/// Receives the states of a run to be stored.
 pub trait RunKeeper {
-    /// The femur has settled, and nothing is worn; `femur` is its triangles in the femoral frame, those of its
-    /// mesh, or about [`FEMUR_TRIANGLES`].
+    /// Called when the femur has settled and nothing is worn; `femur` is its triangulation in the femoral frame: its
+    /// own mesh, or about [`FEMUR_TRIANGLES`].
     fn settled(&mut self, march: &March, femur: &TriangleMesh);
 
-    /// An update is done.
+    /// Called after every update.
     fn updated(&mut self, march: &March);
 }
 
-/// Runs a case without writing a file: `keeper` receives the states to keep. The numbers are those of
+/// Runs a case without writing a file: `keeper` receives the states to be stored. The numbers are those of
 /// [`run_case`](crate::run_case).
 ///
 /// # Errors

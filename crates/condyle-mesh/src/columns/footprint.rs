@@ -100,7 +100,7 @@ impl<'a> Footprint<'a> {
         self.may_stand(self.through(place_mm))
     }
 
-    /// Returns the same without a second try next to the place, which would make the outline a hair too wide.
+    /// Returns the same without a second attempt next to the place, which would make the outline slightly too wide.
     pub(super) fn holds_exactly(&self, place_mm: Place) -> bool {
         self.may_stand(self.lines.exactly_at(place_mm))
     }

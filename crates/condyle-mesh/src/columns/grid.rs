@@ -76,8 +76,8 @@ pub struct ColumnMesh {
 }
 
 impl ColumnGrid {
-    /// A grid of cells of about `edge_mm` that fills the rectangle from `low` to `high`, (x, z), for columns of
-    /// `layers` hexahedra.
+    /// Creates a grid of cells of about `edge_mm` that fills the rectangle from `low` to `high`, (x, z), for columns
+    /// of `layers` hexahedra.
     ///
     /// # Errors
     /// [`TooManyNodes`] if these cannot be numbered.

@@ -69,7 +69,7 @@ impl<'a> VerticalLines<'a> {
         tried.into_iter().find_map(|place| self.exactly_at(place))
     }
 
-    /// Returns the same without trying again next to the place.
+    /// Returns the same without a second attempt next to the place.
     pub(super) fn exactly_at(&self, place: Place) -> Option<Through> {
         let [i, k] = self.bin_of(place);
         let over = |&triangle: &u32| {

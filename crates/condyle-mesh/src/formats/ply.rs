@@ -120,7 +120,7 @@ fn check_header(path: &Path, bytes: &[u8], header: &Header) -> Result<(), MeshFi
     Ok(())
 }
 
-/// Number of the header's line that announces an element.
+/// Returns the number of the header's line that announces an element.
 fn header_line(bytes: &[u8], element: &str) -> Option<usize> {
     let announces = |row: &[u8]| {
         let words = row.split(u8::is_ascii_whitespace);
@@ -131,7 +131,7 @@ fn header_line(bytes: &[u8], element: &str) -> Option<usize> {
     row.map(|row| row + 1)
 }
 
-/// The parser's error in one line, its line number as the place.
+/// Returns the parser's error in one line, its line number as the place.
 fn located(path: &Path, error: &ParseError) -> MeshFileError {
     let (line, message) = (error.line(), error.to_string());
     let prefix = line.map(|line| format!("Line {line}: "));

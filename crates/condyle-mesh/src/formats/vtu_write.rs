@@ -44,12 +44,12 @@ pub struct Grid<'a> {
 }
 
 impl<'a> Grid<'a> {
-    /// A grid of triangles, anticlockwise seen from outside.
+    /// Creates a grid of triangles, anticlockwise seen from outside.
     pub fn triangles(nodes: &'a [Vec3], triangles: &'a [[u32; 3]]) -> Self {
         Self::new(nodes, triangles, 5)
     }
 
-    /// A grid of quads, anticlockwise seen from outside.
+    /// Creates a grid of quads, anticlockwise seen from outside.
     pub fn quads(nodes: &'a [Vec3], quads: &'a [[u32; 4]]) -> Self {
         Self::new(nodes, quads, 9)
     }

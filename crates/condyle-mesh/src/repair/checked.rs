@@ -369,7 +369,7 @@ mod tests {
         );
     }
 
-    /// A closed block of 40 by 10 by 60 mm on y = 0.
+    /// Returns a closed block of 40 by 10 by 60 mm on y = 0.
     fn fine_block(edge: f64) -> TriangleMesh {
         fixtures::fine_block(Vec3::new(40.0, 10.0, 60.0), edge)
     }
@@ -391,7 +391,7 @@ mod tests {
             .collect()
     }
 
-    /// Number of the triangle whose middle is nearest to a place.
+    /// Returns the number of the triangle whose middle is nearest to a place.
     fn nearest(mesh: &TriangleMesh, at: Vec3) -> usize {
         let away = |t: &usize| (mesh.corners(*t).iter().sum::<Vec3>() / 3.0 - at).norm();
         let all = 0..mesh.triangles.len();

@@ -285,7 +285,7 @@ mod tests {
         assert_eq!(triangles[0], 0);
     }
 
-    /// A sheet of squares of 1 mm, `steps` a side, with one vertex pulled through its neighbours.
+    /// Returns a sheet of squares of 1 mm, `steps` a side, with one vertex pulled through its neighbours.
     fn wrinkled(steps: u32) -> TriangleMesh {
         let number = |i: u32, j: u32| i + (steps + 1) * j;
         let mut mesh = TriangleMesh::default();

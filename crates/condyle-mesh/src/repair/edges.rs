@@ -97,7 +97,7 @@ fn take_next(next: &mut BTreeMap<u32, Vec<u32>>, from: u32) -> Option<u32> {
 /// Triangles that are connected by edges.
 pub(super) struct Piece {
     pub(super) triangles: Vec<u32>,
-    /// Those of them to be turned for all to agree; never more than half.
+    /// The triangles among them that must be reversed for all to agree; never more than half.
     turned: Vec<u32>,
     pub(super) is_open: bool,
 }

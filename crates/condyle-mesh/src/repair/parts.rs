@@ -14,7 +14,7 @@ const MAX_LINES: f64 = 400.0;
 /// Triangles that a line of sight may meet on average: the parts of a knee cover one another a few times. A file in
 /// which it meets more is left whole.
 const MAX_LAYERS: usize = 32;
-/// A part that is seen from above on less than this share of its own shadow lies below another.
+/// Visible share of a part's own projection, seen from above, below which the part lies under another one.
 const HIDDEN_SHARE: f64 = 0.5;
 /// A part below with a smaller share of the body's shadow that reaches into the body is a peg of it, and no tray.
 const PEG_SHARE: f64 = 0.25;
@@ -27,7 +27,7 @@ const SPECK_SHARE: f64 = 0.02;
 pub enum Parts {
     /// All.
     All,
-    /// Those that are seen from above (+y), which carry the articulating surface.
+    /// The parts that are visible from above (+y), which carry the articulating surface.
     SeenFromAbove,
 }
 

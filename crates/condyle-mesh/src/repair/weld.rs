@@ -120,7 +120,8 @@ fn has_three_corners([a, b, c]: &[u32; 3]) -> bool {
     a != b && b != c && c != a
 }
 
-/// Twice the area over the longest edge squared is the height over the longest edge.
+/// Returns whether the height of a triangle is negligible relative to its longest edge: twice the area over the
+/// square of the longest edge is that ratio.
 fn is_flat([a, b, c]: &[Vec3; 3]) -> bool {
     let [ab, bc, ca] = [b - a, c - b, a - c].map(|edge| edge.norm_squared());
     (b - a).cross(&(c - a)).norm() <= FLAT * ab.max(bc).max(ca)

@@ -28,7 +28,7 @@ pub(super) enum View {
 pub(super) const VIEWS: [View; 3] = [View::Front, View::Right, View::Above];
 
 impl View {
-    /// The directions to the right and up in the picture, and towards the viewer.
+    /// Returns the directions to the right and up in the picture, and towards the viewer.
     fn axes(self) -> [Vec3; 3] {
         let [x, y, z] = [Vec3::x(), Vec3::y(), Vec3::z()];
         match self {
@@ -38,7 +38,7 @@ impl View {
         }
     }
 
-    /// The coordinates of a point along the axes of the view.
+    /// Returns the coordinates of a point along the axes of the view.
     pub(super) fn seen(self, point: &Vec3) -> [f64; 3] {
         self.axes().map(|direction| direction.dot(point))
     }
@@ -57,7 +57,7 @@ pub(super) struct Frame {
 }
 
 impl Frame {
-    /// A frame around bodies; a small square where there are none.
+    /// Creates a frame around bodies; a small square where there are none.
     pub(super) fn around(bodies: [&BodySurface; 2], view: View) -> Self {
         let ends = |axis: usize| {
             let points = bodies.iter().flat_map(|body| &body.vertices);
@@ -88,7 +88,7 @@ impl Frame {
         [x, y, width * self.scale, height * self.scale]
     }
 
-    /// The place of a point in the picture, px.
+    /// Returns the place of a point in the picture, px.
     pub(super) fn place(&self, point: &Vec3) -> (f64, f64) {
         let [right, up, _] = self.view.seen(point);
         (

@@ -103,7 +103,7 @@ pub fn write_bodies(path: &Path, picture: &BodiesPicture<'_>) -> Result<PathBuf,
 }
 
 impl MachineAxes {
-    /// The axes in a view: lines, or a ring where one is seen end on.
+    /// Returns the axes in a view: lines, or a ring where one is seen end on.
     fn svg(&self, frame: &Frame) -> String {
         let (flexion, vv, ie) = (self.flexion_mm, self.vv_mm, self.ie_mm);
         let axes = [
@@ -119,7 +119,7 @@ impl MachineAxes {
         drawn.concat() + &self.ap_zero(frame)
     }
 
-    /// The place where AP reads zero, named at the other ends of lines than axes are.
+    /// Returns the place where AP reads zero, labelled at the ends of lines where axes have no labels.
     fn ap_zero(&self, frame: &Frame) -> String {
         let (x, y) = frame.place(&Vec3::new(self.ap_zero_mm, 0.0, 0.0));
         let [left, top, width, height] = frame.rectangle();
@@ -138,7 +138,7 @@ impl MachineAxes {
     }
 }
 
-/// A line through `on` along `along`, across the view; a ring where it is seen end on.
+/// Returns a line through `on` along `along`, across the view; a ring where it is seen end on.
 fn axis(name: &str, on: &Vec3, along: &Vec3, frame: &Frame) -> String {
     let (x, y) = frame.place(on);
     let [left, top, width, height] = frame.rectangle();

@@ -80,7 +80,7 @@ impl Raster {
         }
     }
 
-    /// The lit colour of the surface at a pixel; none where it is not seen.
+    /// Returns the lit colour of the surface at a pixel; none where it is not seen.
     fn lit(&self, pixel: usize, colour: Colour) -> Option<Colour> {
         let is_seen = self.near[pixel].is_finite();
         is_seen.then(|| colour.map(|part| part * self.light[pixel]))
@@ -95,7 +95,7 @@ fn pixels_between([a, b, c]: [f64; 3], count: usize) -> std::ops::Range<usize> {
     first..end.max(first)
 }
 
-/// The lightness of a face: larger the more it faces the viewer and a lamp above.
+/// Returns the lightness of a face: larger the more it faces the viewer and a lamp above.
 fn lightness([a, b, c]: [Vec3; 3]) -> f32 {
     let normal = (b - a).cross(&(c - a)).try_normalize(0.0);
     let normal = normal.unwrap_or_default();
@@ -134,7 +134,7 @@ fn mixed(below: Colour, above: Colour, opacity: f32) -> Colour {
     std::array::from_fn(|i| below[i] * (1.0 - opacity) + above[i] * opacity)
 }
 
-/// The bytes of a PNG file (ISO/IEC 15948) of red, green and blue bytes.
+/// Returns the bytes of a PNG file (ISO/IEC 15948) of red, green and blue bytes.
 fn png(width: usize, height: usize, bytes: &[u8]) -> Vec<u8> {
     // Each row as its difference from the row above: filter 2.
     const FROM_ABOVE: u8 = 2;

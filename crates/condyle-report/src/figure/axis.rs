@@ -21,7 +21,7 @@ impl Axis {
         step: 20.0,
     };
 
-    /// The tightest axis over `low..high` with at most `intervals` steps of 1, 2 or 5 times a power of ten.
+    /// Creates the tightest axis over `low..high` with at most `intervals` steps of 1, 2 or 5 times a power of ten.
     ///
     /// The axis spans at least `min_span`, so that noise does not fill the picture.
     pub(crate) fn covering(low: f64, high: f64, min_span: f64, intervals: usize) -> Self {
@@ -50,7 +50,7 @@ impl Axis {
         Self::covering(low, high, min_span, intervals)
     }
 
-    /// A range without round ticks: `share` of its width wider than the values at both ends.
+    /// Creates a range without round ticks: `share` of its width wider than the values at both ends.
     pub(crate) fn around(values: impl Iterator<Item = f64>, share: f64) -> Self {
         let (low, high) = finite_range(values).unwrap_or((0.0, 1.0));
         let room = share * (high - low).max(1e-6);
@@ -61,12 +61,12 @@ impl Axis {
         }
     }
 
-    /// The ticks, smallest first.
+    /// Returns the ticks, smallest first.
     pub(crate) fn ticks(&self) -> impl Iterator<Item = f64> + '_ {
         (0..=self.intervals()).map(|tick| self.low + tick as f64 * self.step)
     }
 
-    /// The text of a tick, with the decimals of the step, or as a power of ten where these are too many.
+    /// Returns the text of a tick, with the decimals of the step, or as a power of ten where these are too many.
     pub(crate) fn label(&self, tick: f64) -> String {
         let decimals = decimals(self.step);
         if decimals <= MAX_DECIMALS {
@@ -80,7 +80,7 @@ impl Axis {
         format!("{}e{power}", fixed(tick / 10f64.powf(power), digits))
     }
 
-    /// The position of `value` on the axis: 0 at the low end, 1 at the high end.
+    /// Returns the position of `value` on the axis: 0 at the low end, 1 at the high end.
     pub(crate) fn fraction(&self, value: f64) -> f64 {
         (value - self.low) / (self.high - self.low)
     }
@@ -90,14 +90,14 @@ impl Axis {
     }
 }
 
-/// Smallest and largest finite value.
+/// Returns the smallest and largest finite value.
 pub(crate) fn finite_range(values: impl Iterator<Item = f64>) -> Option<(f64, f64)> {
     let finite = values.filter(|value| value.is_finite());
     let ends = finite.map(|value| (value, value));
     ends.reduce(|(low, high), (value, _)| (low.min(value), high.max(value)))
 }
 
-/// The smallest of 1, 2, 5 times a power of ten that is at least `least`.
+/// Returns the smallest of 1, 2, 5 times a power of ten that is at least `least`.
 pub(crate) fn round_step(least: f64) -> f64 {
     let power = 10f64.powf(least.log10().floor());
     [1.0, 2.0, 5.0, 10.0]

@@ -127,12 +127,12 @@ fn outline(
     pieces.extend(leaves.zip(enters));
 }
 
-/// The same corner from both sides of an edge.
+/// Returns the corner on an edge, the same from both sides of the edge.
 fn crossing(a: u32, b: u32) -> Corner {
     (a.min(b), a.max(b))
 }
 
-/// The sides of each quad that belong to no other quad.
+/// Returns the sides of each quad that belong to no other quad.
 fn borders(quads: &[[u32; 4]]) -> Vec<[bool; 4]> {
     let edge = |(quad, nodes): (usize, &[u32; 4])| {
         let nodes = *nodes;
@@ -154,7 +154,7 @@ mod tests {
     use super::*;
     use crate::Vec3;
 
-    /// A square of n by n faces over -1..1 in x and z.
+    /// Returns a square of n by n faces over -1..1 in x and z.
     fn square(n: u32) -> SurfaceFields {
         let at = |i: u32| 2.0 * f64::from(i) / f64::from(n) - 1.0;
         let nodes = (0..=n)

@@ -73,14 +73,15 @@ pub(crate) struct Map<'a> {
     pub(crate) px_per_mm: f64,
 }
 
-/// The largest finite absolute value.
+/// Returns the largest finite absolute value.
 pub(crate) fn largest_size(values: &[f64]) -> f64 {
     let finite = values.iter().filter(|value| value.is_finite());
     finite.fold(0.0, |most, value| value.abs().max(most))
 }
 
 impl Map<'_> {
-    /// The map as an element of a page, with a description, and with something drawn over it by [`Map::place`].
+    /// Returns the map as an element of a page, with a description, and with something drawn over it by
+    /// [`Map::place`].
     pub(crate) fn svg(&self, desc: &str, over: &str) -> String {
         let ((width, height), MapStyle { id, title, .. }) = (self.size(), self.style);
         let (title, desc) = (escape(title), escape(desc));
@@ -93,7 +94,7 @@ impl Map<'_> {
         )
     }
 
-    /// The map as content of a larger picture.
+    /// Returns the map as content of a larger picture.
     pub(crate) fn body(&self) -> String {
         let (bands, markers) = (self.bands(), self.markers());
         let (_, height) = self.surface_size();
@@ -116,7 +117,7 @@ impl Map<'_> {
         (LEFT + width + bar, TOP + height + BOTTOM)
     }
 
-    /// A sentence for readers who cannot see it.
+    /// Returns a sentence for readers who cannot see it.
     pub(crate) fn desc(&self) -> String {
         let [left, right] = self.side.regions().map(str::to_lowercase);
         let (title, largest) = (self.style.title, self.style.largest);
@@ -210,7 +211,7 @@ impl Map<'_> {
         if self.is_both_ways() && is_next_to_zero {
             return BARE.to_owned();
         }
-        // The lightest twentieth is hard to tell from paper.
+        // The lightest twentieth is hard to distinguish from paper.
         let colour = self.style.shades.eval_continuous(1.0 - 0.95 * share);
         format!("#{colour:x}")
     }
@@ -229,7 +230,7 @@ impl Map<'_> {
         let ((width, height), [left, right]) = (self.surface_size(), self.side.regions());
         let (across, down) = (LEFT + width / 2.0, TOP + height / 2.0);
         let (low, far) = (TOP + height + 17.0, LEFT + width + 16.0);
-        // "Posterior" stands in the middle, or where no leader passes at that height.
+        // "Posterior" is in the middle, or at a place where no leader passes at that height.
         let is_clear = |x: &f64| {
             let mut leaders = markers.iter().map(|marker| marker.leader_at(low));
             leaders.all(|leader| (leader - x).abs() > HALF_DIRECTION)
@@ -273,7 +274,7 @@ impl Map<'_> {
         )
     }
 
-    /// The largest value of each side and the side's name; with its sign, where values go both ways.
+    /// Returns the largest value of each side and the side's name; with its sign if values have both signs.
     fn extremes(&self) -> Vec<(&'static str, Extreme)> {
         let size = |value: f64| {
             if self.is_both_ways() {
@@ -291,7 +292,7 @@ impl Map<'_> {
         named.filter_map(of_side).collect()
     }
 
-    /// A ring at the largest value of each side, with value and place.
+    /// Returns a ring at the largest value of each side, with value and place.
     fn markers(&self) -> Vec<Marker> {
         let (width, height) = self.surface_size();
         let row = TextRow {

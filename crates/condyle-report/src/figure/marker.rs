@@ -1,4 +1,4 @@
-//! Rings at the largest values of a map, with leaders to texts that leave each other room.
+//! Rings at the largest values of a map, with leaders to texts that do not overlap.
 
 /// Baseline of the texts below the surface, px.
 const TEXT_BELOW: f64 = 50.0;
@@ -20,7 +20,7 @@ pub(super) struct Marker {
     text_x: f64,
     /// Lines of the text, which are safe SVG.
     lines: [String; 2],
-    /// Where the leader ends, and the heights of its elbow and end.
+    /// The horizontal end of the leader, and the heights of its elbow and end.
     leader_x: f64,
     elbow_y: f64,
     end_y: f64,
@@ -57,7 +57,7 @@ impl TextRow {
         rings.into_iter().zip(middles).map(marker).collect()
     }
 
-    /// A scar at the rim has its ring there, but its text stays inside the picture.
+    /// Limits the place of a text so that it stays inside the picture, even if its ring is at the rim.
     fn inside(self, x: f64) -> f64 {
         x.clamp(self.half_width, self.right.max(self.half_width))
     }
@@ -85,7 +85,7 @@ impl Marker {
         )
     }
 
-    /// The horizontal position of the leader at a height of the picture, px.
+    /// Returns the horizontal position of the leader at a height of the picture, px.
     pub(super) fn leader_at(&self, y: f64) -> f64 {
         let part = (y - self.elbow_y) / (self.end_y - self.elbow_y);
         self.ring.0 + part.clamp(0.0, 1.0) * (self.leader_x - self.ring.0)

@@ -93,7 +93,7 @@ pub(crate) struct Panel {
 }
 
 impl Panel {
-    /// The panel as an element of a page.
+    /// Returns the panel as an element of a page.
     pub(crate) fn svg(&self) -> String {
         let ((width, height), id) = (self.size, escape(&self.id));
         let (title, desc) = (escape(&self.title), escape(&self.desc));
@@ -103,7 +103,7 @@ impl Panel {
         )
     }
 
-    /// The panel as content of a larger picture.
+    /// Returns the panel as content of a larger picture.
     fn body(&self) -> String {
         let y = self.y_axis();
         let lines = self.curves.iter().map(|curve| self.line(curve, &y));
@@ -214,7 +214,7 @@ impl Panel {
     }
 }
 
-/// An SVG file of panels in rows of `columns`, with a key of (class, meaning) below.
+/// Returns an SVG file of panels in rows of `columns`, with a key of (class, meaning) below.
 pub(crate) fn sheet(
     title: &str,
     desc: &str,

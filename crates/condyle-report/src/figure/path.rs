@@ -34,7 +34,7 @@ impl Path {
         }
     }
 
-    /// The value of the attribute `d`.
+    /// Returns the value of the attribute `d`.
     pub(crate) fn data(self) -> String {
         self.data
     }

@@ -1,4 +1,4 @@
-//! SVG files: their style, escaping, and parts that several pictures have.
+//! SVG files: their style, escaping, and parts that several pictures share.
 
 /// The style of all pictures; its colours are variables of the page.
 pub(crate) const STYLE: &str = include_str!("figure.css");
@@ -15,7 +15,7 @@ const COLOURS: [(&str, &str, &str); 8] = [
     ("first", "#f3b562", "#a8701f"),
 ];
 
-/// Margin around a picture that is a file of its own, px.
+/// Margin around a picture in its own file, px.
 const MARGIN: f64 = 16.0;
 
 /// Declarations of the colours as CSS variables: (on white, on black).
@@ -25,7 +25,7 @@ pub(crate) fn colour_variables() -> (String, String) {
     (light.concat(), dark.concat())
 }
 
-/// The style with the colours of white paper filled in: readers of SVG files have no CSS variables.
+/// Returns the style with the colours of white paper filled in: readers of SVG files have no CSS variables.
 fn style_on_white() -> String {
     let fill = |css: String, (name, light, _): (&str, &str, &str)| {
         css.replace(&format!("var(--{name})"), light)
@@ -33,7 +33,7 @@ fn style_on_white() -> String {
     COLOURS.into_iter().fold(STYLE.to_owned(), fill)
 }
 
-/// An SVG file of a drawing of `size` (width, height) px, on white.
+/// Returns an SVG file of a drawing of `size` (width, height) px, on white.
 pub(crate) fn svg_file(title: &str, desc: &str, size: (f64, f64), body: &str) -> String {
     let (width, height) = (size.0 + 2.0 * MARGIN, size.1 + 2.0 * MARGIN);
     let (title, desc, style) = (escape(title), escape(desc), style_on_white());
@@ -43,13 +43,13 @@ pub(crate) fn svg_file(title: &str, desc: &str, size: (f64, f64), body: &str) ->
     )
 }
 
-/// Text made safe inside SVG and HTML.
+/// Escapes text for SVG and HTML.
 pub(crate) fn escape(text: &str) -> String {
     let text = text.replace('&', "&amp;").replace('<', "&lt;");
     text.replace('>', "&gt;").replace('"', "&quot;")
 }
 
-/// A title with its unit, for a `<text>` element.
+/// Returns a title with its unit, for a `<text>` element.
 pub(crate) fn titled(title: &str, unit: &str) -> String {
     let title = escape(title);
     if unit.is_empty() {
@@ -58,7 +58,7 @@ pub(crate) fn titled(title: &str, unit: &str) -> String {
     format!(r#"{title}<tspan class="unit">, {}</tspan>"#, escape(unit))
 }
 
-/// A bar of 10 mm that ends at `(end, y)`, with its length below.
+/// Returns a bar of 10 mm that ends at `(end, y)`, with its length below.
 pub(crate) fn scale_bar((end, y): (f64, f64), px_per_mm: f64) -> String {
     const LENGTH_MM: f64 = 10.0;
     let start = end - LENGTH_MM * px_per_mm;

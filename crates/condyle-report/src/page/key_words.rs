@@ -7,7 +7,7 @@ use crate::number::with_powers;
 /// Parts of names that are written in capitals.
 const CAPITALS: [&str; 5] = ["ap", "ie", "ml", "vv", "is"];
 
-/// A key as a title and its unit: `ap_range_mm` is ("AP range", "mm").
+/// Returns a key as a title and its unit: `ap_range_mm` is ("AP range", "mm").
 pub(super) fn in_words(key: &str) -> (String, String) {
     let (name, unit) = match key.strip_suffix("_cycles") {
         Some(name) => (name, Some("cycles")),
@@ -18,7 +18,7 @@ pub(super) fn in_words(key: &str) -> (String, String) {
     (first_letter_large(&words.join(" ")), unit)
 }
 
-/// The text with its first letter in capitals.
+/// Returns the text with its first letter in capitals.
 pub(super) fn first_letter_large(text: &str) -> String {
     let mut letters = text.chars();
     letters.next().map_or_else(String::new, |first| {

@@ -100,7 +100,7 @@ fn page_of(results: &Results, scene: Option<&Scene>) -> String {
     )
 }
 
-/// The map of wear depth; `None` without a mesh that has it.
+/// Returns the map of wear depth; `None` without a mesh that has it.
 fn large_map(results: &Results) -> Option<String> {
     let surface = results.surface.as_ref()?;
     let map = maps::MAPS[0].of(surface, results.side, LARGE)?;
@@ -124,7 +124,7 @@ fn svgs(panels: &[Panel]) -> Vec<String> {
     panels.iter().map(Panel::svg).collect()
 }
 
-/// The program and its scene, compressed, as text of a page; none where the scene is empty.
+/// Returns the program and its scene, compressed, as text of a page; none where the scene is empty.
 fn moving(scene: &Scene) -> Option<Value> {
     if scene.is_empty() {
         return None;

@@ -40,7 +40,7 @@ pub(super) struct Tile {
 /// Parts of names of entries that differ from run to run of one case, or that the page shows as its origin.
 const NOT_LISTED: [&str; 4] = ["wall_s", "version", "hash", "blake3"];
 
-/// The numbers that matter most.
+/// Returns the most important numbers.
 pub(super) fn tiles(results: &Results) -> Vec<Tile> {
     let Some(summary) = &results.summary else {
         return Vec::new();
@@ -58,7 +58,7 @@ pub(super) fn tiles(results: &Results) -> Vec<Tile> {
     catalogue::headlines().filter_map(tile).collect()
 }
 
-/// All numbers in groups; entries that are not in the catalogue come last under their own names.
+/// Returns all numbers in groups; entries that are not in the catalogue come last under their own names.
 pub(super) fn groups(results: &Results) -> Vec<Group> {
     let Some(summary) = &results.summary else {
         return Vec::new();
@@ -85,7 +85,7 @@ pub(super) fn groups(results: &Results) -> Vec<Group> {
 /// The place of the neutral pose among the groups: after the motion, which is relative to it.
 const NEUTRAL_PLACE: usize = 4;
 
-/// The pose of the femur at which AP, ML and IS read zero.
+/// Returns the pose of the femur at which AP, ML and IS read zero.
 fn neutral(summary: &Summary) -> Group {
     let row = |label: &str, values: &[f64], unit: &str, meaning: &str| Listed {
         label: label.to_owned(),
@@ -129,12 +129,12 @@ fn listed(number: &Scalar, summary: &Summary) -> Option<Listed> {
     })
 }
 
-/// The name of a number as a title.
+/// Returns the name of a number as a title.
 pub(crate) fn label_of(number: &Scalar) -> String {
     first_letter_large(number.label)
 }
 
-/// The unit that a number is shown in, as it is printed.
+/// Returns the unit that a number is shown in, as it is printed.
 pub(crate) fn unit_of(number: &Scalar) -> String {
     with_powers(number.shown_unit())
 }
@@ -159,7 +159,7 @@ fn others(summary: &Summary) -> Vec<Listed> {
         .collect()
 }
 
-/// An entry that is not in the catalogue; of an object, each of its entries.
+/// Returns an entry that is not in the catalogue, or each entry of an object.
 fn unlisted(path: &str, key: &str, value: &Value) -> Vec<Listed> {
     if is_hidden(key) {
         return Vec::new();
@@ -184,7 +184,8 @@ fn unlisted(path: &str, key: &str, value: &Value) -> Vec<Listed> {
     Vec::from_iter(row)
 }
 
-/// Numbers with a unit span orders of magnitude and get significant digits; counts, shares and ratios get decimals.
+/// Formats a number: numbers with a unit span orders of magnitude and get significant digits; counts, shares and
+/// ratios get decimals.
 pub(crate) fn shown(number: &Scalar, value: f64, digits: i32) -> String {
     let value = number.shown(value);
     if number.unit().is_empty() {

@@ -16,14 +16,14 @@ const VERSION: &str = env!("CARGO_PKG_VERSION");
 const MIN_CHANGE_PERCENT: f64 = 0.5;
 const MILLION: f64 = 1e6;
 
-/// A number of the summary; of an unfinished run, the one in the last row of wear.csv.
+/// Returns a number of the summary; for an unfinished run, the number in the last row of wear.csv.
 pub(super) fn reached(results: &Results, scalar: &Scalar) -> Option<f64> {
     let summary = results.summary.as_ref();
     let stated = summary.and_then(|summary| summary.get(scalar));
     stated.or_else(|| results.wear.as_ref()?.column(scalar.key)?.last().copied())
 }
 
-/// The result in two sentences; of an unfinished run, the result so far.
+/// Returns the result in two sentences; for an unfinished run, the result so far.
 pub(super) fn lede(results: &Results, case: &CaseFacts) -> Option<String> {
     let cycles = reached(results, &CYCLES)?;
     let mass_mg = reached(results, &MASS_LOSS_MG)?;
@@ -75,7 +75,7 @@ pub(super) struct Doubt {
     advice: String,
 }
 
-/// The plausibility warnings of the summary, and the errors that it could not estimate.
+/// Returns the plausibility warnings of the summary, and the errors that it could not estimate.
 pub(super) fn doubts(results: &Results) -> Vec<Doubt> {
     let summary = results.summary.iter();
     let warnings = summary.flat_map(|summary| &summary.plausibility);
@@ -105,7 +105,7 @@ fn ended(text: &str) -> String {
     }
 }
 
-/// Why parts of the discretisation error have no estimate, a sentence each.
+/// Returns the reasons why parts of the discretisation error have no estimate, one sentence each.
 pub(super) fn not_estimated(results: &Results) -> Vec<String> {
     let summaries = results.summary.iter();
     let errors = summaries.filter_map(|summary| summary.error.as_ref());
@@ -117,7 +117,7 @@ pub(super) fn not_estimated(results: &Results) -> Vec<String> {
     reasons.map(sentence).collect()
 }
 
-/// The change of wear per cycle over the test; none without wear.
+/// Returns the change of wear per cycle over the test; none without wear.
 pub(super) fn rate(results: &Results) -> Option<String> {
     let rates = rates_mg_per_million(results.wear.as_ref()?)?;
     let (first, last) = (*rates.first()?, *rates.last()?);
@@ -192,7 +192,7 @@ pub(super) fn disagreements(results: &Results) -> Vec<String> {
     found
 }
 
-/// The difference between the two values of the worn volume, and its reason.
+/// Returns the difference between the two values of the worn volume, and its reason.
 pub(super) fn volume_check(results: &Results) -> Option<String> {
     let summary = results.summary.as_ref()?;
     let depth = summary.get(&VOLUME_LOSS_MM3)?;
@@ -237,7 +237,7 @@ pub(super) fn provenance(results: &Results) -> Vec<Fact> {
     facts
 }
 
-/// Files of a results folder that this one does not hold.
+/// Returns the files of a results folder that are missing from this one.
 pub(super) fn missing(results: &Results) -> Vec<&'static str> {
     let files = [
         ("summary.json", results.summary.is_none()),
@@ -251,7 +251,7 @@ pub(super) fn missing(results: &Results) -> Vec<&'static str> {
     missing.map(|(name, _)| name).collect()
 }
 
-/// The files that could not be read, with reasons, each once.
+/// Returns the files that could not be read, with reasons, each once.
 pub(super) fn left_out(results: &Results, scene: Option<&Scene>) -> Vec<String> {
     let mut all = results.left_out.clone();
     for why in scene.into_iter().flat_map(|scene| &scene.missing) {

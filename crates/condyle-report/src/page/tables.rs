@@ -22,7 +22,7 @@ pub(super) struct Comparison {
     values: [String; 3],
 }
 
-/// The two sides compared on the last mesh; empty without a mesh that has the wear depth.
+/// Returns the two sides compared on the last mesh; empty without a mesh that has the wear depth.
 pub(super) fn compartments(results: &Results) -> Vec<Comparison> {
     let surface = results.surface.as_ref();
     let worn = surface.and_then(|surface| surface.field("wear_depth_mm"));
@@ -99,7 +99,8 @@ fn deepest_place(surface: &SurfaceFields, depth: &[f64], region: Region) -> Opti
     (found.value > 0.0).then(|| format!("{x}, {z}"))
 }
 
-/// The thickness under the scar, where thinness matters, and anywhere, where the thinnest place may be the rim.
+/// Returns the thickness under the scar, where thinness matters, and anywhere, where the thinnest place may be the
+/// rim.
 fn thickness(
     surface: &SurfaceFields,
     depth: &[f64],
@@ -120,7 +121,7 @@ fn thickness(
     ]
 }
 
-/// A region's part of the volume loss that the run states.
+/// Returns a region's part of the volume loss that the run states.
 ///
 /// Depth times area on the last mesh alone would be a little more: the surface of a dish grows as it is worn, and the run
 /// counts the depth of every update on the area that it wore.
@@ -142,7 +143,7 @@ pub(super) struct ChannelRange {
     ends: Vec<[f64; 4]>,
 }
 
-/// The range of every channel that the folder holds.
+/// Returns the range of every channel that the folder holds.
 pub(super) fn ranges(results: &Results) -> Vec<ChannelRange> {
     let Some(table) = &results.kinematics else {
         return Vec::new();
@@ -174,9 +175,9 @@ fn range(table: &Table, column: &str, cycle: &Cycle) -> Option<[f64; 4]> {
 pub(super) struct Accuracy {
     parts: Vec<String>,
     rows: Vec<QuantityError>,
-    /// How each part is reduced, in a sentence.
+    /// The remedy for each part, one sentence each.
     remedies: String,
-    /// Why parts have no estimate, a sentence each.
+    /// The reasons why parts have no estimate, one sentence each.
     missing: Vec<String>,
 }
 
@@ -187,7 +188,7 @@ struct QuantityError {
     values: Vec<String>,
 }
 
-/// The remedy for a part of the error.
+/// Returns the remedy for a part of the error.
 fn remedy(part: Part) -> &'static str {
     match part {
         Part::Increments => "finer increments of the gait cycle",
@@ -197,7 +198,7 @@ fn remedy(part: Part) -> &'static str {
     }
 }
 
-/// The errors that the summary estimates; none where it estimates nothing.
+/// Returns the errors that the summary estimates; none if it has no estimate.
 pub(super) fn accuracy(results: &Results) -> Option<Accuracy> {
     let error = results.summary.as_ref()?.error.as_ref()?;
     let parts = ErrorParts::default().parts().map(|(part, _)| part);

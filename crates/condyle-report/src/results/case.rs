@@ -3,7 +3,7 @@
 use condyle_results::Side;
 use toml::{Table, Value};
 
-/// The side of the knee: left where any table of the case has `side = "left"`, else right.
+/// Returns the side of the knee: left if any table of the case has `side = "left"`, else right.
 pub(super) fn side(case: &str) -> Side {
     match case.parse::<Table>() {
         Ok(case) if has_left(&case) => Side::Left,
@@ -35,7 +35,7 @@ pub(crate) struct CaseFacts {
 }
 
 impl CaseFacts {
-    /// The facts of a case; of a text that is no TOML, none.
+    /// Reads the facts of a case; empty for a text that is not TOML.
     pub(crate) fn of(case: &str) -> Self {
         let case: Table = case.parse().unwrap_or_default();
         let value = |table: &str, key: &str| case.get(table)?.get(key);

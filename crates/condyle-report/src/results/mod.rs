@@ -47,7 +47,7 @@ pub struct Results {
     pub left_out: Vec<String>,
 }
 
-/// Decides about a part that cannot be read: the reading ends, or goes on without it.
+/// Decides whether reading ends or continues if a part cannot be read.
 type OnDamage<'a> = &'a mut dyn FnMut(ReportError) -> Result<(), ReportError>;
 
 impl Results {
@@ -129,7 +129,7 @@ impl Results {
     }
 }
 
-/// A part; none where it cannot be read and the reading goes on.
+/// Returns a part; none if it cannot be read and reading continues.
 fn part<T>(
     read: Result<Option<T>, ReportError>,
     on_damage: OnDamage<'_>,
@@ -137,7 +137,7 @@ fn part<T>(
     read.or_else(|error| on_damage(error).map(|()| None))
 }
 
-/// A message whose paths lack the folder: the same run gives the same page in every folder.
+/// Returns a message whose paths lack the folder: the same run gives the same page in every folder.
 pub(crate) fn without_folder(message: &str, folder: &Path) -> String {
     message.replace(&format!("{}{MAIN_SEPARATOR}", folder.display()), "")
 }
@@ -147,7 +147,7 @@ fn last_surface(folder: &Path) -> Result<Option<SurfaceFields>, ReportError> {
     last.map(|(_, path)| surface_of(&path)).transpose()
 }
 
-/// The articulating surface before the first cycle; none where there is no mesh of it.
+/// Returns the articulating surface before the first cycle; none if it has no mesh.
 pub(crate) fn unworn_surface(folder: &Path) -> Result<Option<SurfaceFields>, ReportError> {
     let first = meshes(folder)?.into_iter().find(|(update, _)| *update == 0);
     first.map(|(_, path)| surface_of(&path)).transpose()
@@ -164,7 +164,7 @@ pub(crate) fn read_mesh(path: &Path) -> Result<VtuFile, ReportError> {
     Ok(read_vtu_points(path)?)
 }
 
-/// The meshes `insert_NNNN.vtu` of a run with their numbers of updates, in rising order.
+/// Returns the meshes `insert_NNNN.vtu` of a run with their numbers of updates, in rising order.
 pub(crate) fn meshes(folder: &Path) -> Result<Vec<(u32, PathBuf)>, ReportError> {
     let failed = |source| ReportError::Read {
         path: folder.to_owned(),
@@ -192,7 +192,7 @@ fn case(path: &Path) -> Result<Option<String>, ReportError> {
         let problem = format!("is not a case: {}", error.message());
         return Err(ReportError::content(path, problem));
     }
-    // An empty case is one, with every default.
+    // An empty case is a case with every default.
     if !text.is_empty() {
         check_end(&text, path)?;
     }
@@ -210,7 +210,7 @@ fn summary(path: &Path) -> Result<Option<Summary>, ReportError> {
     serde_json::from_str(&text).map(Some).map_err(failed)
 }
 
-/// The table of a file; none where there is no such file.
+/// Returns the table of a file; none where there is no such file.
 pub(crate) fn table(path: &Path) -> Result<Option<Table>, ReportError> {
     let Some(text) = text(path)? else {
         return Ok(None);
@@ -219,7 +219,7 @@ pub(crate) fn table(path: &Path) -> Result<Option<Table>, ReportError> {
     Table::parse(&text, path).map(Some)
 }
 
-/// A run ends every line of its files: one without an end was cut short.
+/// Rejects a text whose last line has no end: a run ends every line of its files, so the file was truncated.
 fn check_end(text: &str, path: &Path) -> Result<(), ReportError> {
     if text.ends_with('\n') {
         return Ok(());

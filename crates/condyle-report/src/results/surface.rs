@@ -88,18 +88,18 @@ impl SurfaceFields {
         })
     }
 
-    /// The field called `name`, a value for each node.
+    /// Returns the field called `name`, a value for each node.
     pub fn field(&self, name: &str) -> Option<&[f64]> {
         let (_, values) = self.fields.iter().find(|(known, _)| known == name)?;
         Some(values)
     }
 
-    /// Positions of the corners of a quad, mm.
+    /// Returns the positions of the corners of a quad, mm.
     pub fn corners(&self, quad: [u32; 4]) -> [Vec3; 4] {
         quad.map(|node| self.nodes[node as usize])
     }
 
-    /// Smallest and largest x, then z, of the surface, mm.
+    /// Returns the smallest and largest x, then z, of the surface, mm.
     pub(crate) fn bounds(&self) -> [(f64, f64); 2] {
         [0, 2].map(|axis| {
             let values = self.nodes.iter().map(|node| node[axis]);
@@ -108,12 +108,12 @@ impl SurfaceFields {
         })
     }
 
-    /// The largest finite value of a field in a region; `None` where it has no node.
+    /// Returns the largest finite value of a field in a region; `None` where it has no node.
     pub fn largest(&self, values: &[f64], region: Region) -> Option<Extreme> {
         self.largest_by(values, region, |value| value)
     }
 
-    /// The finite value of a field in a region whose `size` is largest.
+    /// Returns the finite value of a field in a region whose `size` is largest.
     pub(crate) fn largest_by(
         &self,
         values: &[f64],
@@ -131,7 +131,7 @@ impl SurfaceFields {
         })
     }
 
-    /// The smallest value above 0 of a field in a region; `None` where there is none.
+    /// Returns the smallest value above 0 of a field in a region; `None` where there is none.
     pub fn smallest_positive(&self, values: &[f64], region: Region) -> Option<f64> {
         let values = self.in_region(values, region).map(|found| found.value);
         values.filter(|value| *value > 0.0).reduce(f64::min)
@@ -143,7 +143,7 @@ impl SurfaceFields {
         faces.map(|(quad, area)| area * mean(values, quad)).sum()
     }
 
-    /// Area of the faces of a region where the mean of a field is above `threshold`, mm2.
+    /// Returns the area of the faces of a region where the mean of a field is above `threshold`, mm2.
     pub fn area_above(&self, values: &[f64], threshold: f64, region: Region) -> f64 {
         let faces = self.faces(region);
         let above = faces.filter(|&(quad, _)| mean(values, quad) > threshold);
@@ -179,7 +179,7 @@ pub(crate) struct Articulating {
 }
 
 impl Articulating {
-    /// The boundary faces all of whose nodes are marked 1; none where there is none.
+    /// Returns the boundary faces whose nodes are all marked 1; none if there are no such faces.
     pub fn of(mesh: &HexMesh, marks: &[f64]) -> Option<Self> {
         let quads = (marks.len() == mesh.nodes.len()).then(|| marked_boundary(mesh, marks))?;
         if quads.is_empty() {
@@ -196,14 +196,14 @@ impl Articulating {
         Some(Self { nodes, quads })
     }
 
-    /// The values at the nodes of the surface, of those at all nodes of the mesh.
+    /// Selects the values at the nodes of the surface from those at all nodes of the mesh.
     pub fn pick<T: Copy>(&self, values: &[T]) -> Vec<T> {
         let nodes = self.nodes.iter();
         nodes.map(|&node| values[node as usize]).collect()
     }
 }
 
-/// The marked part of `HexMesh::boundary_quads`; it looks at marked faces only, which is ten times faster.
+/// Returns the marked part of `HexMesh::boundary_quads`; it looks at marked faces only, which is ten times faster.
 fn marked_boundary(mesh: &HexMesh, marks: &[f64]) -> Vec<[u32; 4]> {
     let is_marked = |quad: &[u32; 4]| quad.iter().all(|&node| marks[node as usize] == 1.0);
     let faces = |hex: &[u32; 8]| HEX_FACES.map(|face| face.map(|corner| hex[corner]));

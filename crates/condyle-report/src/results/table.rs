@@ -29,7 +29,7 @@ impl Table {
         Ok(table)
     }
 
-    /// The column called `name`.
+    /// Returns the column called `name`.
     pub fn column(&self, name: &str) -> Option<&[f64]> {
         let index = self.names.iter().position(|known| known == name)?;
         Some(&self.columns[index])
@@ -40,7 +40,7 @@ impl Table {
         &self.names
     }
 
-    /// Number of rows, without the header.
+    /// Returns the number of rows, without the header.
     pub fn rows(&self) -> usize {
         self.columns.first().map_or(0, Vec::len)
     }

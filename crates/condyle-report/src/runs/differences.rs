@@ -176,7 +176,7 @@ pub struct NumberDifference {
 }
 
 impl NumberDifference {
-    /// The size of the difference relative to the errors, in words.
+    /// Returns the size of the difference relative to the errors, in words.
     pub fn verdict(&self) -> String {
         match self.times_errors {
             None => "no error stated".to_owned(),
@@ -186,13 +186,13 @@ impl NumberDifference {
         }
     }
 
-    /// The sum of both errors.
+    /// Returns the sum of both errors.
     pub fn errors(&self) -> Option<f64> {
         Some(self.first_error? + self.second_error?)
     }
 }
 
-/// Numbers that differ: ranked by difference over errors, then those without errors by their percent.
+/// Returns the numbers that differ: ranked by difference over errors, then those without errors by their percent.
 fn numbers(first: &Summary, second: &Summary) -> Vec<NumberDifference> {
     let difference = |scalar: &'static Scalar| {
         let (one, two) = (first.get(scalar)?, second.get(scalar)?);
@@ -287,7 +287,7 @@ fn curve(one: &Table, two: &Table, cycle: &'static str, name: &str) -> Option<Cu
     })
 }
 
-/// The points of a cycle; the only cycle of a table is its first and its last.
+/// Returns the points of a cycle; the only cycle of a table is its first and its last.
 fn points(table: &Table, cycle: &str, name: &str) -> Option<Points> {
     let (percents, values) = (table.column("percent")?, table.column(name)?);
     table.column("cycles")?;
@@ -303,7 +303,8 @@ fn points(table: &Table, cycle: &str, name: &str) -> Option<Points> {
     (!points.is_empty()).then_some(points)
 }
 
-/// The value of a curve at an instant, by linear interpolation; none before its first or after its last point.
+/// Returns the value of a curve at an instant, by linear interpolation; none before its first or after its last
+/// point.
 fn at(points: &Points, percent: f64) -> Option<f64> {
     let after = points.partition_point(|point| point.0 < percent);
     let &(x, y) = points.get(after)?;

@@ -40,7 +40,7 @@ pub fn runs_html(runs: &[Run]) -> String {
     let differences: Vec<Differences> = differences.collect();
     let mut notes: Vec<String> = Vec::new();
     for note in differences.iter().flat_map(|difference| &difference.notes) {
-        // A note on the first run comes with every other.
+        // A note on the first run occurs in every comparison.
         if !notes.contains(note) {
             notes.push(note.clone());
         }
@@ -57,7 +57,7 @@ pub fn runs_html(runs: &[Run]) -> String {
     sheets.html()
 }
 
-/// The tables as HTML: numbers of all runs with their errors, and differences from the first.
+/// Returns the tables as HTML: numbers of all runs with their errors, and differences from the first.
 fn tables(runs: &[Run], differences: &[Differences]) -> String {
     let with_error = |run: &Run, scalar: &Scalar| {
         let summary = run.results.summary.as_ref()?;
@@ -80,7 +80,7 @@ fn tables(runs: &[Run], differences: &[Differences]) -> String {
     render(include_str!("tables.html"), &context)
 }
 
-/// A difference as the template shows it: numbers with the digits and the words of the report.
+/// Returns a difference as the template shows it: numbers with the digits and the words of the report.
 fn in_words(difference: &Differences) -> Value {
     let number = |one: &NumberDifference| {
         let sign = if one.difference < 0.0 {
@@ -155,13 +155,13 @@ fn sheets(runs: &[Run]) -> Vec<Sheet> {
     sheets
 }
 
-/// The style of the line of a run; the seventh looks like the first again.
+/// Returns the style of the line of a run; the styles repeat after six runs.
 fn line(run: usize) -> &'static str {
     const LINES: [&str; 6] = ["run-1", "run-2", "run-3", "run-4", "run-5", "run-6"];
     LINES[run % LINES.len()]
 }
 
-/// The curve of a run's panel that is drawn.
+/// The choice of the curve of a run's panel.
 #[derive(Clone, Copy)]
 enum Curves {
     First,
@@ -191,7 +191,7 @@ fn together(of_runs: impl Iterator<Item = Vec<Panel>>, pick: Curves) -> Vec<Pane
     all
 }
 
-/// The maps of all runs in one row, in the same colours, and their differences from the first below.
+/// Returns the maps of all runs in one row, in the same colours, and their differences from the first below.
 fn map_rows(runs: &[Run], field: &MappedField) -> Option<String> {
     // Space between maps, and for the name above one, px.
     const GAP: f64 = 18.0;
@@ -251,7 +251,7 @@ fn map<'a>(run: &'a Run, field: &MappedField) -> Option<Map<'a>> {
     field.of(surface, run.results.side, 4.6)
 }
 
-/// The difference of each run from the first, all in the same colours.
+/// Returns the difference of each run from the first, all in the same colours.
 fn differences(runs: &[Run], field: &MappedField) -> Vec<Option<Placed>> {
     let difference = |run: &Run| {
         let (one, two) = runs[0].comparable_surfaces(run)?;

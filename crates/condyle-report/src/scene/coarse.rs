@@ -21,8 +21,8 @@ enum Cell {
 }
 
 impl SceneBody {
-    /// The body with at most `most` triangles, or more where its border and sharp edges need them; itself where it has no
-    /// more.
+    /// Returns the body with at most `most` triangles, or more if its border and sharp edges need them; the body
+    /// itself if it has no more.
     ///
     /// The border stays as it is, and so do sharp edges. The other nodes of every cube of a grid become the one that is
     /// nearest to their mean: all nodes stay on the surface, and a triangle of edge `h` deviates from a surface of radius
@@ -49,7 +49,7 @@ impl SceneBody {
         normals.map(|normal| normal.norm() / 2.0).sum()
     }
 
-    /// The normal of a triangle, twice its area long.
+    /// Returns the normal of a triangle, twice its area long.
     fn normal(&self, triangle: &[u32; 3]) -> Vec3 {
         let [a, b, c] = triangle.map(|node| self.nodes[node as usize]);
         (b - a).cross(&(c - a))
@@ -101,7 +101,7 @@ impl SceneBody {
     }
 }
 
-/// The node nearest to the mean of some.
+/// Returns the node nearest to the mean of `nodes`.
 fn middle(nodes: &[Vec3]) -> Vec3 {
     let mean = nodes.iter().sum::<Vec3>() / nodes.len() as f64;
     let away = |node: &Vec3| (node - mean).norm_squared();

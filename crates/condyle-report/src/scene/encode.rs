@@ -151,7 +151,7 @@ fn add_places(arrays: &mut Arrays, name: &str, nodes: &[Vec3]) {
     arrays.quantised(name, values.clone(), range(values));
 }
 
-/// Smallest and largest finite value; 0 twice where there is none.
+/// Returns the smallest and largest finite value; 0 twice where there is none.
 fn range(values: impl Iterator<Item = f64>) -> [f64; 2] {
     finite_range(values).unwrap_or_default().into()
 }

@@ -25,7 +25,7 @@ pub struct Scene {
     pub femur: Option<SceneBody>,
     /// The pose of the femur at neutral.
     pub neutral_pose: Option<NeutralPose>,
-    /// The cycles whose motion is kept.
+    /// The cycles with stored motion.
     pub cycles: Vec<SceneCycle>,
     /// The files that could not be read, with reasons.
     pub missing: Vec<String>,
@@ -129,7 +129,7 @@ impl Scene {
     }
 }
 
-/// The skin of a mesh without its articulating surface, as triangles.
+/// Returns the skin of a mesh without its articulating surface, as triangles.
 fn skin(mesh: &HexMesh, articulating: &Articulating) -> SceneBody {
     let mut is_articulating = vec![false; mesh.nodes.len()];
     for &node in &articulating.nodes {

@@ -47,7 +47,7 @@ impl Scene {
     }
 }
 
-/// The insert at every update that can be read.
+/// Returns the insert at every update that can be read.
 fn of_meshes(folder: &Path, results: &Results) -> Scene {
     let wear = results.wear.as_ref();
     let cycles = wear.and_then(|wear| wear.column("cycles"));
@@ -69,7 +69,7 @@ fn of_meshes(folder: &Path, results: &Results) -> Scene {
     scene
 }
 
-/// The meshes that are missing, up to the last update that the summary states.
+/// Returns the meshes that are missing, up to the last update that the summary states.
 fn not_there(meshes: &[(u32, PathBuf)], results: &Results) -> Option<String> {
     let (last, _) = meshes.last()?;
     let summary = results.summary.as_ref();
@@ -118,7 +118,7 @@ fn femur(folder: &Path, missing: &mut Vec<String>) -> Option<SceneBody> {
     })
 }
 
-/// The cycles of `femur_pose.csv`, with their pressures where the folder has them.
+/// Returns the cycles of `femur_pose.csv`, with their pressures where the folder has them.
 fn cycles(folder: &Path, missing: &mut Vec<String>) -> Vec<SceneCycle> {
     let mut read = |name: &str| or_missing(table(&folder.join(name)), missing);
     let poses = read("femur_pose.csv");

@@ -37,7 +37,7 @@ pub struct Bars {
     pub bars: Vec<Bar>,
 }
 
-/// The text of an SVG file.
+/// Returns the text of an SVG file.
 pub fn bars_svg(bars: &Bars) -> String {
     let axis = axis(bars);
     let bottom = TOP + PITCH * bars.bars.len() as f64;

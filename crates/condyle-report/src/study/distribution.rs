@@ -23,7 +23,7 @@ pub struct Distribution {
     pub limits: Vec<f64>,
 }
 
-/// The text of an SVG file with a panel each.
+/// Returns the text of an SVG file with one panel per output.
 pub fn distributions_svg(all: &[Distribution]) -> String {
     let panels: Vec<Panel> = all.iter().enumerate().map(panel).collect();
     let names: Vec<&str> = all.iter().map(|one| one.title.as_str()).collect();
@@ -65,7 +65,7 @@ fn panel((index, one): (usize, &Distribution)) -> Panel {
     }
 }
 
-/// Around all values and limits.
+/// Returns the ends of the axis around all values and limits.
 fn ends(one: &Distribution) -> (f64, f64) {
     let ends = [one.sorted.first(), one.sorted.last()]
         .into_iter()
@@ -76,7 +76,8 @@ fn ends(one: &Distribution) -> (f64, f64) {
     if low <= high { (low, high) } else { (0.0, 1.0) }
 }
 
-/// The outline of a histogram, % of the values in each slice; the number of slices is the root of that of the values.
+/// Returns the outline of a histogram, % of the values in each slice; the number of slices is the root of the number
+/// of values.
 fn outline(sorted: &[f64]) -> Vec<(f64, f64)> {
     let (Some(low), Some(high)) = (sorted.first(), sorted.last()) else {
         return Vec::new();

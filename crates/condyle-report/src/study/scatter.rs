@@ -21,7 +21,7 @@ pub struct Cloud {
     pub line: Vec<(f64, f64)>,
 }
 
-/// The text of an SVG file with the clouds in rows of `columns`; `keys` names points and line.
+/// Returns the text of an SVG file with the clouds in rows of `columns`; `keys` names points and line.
 pub fn clouds_svg(title: &str, clouds: &[Cloud], columns: usize, keys: [&str; 2]) -> String {
     let size = if columns > 2 {
         (236.0, 206.0)
@@ -45,7 +45,7 @@ pub fn clouds_svg(title: &str, clouds: &[Cloud], columns: usize, keys: [&str; 2]
     sheet(title, &names.join("; "), &panels, columns.max(1), &used)
 }
 
-/// The largest vertical span of the plots of one output: on axes of that length, small effects look small.
+/// Returns the largest vertical span of the plots of one output: on axes of that length, small effects look small.
 fn span_of(clouds: &[Cloud], title: &str) -> f64 {
     let own = clouds.iter().filter(|cloud| cloud.title == title);
     let span = |cloud: &Cloud| {
@@ -89,7 +89,7 @@ fn panel(index: usize, cloud: &Cloud, span: f64, size: (f64, f64)) -> Panel {
     }
 }
 
-/// The last word of a key, or two where the last is common to many keys, cut to fit under a small picture.
+/// Returns the last word of a key, or two where the last is common to many keys, cut to fit under a small picture.
 fn short(across: &str) -> String {
     const LONGEST: usize = 28;
     let mut words = across.rsplit('.');
@@ -108,7 +108,7 @@ fn short(across: &str) -> String {
         .collect()
 }
 
-/// An axis of round numbers, or of the marks with some room around them.
+/// Returns an axis of round numbers, or of the marks with some room around them.
 fn across(cloud: &Cloud, low: f64, high: f64) -> Axis {
     if cloud.marks.is_empty() {
         let span = 1e-9 * low.abs().max(high.abs()).max(1e-9);
@@ -122,7 +122,7 @@ fn across(cloud: &Cloud, low: f64, high: f64) -> Axis {
     }
 }
 
-/// The points with a gap after each, so that no line connects them.
+/// Returns the points with a gap after each, so that no line connects them.
 fn apart(points: &[(f64, f64)]) -> Vec<(f64, f64)> {
     points
         .iter()

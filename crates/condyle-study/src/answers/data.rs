@@ -12,7 +12,7 @@ use crate::{
 pub(crate) struct Data<'a> {
     pub plan: &'a Plan,
     pub inputs: Vec<Column>,
-    /// The outputs asked about, with a value for each test.
+    /// The outputs of the study, with a value for each test.
     pub outputs: Vec<(&'static Scalar, Vec<f64>)>,
     /// Whether each test is done and within every limit.
     pub within: Vec<bool>,

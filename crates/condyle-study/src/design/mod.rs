@@ -24,7 +24,8 @@ pub(crate) fn factorial_places(row: u64, counts: &[u64]) -> Vec<Place> {
     places
 }
 
-/// Returns the first all inputs as the case has them, then each in turn at its values.
+/// Returns the places of test `row` of a one-at-a-time design: first all inputs as in the case, then each input in
+/// turn at its values.
 pub(crate) fn one_at_a_time_places(row: u64, counts: &[u64]) -> Vec<Place> {
     let mut places = vec![Place::OfCase; counts.len()];
     let Some(mut rest) = row.checked_sub(1) else {

@@ -10,19 +10,19 @@ use crate::RunError;
 /// The reason why no constants of a wear law can be found.
 #[derive(Debug, Error)]
 pub enum CalibrateError {
-    /// The comparison with the weighings.
+    /// The comparison with the weighings failed.
     #[error(transparent)]
     Compare(#[from] CompareError),
     /// The case of a results folder, or one to predict.
     #[error(transparent)]
     Case(#[from] Problems),
-    /// A value that a constant cannot have.
+    /// A value that a constant does not accept.
     #[error("no constants can be found: {0}")]
     Constant(#[from] ConstantError),
-    /// Tests or constants that do not suit each other, with the remedy.
+    /// Tests and constants that do not match; the text includes the remedy.
     #[error("{0}")]
     Unsuitable(String),
-    /// A run with other constants.
+    /// A run with other constants failed.
     #[error("with {constants}: {source}")]
     Run {
         /// The constants.
@@ -30,7 +30,7 @@ pub enum CalibrateError {
         /// The reason.
         source: Box<RunError>,
     },
-    /// The physics with other constants.
+    /// The physics could not be solved with other constants.
     #[error("with {constants}: {source}")]
     March {
         /// The constants.
@@ -41,7 +41,7 @@ pub enum CalibrateError {
 }
 
 impl CalibrateError {
-    /// Whether the physics could not be solved, rather than the input being wrong.
+    /// Returns whether the physics could not be solved, as opposed to bad input.
     pub fn is_physics(&self) -> bool {
         match self {
             Self::March { .. } => true,

@@ -64,8 +64,8 @@ impl Spread {
 /// The rates of the tests as a function of the parameters.
 pub(crate) type Model<'a> = dyn FnMut(&[f64]) -> Result<Vec<f64>, CalibrateError> + 'a;
 
-/// The parameters with the least sum of weight (predicted / measured - 1)^2, by Gauss and Newton's iteration with
-/// Broyden's slopes.
+/// Returns the parameters with the least sum of weight (predicted / measured - 1)^2, by Gauss and Newton's iteration
+/// with Broyden's slopes.
 ///
 /// The relative scatter is the same in all tests. It is pooled from the scatter of the specimens or weighings within each
 /// test and from the residuals of the tests: a law that does not fit gets a wider interval.
@@ -160,7 +160,7 @@ impl<'a> Search<'a> {
     ) -> Result<DVector<f64>, CalibrateError> {
         let [least, most] = self.limits[number];
         let ends = [-below, above].map(|by| (self.at[number] + by).clamp(least, most));
-        // At its upper limit a parameter can only go down.
+        // At its upper limit a parameter can only decrease.
         let ends = if ends[0] == ends[1] {
             [ends[0] - above, ends[1]]
         } else {
@@ -183,7 +183,7 @@ impl<'a> Search<'a> {
         Ok(self.weighed(&slopes.collect::<Vec<_>>()))
     }
 
-    /// Steps until another one would change no rate.
+    /// Takes steps until a further step would change no rate.
     fn settle(&mut self, model: &mut Model<'_>) -> Result<(), CalibrateError> {
         let mut part = 1.0;
         let mut change = f64::INFINITY;
@@ -203,7 +203,7 @@ impl<'a> Search<'a> {
         )))
     }
 
-    /// The Gauss-Newton step.
+    /// Returns the Gauss-Newton step.
     fn step(&self) -> Result<DVector<f64>, CalibrateError> {
         let parts = self.slopes.clone().svd(true, true);
         let [most, least] = [parts.singular_values.max(), parts.singular_values.min()];
@@ -214,7 +214,7 @@ impl<'a> Search<'a> {
         step.map_err(|_| undetermined())
     }
 
-    /// The largest relative change of a rate in a step.
+    /// Returns the largest relative change of a rate in a step.
     fn change_of(&self, step: &DVector<f64>) -> f64 {
         let change = &self.slopes * step;
         let parts = change.iter().zip(self.observations);
@@ -246,7 +246,7 @@ impl<'a> Search<'a> {
         Ok(better)
     }
 
-    /// A parameter after a step, shortened where it is too long or leaves the limits.
+    /// Returns a parameter after a step, shortened where it is too long or leaves the limits.
     fn after(&self, number: usize, step: f64) -> f64 {
         let (was, [least, most]) = (self.at[number], self.limits[number]);
         let sign = was.signum();
@@ -259,7 +259,7 @@ impl<'a> Search<'a> {
         cut.clamp(least, most)
     }
 
-    /// The uncertainty of the parameters by the present slopes.
+    /// Returns the uncertainty of the parameters by the present slopes.
     fn spread(&self, confidence: f64) -> Result<Option<Spread>, CalibrateError> {
         let within = |of: &Observation| of.squares / (of.rate * of.rate);
         let inside: f64 = self.observations.iter().map(within).sum();
@@ -286,7 +286,8 @@ impl<'a> Search<'a> {
         }))
     }
 
-    /// The same by slopes across the interval itself: Broyden's slopes are exact only along the steps made.
+    /// Returns the uncertainty from slopes across the interval itself: Broyden's slopes are exact only along the
+    /// steps made.
     fn with_slopes_across(
         &mut self,
         model: &mut Model<'_>,
@@ -304,14 +305,14 @@ impl<'a> Search<'a> {
     }
 }
 
-/// The error for constants whose effects on the rates cannot be separated.
+/// Returns the error for constants whose effects on the rates cannot be separated.
 fn undetermined() -> CalibrateError {
     let problem = "these tests do not tell the constants apart: some change of them leaves every rate as it is; give tests \
                    that differ more in what the law goes by, or fewer --constant";
     CalibrateError::Unsuitable(problem.to_owned())
 }
 
-/// The scale of changes of a parameter; 1 for one that is 0.
+/// Returns the scale of changes of a parameter; 1 for one that is 0.
 fn size(parameter: f64) -> f64 {
     if parameter == 0.0 {
         1.0
@@ -335,7 +336,7 @@ enum Parameters {
 }
 
 impl Free {
-    /// The constants of these names, or the amount of wear if there are none.
+    /// Creates the constants of these names, or the amount of wear if there are none.
     pub(crate) fn new(law: Wear, names: &[String]) -> Result<Self, CalibrateError> {
         if names.is_empty() {
             let free = Parameters::Level;
@@ -346,7 +347,8 @@ impl Free {
         Ok(Self { law, free })
     }
 
-    /// The start of the search: a parameter is a constant relative to its first value, or the relative amount of wear.
+    /// Returns the start of the search: a parameter is a constant relative to its first value, or the relative amount
+    /// of wear.
     pub(crate) fn start(&self) -> Start {
         let Parameters::Constants(places) = &self.free else {
             return Start {
@@ -369,7 +371,7 @@ impl Free {
         }
     }
 
-    /// The law with these parameters.
+    /// Returns the law with these parameters.
     pub(crate) fn law(&self, at: &[f64]) -> Result<Wear, ConstantError> {
         match &self.free {
             Parameters::Level => self.law.scaled(at[0]),
@@ -389,7 +391,7 @@ impl Free {
         }
     }
 
-    /// The constants at parameters that may lie beyond the limits of the law, each clamped to its limits.
+    /// Returns the constants at parameters that may lie beyond the limits of the law, each clamped to its limits.
     pub(crate) fn constants_near(&self, at: &[f64]) -> Vec<f64> {
         let constants = match &self.free {
             Parameters::Level => (self.law.kind().scaled)(self.law.constants(), at[0].max(0.0)),
@@ -406,7 +408,7 @@ impl Free {
         inside.collect()
     }
 
-    /// Whether the constant at `place` depends on the parameters.
+    /// Returns whether the constant at `place` depends on the parameters.
     pub(crate) fn changes(&self, place: usize) -> bool {
         match &self.free {
             Parameters::Level => {
@@ -417,7 +419,7 @@ impl Free {
         }
     }
 
-    /// The parameter of the constant at `place`.
+    /// Returns the parameter of the constant at `place`.
     pub(crate) fn parameter_of(&self, place: usize) -> usize {
         match &self.free {
             Parameters::Level => 0,
@@ -427,12 +429,12 @@ impl Free {
         }
     }
 
-    /// Whether the amount of wear is the parameter.
+    /// Returns whether the amount of wear is the parameter.
     pub(crate) fn is_level(&self) -> bool {
         matches!(self.free, Parameters::Level)
     }
 
-    /// The constant at a parameter of 1.
+    /// Returns the constant at a parameter of 1.
     fn unit(&self, place: usize) -> f64 {
         let size = self.law.constants()[place].abs();
         if size > 0.0 { size } else { 1.0 }
@@ -453,7 +455,7 @@ fn place(law: &Wear, name: &str) -> Result<usize, CalibrateError> {
     })
 }
 
-/// The constants of a law as a case writes them.
+/// Returns the constants of a law in the notation of a case.
 pub(crate) fn in_words(law: &Wear) -> String {
     let parameters = law.kind().parameters.iter().zip(law.constants());
     let words: Vec<String> = parameters

@@ -105,7 +105,7 @@ pub struct CalibratedConstant {
     pub found: Estimate,
 }
 
-/// A test that constants were found from.
+/// A test from which the constants were found.
 #[derive(Clone, Debug, Serialize)]
 pub struct CalibratedTest {
     /// The results folder.
@@ -262,7 +262,7 @@ fn predict(path: &Path, case: &Case, free: &Free, fit: &Fit) -> Result<Predictio
     })
 }
 
-/// Wear is never negative.
+/// Raises the ends of an interval to zero, since wear is never negative.
 fn not_below_zero(interval: Interval) -> Interval {
     Interval {
         low: interval.low.max(0.0),
@@ -330,7 +330,7 @@ fn results(
     }
 }
 
-/// The interval of a parameter.
+/// Returns the interval of a parameter.
 fn interval_of(fit: &Fit, number: usize) -> Option<Interval> {
     let spread = fit.spread.as_ref()?;
     let slopes: Vec<f64> = (0..fit.at.len())
@@ -342,7 +342,7 @@ fn interval_of(fit: &Fit, number: usize) -> Option<Interval> {
     ))
 }
 
-/// Every constant that changed, with its interval.
+/// Returns every constant that changed, with its interval.
 fn constants(free: &Free, fit: &Fit) -> Vec<CalibratedConstant> {
     let values = free.constants_near(&fit.at);
     let parameters = free.law.kind().parameters.iter().enumerate();
@@ -373,7 +373,7 @@ fn constants(free: &Free, fit: &Fit) -> Vec<CalibratedConstant> {
     changed.map(constant).collect()
 }
 
-/// A run, and the weighings that it is to reproduce.
+/// A run, and the weighings that it should reproduce.
 pub(crate) struct Test {
     pub(crate) results: PathBuf,
     pub(crate) measured: PathBuf,
@@ -405,7 +405,7 @@ impl Test {
         })
     }
 
-    /// Refuses specimens or runs without wear.
+    /// Rejects specimens or runs without wear.
     pub(crate) fn check(&self) -> Result<(), CalibrateError> {
         let mg_per_million_cycles = self.weighed.aim().mg_per_million_cycles;
         if mg_per_million_cycles <= 0.0 || !mg_per_million_cycles.is_finite() {
@@ -425,7 +425,7 @@ impl Test {
         Ok(())
     }
 
-    /// The rate with another law, run in memory; that of the folder where the law is the same.
+    /// Returns the rate with another law, run in memory; that of the folder where the law is the same.
     pub(crate) fn rate(&self, law: &Wear) -> Result<f64, CalibrateError> {
         if *law == self.case.wear {
             return Ok(self.weighed.predicted.mg_per_million_cycles);

@@ -45,7 +45,7 @@ pub(crate) fn compare(scan: &Scan, folder: &Path) -> Result<SurfaceComparison, C
     summarised(&unworn, &compared, registration, scan)
 }
 
-/// The unworn surface and that of the last update, of one numbering.
+/// Returns the unworn surface and that of the last update, of one numbering.
 fn first_and_last(folder: &Path) -> Result<(SurfaceFields, SurfaceFields), CompareError> {
     let unworn = surface(folder, 0)?;
     let mut last = 0;
@@ -86,7 +86,7 @@ const MIN_COVERED: f64 = 0.9;
 /// predicted.
 #[derive(Clone, Debug, Serialize)]
 pub struct SurfaceComparison {
-    /// The motion that laid the scan onto the prediction.
+    /// The motion that aligned the scan with the prediction.
     pub registration: Registration,
     /// Points of the scan.
     pub scan_points: usize,
@@ -96,7 +96,7 @@ pub struct SurfaceComparison {
     pub nodes: usize,
     /// Over all nodes compared, weighted by area.
     pub everywhere: SurfaceErrors,
-    /// Where either depth is above 5 % of the deepest predicted; none without such a place.
+    /// Over the nodes where either depth is above 5 % of the deepest predicted; none without such nodes.
     pub in_scars: Option<SurfaceErrors>,
     /// The node where the two differ most.
     pub worst: NodeDepths,
@@ -146,7 +146,7 @@ pub struct NodeDepths {
     pub difference_mm: f64,
 }
 
-/// The comparison of a registered scan.
+/// Returns the comparison of a registered scan.
 pub(crate) fn summarised(
     unworn: &SurfaceFields,
     compared: &Compared,
@@ -303,7 +303,7 @@ pub(crate) fn compared(
     }
 }
 
-/// The depth of every point of the scan that lies over the surface.
+/// Returns the depth of every point of the scan that lies over the surface.
 fn soundings(
     sheet: &Sheet<'_>,
     (points, normals): (&[Vec3], Option<&[Vec3]>),
@@ -318,7 +318,7 @@ fn soundings(
     points.iter().enumerate().filter_map(sounding).collect()
 }
 
-/// Mean length of the edges of the quads.
+/// Returns the mean length of the edges of the quads.
 fn edge_mm(surface: &SurfaceFields) -> f64 {
     let around = |quad: &[u32; 4]| {
         let corners = surface.corners(*quad);
@@ -345,8 +345,8 @@ fn spacing_mm(soundings: &[Sounding]) -> f64 {
     distances.get(distances.len() / 2).copied().unwrap_or(0.0)
 }
 
-/// The depth at a node by the plane of weighted least squares through the soundings around it, or by their weighted mean
-/// where they do not determine its slope; none without soundings.
+/// Returns the depth at a node by the plane of weighted least squares through the soundings around it, or by their
+/// weighted mean where they do not determine its slope; none without soundings.
 fn sounded(tree: &RTree<Sounding>, node: &Vec3, radius: f64) -> Option<f64> {
     let place = [node.x, node.y, node.z];
     let mut matrix = Mat3::zeros();
@@ -370,7 +370,7 @@ fn sounded(tree: &RTree<Sounding>, node: &Vec3, radius: f64) -> Option<f64> {
     Some(plane.map_or(right_side.x / weight, |plane| plane.solve(&right_side).x))
 }
 
-/// A quarter of each face for each of its nodes.
+/// Returns a quarter of each face for each of its nodes.
 fn areas(surface: &SurfaceFields) -> Vec<f64> {
     let mut areas = vec![0.0; surface.nodes.len()];
     for quad in &surface.quads {

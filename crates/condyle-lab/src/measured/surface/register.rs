@@ -16,7 +16,8 @@ use crate::measured::CompareError;
 const MAX_POINTS: usize = 8000;
 /// Distance within which points find the surface at the start, mm.
 const REACH_MM: f64 = 15.0;
-/// Factor of that distance from step to step, down to `farthest_mm`: it excludes what does not belong to the surface.
+/// Factor by which that distance shrinks in each step, down to `farthest_mm`, to exclude points that do not belong to
+/// the surface.
 const REACH_SHRINKS: f64 = 0.8;
 /// Largest number of steps.
 const MAX_STEPS: usize = 300;
@@ -62,12 +63,12 @@ pub struct Registration {
 }
 
 impl Registration {
-    /// A registered point.
+    /// Moves a point of the scan by the registration.
     pub(crate) fn moved(&self, point: &Vec3) -> Vec3 {
         self.motion.transform_point(&(*point).into()).coords
     }
 
-    /// A registered direction.
+    /// Rotates a direction of the scan by the registration.
     pub(crate) fn turned(&self, direction: &Vec3) -> Vec3 {
         self.motion.transform_vector(direction)
     }
@@ -108,7 +109,7 @@ pub(crate) fn register(
     )))
 }
 
-/// Whether a place of the prediction is used for the registration.
+/// Returns whether a place of the prediction is used for the registration.
 fn fits(keys: &ScanKeys, foot: &Foot, depth: &[f64]) -> bool {
     let within = |range: Option<[f64; 2]>, value: f64| {
         range.is_none_or(|[low, high]| (low..=high).contains(&value))
@@ -145,7 +146,7 @@ impl Places {
         }
     }
 
-    /// Points within reach of places that fit, facing the same way.
+    /// Returns the points within reach of places that are used, with normals in the same direction.
     fn pairs(
         &self,
         motion: &Isometry3<f64>,
@@ -183,7 +184,7 @@ struct Fit {
 }
 
 impl Fit {
-    /// None for fewer pairs than a rigid motion takes.
+    /// Fits the motion; none for fewer pairs than a rigid motion requires.
     fn of(pairs: &[Pair]) -> Option<Self> {
         const MIN_PAIRS: usize = 12;
         if pairs.len() < MIN_PAIRS {
@@ -225,7 +226,7 @@ impl Fit {
         weight
     }
 
-    /// The motion that minimises the residuals; none where the surface does not determine it.
+    /// Returns the motion that minimises the residuals; none where the surface does not determine it.
     fn step(&self) -> Option<Isometry3<f64>> {
         let resistances = self.matrix.symmetric_eigenvalues();
         if resistances.min() <= MIN_RESISTANCE * resistances.max() {
@@ -238,7 +239,7 @@ impl Fit {
         Some(Isometry3::from_parts(Translation3::from(shift), rotation))
     }
 
-    /// The approximate length of a motion of the points.
+    /// Returns the approximate length of a motion of the points.
     fn length_of(&self, motion: &Isometry3<f64>) -> f64 {
         let shift = motion.transform_point(&self.middle.into()).coords - self.middle;
         motion.rotation.angle() * self.gyration_mm + shift.norm()
@@ -309,7 +310,7 @@ pub(crate) struct Foot {
 }
 
 impl Foot {
-    /// A field at the place, from its values at the nodes.
+    /// Returns a field at the place, from its values at the nodes.
     pub fn value(&self, field: &[f64]) -> f64 {
         let at = |i: usize| self.weights[i] * field[self.corners[i] as usize];
         at(0) + at(1) + at(2)
@@ -351,12 +352,12 @@ impl<'a> Sheet<'a> {
         }
     }
 
-    /// The nearest place to a point; none for a surface without triangles.
+    /// Returns the nearest place to a point; none for a surface without triangles.
     pub fn foot(&self, point: &Vec3) -> Option<Foot> {
         let nearest = self.tree.nearest_neighbor([point.x, point.y, point.z])?;
         let corners = self.mesh.triangles[nearest.number];
         let foot = self.curved.foot(nearest.number, point);
-        // On the border, each corner is on it or has no share.
+        // At a place on the border, each corner is on the border or has no share.
         let held_by_border =
             |i: usize| foot.weights[i] < ON_EDGE || self.is_border[corners[i] as usize];
         Some(Foot {
@@ -369,18 +370,18 @@ impl<'a> Sheet<'a> {
         })
     }
 
-    /// Whether a node is on the border.
+    /// Returns whether a node is on the border.
     pub fn is_border(&self, node: usize) -> bool {
         self.is_border[node]
     }
 }
 
-/// The triangles of a surface of quads.
+/// Returns the triangles of a surface of quads.
 pub(crate) fn triangulated(surface: &SurfaceFields) -> TriangleMesh {
     TriangleMesh::of_quads(surface.nodes.clone(), surface.quads.iter().copied())
 }
 
-/// Whether each node has an edge of a single triangle.
+/// Returns whether each node has an edge of a single triangle.
 fn borders(mesh: &TriangleMesh) -> Vec<bool> {
     let edge = |a: u32, b: u32| (a.min(b), a.max(b));
     let edges = |&[a, b, c]: &[u32; 3]| [edge(a, b), edge(b, c), edge(c, a)];
@@ -449,7 +450,7 @@ mod tests {
         assert_eq!((tukey(0.0), tukey(5.0), tukey(-5.0)), (1.0, 0.0, 0.0));
     }
 
-    /// A wavy sheet of 20 by 20 mm.
+    /// Returns a wavy sheet of 20 by 20 mm.
     fn wavy() -> TriangleMesh {
         let height = |x: f64, z: f64| (0.9 * x).sin() + (0.7 * z + 0.3 * x).cos();
         let place = |i: u32, k: u32| (f64::from(i) - 10.0, f64::from(k) - 10.0);
@@ -465,7 +466,7 @@ mod tests {
         }
     }
 
-    /// A scan of the same few places of it with much noise, of which a narrow region counts.
+    /// Returns a scan of the same few places of it with much noise, of which a narrow region counts.
     fn noisy(seed: u64) -> Scan {
         let mut state = seed;
         let mut number = || {
@@ -510,7 +511,7 @@ mod tests {
         assert!(said.contains("axes and start_mm in [surface]"), "{said}");
     }
 
-    /// A piece of a ball of radius 30 mm about the origin, as quads of about 1.5 mm.
+    /// Returns a piece of a ball of radius 30 mm about the origin, as quads of about 1.5 mm.
     fn dome() -> SurfaceFields {
         const ACROSS: u32 = 13;
         let at = |i: u32| 0.05 * (f64::from(i) - 6.0);
