@@ -287,7 +287,7 @@ fn the_default_case_states_half_a_percent_of_mass_and_one_of_depth() {
     assert!((error[&catalogue::MASS_LOSS_MG].in_unit.total / mass_mg - 1.0).abs() < 1e-9);
 }
 
-/// A shipped case; none where its meshes are not there.
+/// A shipped case; none if its meshes are not there.
 fn case_with_data(name: &str) -> Option<Case> {
     let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../..");
     if name.starts_with("dm") && !root.join("../shared/data/dm-knee").is_dir() {

@@ -21,7 +21,7 @@ const TOLERANCE: f64 = 1e-3;
 /// How much tighter the exact run's tolerances are.
 const TIGHTER: f64 = 10.0;
 
-/// A shipped case; none where its meshes are not there.
+/// A shipped case; none if its meshes are not there.
 fn case(name: &str) -> Option<Case> {
     let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../..");
     let is_there = root.join("../shared/data/dm-knee").is_dir();

@@ -69,7 +69,7 @@ impl<'a> CurvedMesh<'a> {
             .collect()
     }
 
-    /// Returns whether no two of some triangles make an edge.
+    /// Returns whether no two of some triangles form a sharp edge.
     fn is_smooth(&self, triangles: &[u32]) -> bool {
         let normal = |triangle: &u32| self.planes[*triangle as usize].0;
         triangles.iter().enumerate().all(|(n, one)| {
@@ -142,8 +142,8 @@ impl<'a> CurvedMesh<'a> {
         let own = normals.map(|normal| if is_smooth_at(&normal) { normal } else { facet });
         let normal = weighted(&own, weights);
         let upward = normal.y / normal.norm();
-        // At a sharp edge the vertex normals say nothing about the facet, and on a steep wall a sideways lift has no
-        // height: there the surface stays flat.
+        // At a sharp edge the vertex normals contain no information about the facet, and on a steep wall a sideways
+        // lift has no height: there the surface stays flat.
         let is_smooth = normals.iter().all(is_smooth_at);
         let height = if is_smooth && upward.abs() >= MIN_SLOPE_COSINE {
             flat.y + lift(&corners, normals, weights, &flat).dot(&normal) / normal.y

@@ -21,7 +21,7 @@ pub struct CreepSummary {
     pub creep_there_mm: f64,
     /// Deepest place that a scan would find once the insert has rested without load, mm.
     pub max_unloaded_depth_mm: f64,
-    /// The deepest penetration after a million cycles; none of a shorter test.
+    /// The deepest penetration after a million cycles; none for a shorter test.
     pub first_million: Option<Penetration>,
     /// The line that a laboratory fits to its scans from a million cycles on; none of fewer than two scans.
     pub line_from_a_million: Option<ScanLine>,

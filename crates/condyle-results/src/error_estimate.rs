@@ -23,7 +23,7 @@ pub enum Part {
 /// For each estimated number, the error in %, or the reason why it is missing.
 pub type QuantityErrors = Vec<(&'static Scalar, Result<f64, String>)>;
 
-/// Estimated discretisation error of a number by its parts: the change that a much finer value would make; none where a
+/// Estimated discretisation error of a number by its parts: the change that a much finer value would make; none if a
 /// part cannot be estimated.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(default)]
@@ -86,7 +86,7 @@ impl ErrorParts {
         self.total = parts.map(|part| part * part).sum::<f64>().sqrt();
     }
 
-    /// Each part with its error; none where it could not be estimated.
+    /// Each part with its error; none if it could not be estimated.
     pub fn parts(&self) -> [(Part, Option<f64>); 4] {
         [
             (Part::Increments, self.increments),
@@ -130,7 +130,7 @@ impl ErrorEstimate {
         &self.quantities
     }
 
-    /// Returns the error of a number; none where it was not estimated.
+    /// Returns the error of a number; none if it was not estimated.
     pub fn get(&self, scalar: &Scalar) -> Option<&QuantityError> {
         self.quantities
             .iter()

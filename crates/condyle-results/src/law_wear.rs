@@ -21,7 +21,7 @@ pub struct LawWear {
     pub volume_loss_mm3: f64,
     /// Deepest wear, mm.
     pub max_depth_mm: f64,
-    /// Part of the volume worn at pressures and cross-shear outside the range that the law was fitted to, %; none where
+    /// Part of the volume worn at pressures and cross-shear outside the range that the law was fitted to, %; none if
     /// the range is not known.
     pub outside_of_fit_percent: Option<f64>,
 }

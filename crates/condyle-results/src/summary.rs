@@ -83,7 +83,7 @@ impl Summary {
         self.scalars.get(scalar.key).copied()
     }
 
-    /// Returns the estimated discretisation error of a number, in its unit; none where it was not estimated.
+    /// Returns the estimated discretisation error of a number, in its unit; none if it was not estimated.
     pub fn total_error(&self, scalar: &Scalar) -> Option<f64> {
         Some(self.error.as_ref()?.get(scalar)?.in_unit.total)
     }

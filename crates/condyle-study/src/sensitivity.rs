@@ -42,7 +42,7 @@ struct Changed {
     set: Vec<String>,
     /// The results; none if the test failed.
     found: Option<Results>,
-    /// Changes of the results, %, in the order of the columns; none where a result was 0.
+    /// Changes of the results, %, in the order of the columns; none if a result was 0.
     above_percent: Option<Vec<Option<f64>>>,
     not_run: Option<String>,
 }

@@ -1,7 +1,7 @@
 //! The program that the web page of condyle calls, built for `wasm32-wasip1`.
 //!
-//! The page keeps a few files in memory and calls this program once for every task; the
-//! program answers on standard output, one [`Told`] as JSON a line.
+//! The page keeps a few files in memory and calls this program once for every task; the program answers on standard
+//! output, with one [`Told`] as JSON per line.
 //!
 //! | arguments | what it does |
 //! | --- | --- |

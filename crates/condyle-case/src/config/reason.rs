@@ -10,7 +10,7 @@ use super::suggest::nearest;
 
 /// A problem of a file as data; `Display` describes it.
 ///
-/// Every part of a file has reasons of its own, each an enum with fields or a struct.
+/// Every part of a file has its own reasons, each an enum with fields or a struct.
 pub trait Reason: Error + Send + Sync + 'static {
     /// Returns the remedy, if it does not follow from the description.
     fn advice(&self) -> Option<String>;

@@ -299,7 +299,7 @@ macro_rules! choice {
                 match self { $( Self::$variant => concat!($($doc),+).trim(), )+ }
             }
 
-            /// Returns the choice that `word` stands for.
+            /// Returns the choice that `word` names.
             pub fn from_word(word: &str) -> Option<Self> {
                 match word { $( $word => Some(Self::$variant), )+ _ => None }
             }

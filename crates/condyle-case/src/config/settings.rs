@@ -218,7 +218,7 @@ macro_rules! variants {
                 match self { $( Self::$variant { .. } => $word, )+ }
             }
 
-            /// Reads the choice that `word` stands for.
+            /// Reads the choice that `word` names.
             pub(crate) fn read_as(
                 word: &str,
                 section: &$crate::config::Section<'_>,

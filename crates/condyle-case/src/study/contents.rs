@@ -115,7 +115,7 @@ impl Study {
         self.cases.read_changed(&self.case_path, changes)
     }
 
-    /// Returns the value of an input in the case without changes; none where the case leaves it out.
+    /// Returns the value of an input in the case without changes; none if the case leaves it out.
     pub fn value_of_case(&self, input: &Input) -> Option<Level> {
         let number = self.case.number_at_or_written(&input.key);
         let number = number.map(Level::Number);

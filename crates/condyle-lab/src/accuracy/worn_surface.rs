@@ -98,7 +98,7 @@ struct Paraboloid {
 }
 
 impl Paraboloid {
-    /// Creates the paraboloid nearest to heights at places around `middle`; none where they do not determine one.
+    /// Creates the paraboloid nearest to heights at places around `middle`; none if they do not determine one.
     fn fit([x, z]: [f64; 2], nodes: &[&([f64; 2], f64)]) -> Option<Self> {
         let (mut matrix, mut right) = (Matrix6::zeros(), Vector6::zeros());
         for &&([node_x, node_z], height) in nodes {

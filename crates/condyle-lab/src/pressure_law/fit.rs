@@ -259,7 +259,7 @@ impl Target {
         self
     }
 
-    /// Lowers and tilts the femur until every region carries its force, starting from nearby depths; none where that does
+    /// Lowers and tilts the femur until every region carries its force, starting from nearby depths; none if that does
     /// not converge.
     pub fn carried(
         &self,

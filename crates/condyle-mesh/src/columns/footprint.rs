@@ -6,8 +6,8 @@ use super::{
 };
 use crate::triangle_mesh::TriangleMesh;
 
-/// Share of the median thickness below which a shell is the wedge of a chamfer, which has no layer of its
-/// own below it: its columns would be too stiff.
+/// Share of the median thickness below which a shell is the wedge of a chamfer, without a separate layer below it:
+/// its columns would be too stiff.
 const THINNEST_SHARE: f64 = 0.15;
 /// A surface that rises by more than 1.5 edges over one, 56 degrees, is the side of the insert, and no
 /// longer articulates.
@@ -157,7 +157,7 @@ fn without_teeth(samples: &ColumnGrid, holds: &[bool]) -> Vec<bool> {
                 }
             }
         }
-        // A piece that is not connected with the rest is no tooth of it.
+        // A piece that is not connected with the rest is not a tooth.
         if touches_body {
             tooth.iter().for_each(|&n| kept[n] = false);
         }

@@ -172,7 +172,7 @@ fn fitted_plan(
     standing(&ring, footprint)
 }
 
-/// Returns the columns on every place of a plan; those on the outline stand a hair inside where they must.
+/// Returns the columns on every place of a plan; those on the outline are slightly inside where necessary.
 fn standing(
     ring: &Ring<'_>,
     footprint: &Footprint<'_>,

@@ -165,7 +165,7 @@ impl Loop {
         self.along_mm[self.points.len()]
     }
 
-    /// Returns the area inside, mm2; less than 0 of a hole.
+    /// Returns the area inside, mm2; negative for a hole.
     pub(super) fn area_mm2(&self) -> f64 {
         let ends = (0..self.points.len()).map(|n| self.segment(n));
         ends.map(|(a, b)| turn(&a, &b) / 2.0).sum()
@@ -185,7 +185,7 @@ impl Loop {
         (0..self.points.len()).filter(crosses).count() % 2 == 1
     }
 
-    /// Returns the place after some length along the line, mm, counted round and round.
+    /// Returns the place at a length along the closed line, mm; the length may exceed one turn.
     pub(super) fn at(&self, along_mm: f64) -> Place {
         let along_mm = along_mm.rem_euclid(self.length_mm());
         let after = self.along_mm.partition_point(|&length| length <= along_mm);
@@ -229,7 +229,7 @@ impl Loop {
         corners
     }
 
-    /// Returns the angle that the line turns by within the reach of a corner, rad; less than 0 to the right.
+    /// Returns the angle by which the line turns within the reach of a corner, rad; negative to the right.
     pub(super) fn turned_at(&self, along_mm: f64, edge_mm: f64) -> f64 {
         let reach = CORNER_REACH * edge_mm;
         let [before, here, after] = [-reach, 0.0, reach].map(|way| self.at(along_mm + way));
@@ -237,7 +237,7 @@ impl Loop {
         turn(&before, &after).atan2(before.dot(&after))
     }
 
-    /// Returns the shorter way along the line from one length to another, mm: less than 0 backwards.
+    /// Returns the shorter way along the line from one length to another, mm; negative backwards.
     pub(super) fn signed_way(&self, from: f64, to: f64) -> f64 {
         let length = self.length_mm();
         (to - from + length / 2.0).rem_euclid(length) - length / 2.0

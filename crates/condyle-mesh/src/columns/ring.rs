@@ -9,7 +9,7 @@ use super::{
 
 /// Places this many rings inside the outline are moved; those further in stay on the grid.
 const MOVED_RINGS: usize = 3;
-/// Rounds of smoothing; after some ten there is no visible motion.
+/// Number of rounds of smoothing; after about ten there is no visible motion.
 const ROUNDS: usize = 40;
 
 /// A plan whose rim lies on the outline, while it is smoothed.

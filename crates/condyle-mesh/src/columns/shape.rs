@@ -11,7 +11,7 @@ use super::{
 const WELL_SHAPED: f64 = 0.6;
 /// Lengths of the trial moves of a place, in edges.
 const STEPS: [f64; 4] = [0.3, 0.1, 0.03, 0.01];
-/// Maximum number of rounds; a badly shaped quad takes some ten.
+/// Maximum number of rounds; a badly shaped quad takes about ten.
 const MAX_ROUNDS: usize = 40;
 
 /// The range in which a place may be moved.
@@ -48,7 +48,7 @@ pub(super) fn eight_directions() -> impl Iterator<Item = Place> + Clone {
     })
 }
 
-/// Moves places to where the worst corner next to them is best, while one is bad.
+/// Moves places so that the worst corner next to each is as good as possible, until no corner is bad.
 pub(super) fn shape(
     places: &mut [Place],
     quads: &[[u32; 4]],
@@ -89,7 +89,7 @@ pub(super) fn shape(
     }
 }
 
-/// Returns the smallest sine of a corner of some quads; less than 0 where one is turned round.
+/// Returns the smallest sine of a corner of some quads; negative if one is inverted.
 fn min_sine(places: &[Place], quads: &[[u32; 4]]) -> f64 {
     let corners = quads
         .iter()

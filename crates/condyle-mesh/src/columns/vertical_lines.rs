@@ -11,8 +11,8 @@ use crate::{
 
 /// Edge of the bins that sort the triangles over the transverse plane, mm.
 const BIN_MM: f64 = 1.0;
-/// A line that slips between two triangles is tried again this far away, mm: much more than numbers
-/// are rounded by, and much less than the accuracy of a node's place.
+/// A line that slips between two triangles is tried again this far away, mm: much more than rounding errors, and much
+/// less than the accuracy of a node's position.
 const ASIDE_MM: f64 = 1e-4;
 
 /// The vertical lines through a surface, whose triangles are sorted into square bins.
@@ -35,7 +35,7 @@ pub(super) struct Through {
 }
 
 impl<'a> VerticalLines<'a> {
-    /// Sorts the triangles of a surface; a line through a closed one goes in and out.
+    /// Sorts the triangles of a surface; a line through a closed surface enters and leaves it.
     pub(super) fn new(shell: &'a TriangleMesh, is_closed: bool) -> Self {
         let (low, high) = shell.bounds();
         let counts = [high.x - low.x, high.z - low.z].map(|length| (length / BIN_MM) as usize + 1);
@@ -112,7 +112,7 @@ impl<'a> VerticalLines<'a> {
 const MAX_ROUNDS: usize = 1000;
 /// Approximate number of heights that are settled in all: over a hole as large as an insert, rounds are fewer.
 const MAX_SETTLED: usize = 2_000_000;
-/// Factor on the way to the mean that a height goes in a round: over-relaxation takes fewer rounds.
+/// Over-relaxation factor on the motion of a height towards the mean in a round; it reduces the number of rounds.
 const OVER_RELAXED: f64 = 1.8;
 /// Heights that move less than this have settled, mm.
 const SETTLED_MM: f64 = 1e-6;

@@ -45,7 +45,7 @@ pub struct BodiesPicture<'a> {
     pub insert: &'a BodySurface,
     /// The part of the insert's surface under pressure; empty where that is not known.
     pub contact: &'a BodySurface,
-    /// The machine's axes; none where there is no machine yet.
+    /// The machine's axes; none if there is no machine yet.
     pub axes: Option<MachineAxes>,
     /// A line below the picture.
     pub caption: &'a str,

@@ -29,7 +29,7 @@ const PATCH: f32 = 0.7;
 pub(super) struct Raster {
     width: usize,
     height: usize,
-    /// How near the surface is to the viewer, in pixels; minus infinity where it is not seen.
+    /// Nearness of the surface to the viewer, in pixels; minus infinity where it is not visible.
     pub(super) near: Vec<f32>,
     /// Lightness, 0 to 1.
     light: Vec<f32>,
@@ -80,7 +80,7 @@ impl Raster {
         }
     }
 
-    /// Returns the lit colour of the surface at a pixel; none where it is not seen.
+    /// Returns the lit colour of the surface at a pixel; none if it is not seen.
     fn lit(&self, pixel: usize, colour: Colour) -> Option<Colour> {
         let is_seen = self.near[pixel].is_finite();
         is_seen.then(|| colour.map(|part| part * self.light[pixel]))

@@ -124,7 +124,7 @@ fn svgs(panels: &[Panel]) -> Vec<String> {
     panels.iter().map(Panel::svg).collect()
 }
 
-/// Returns the program and its scene, compressed, as text of a page; none where the scene is empty.
+/// Returns the program and its scene, compressed, as text of a page; none if the scene is empty.
 fn moving(scene: &Scene) -> Option<Value> {
     if scene.is_empty() {
         return None;

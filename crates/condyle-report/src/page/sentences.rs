@@ -140,7 +140,7 @@ pub(super) fn rate(results: &Results) -> Option<String> {
     ))
 }
 
-/// Mass lost in a million cycles in each interval between updates; none where one has no cycles or no wear.
+/// Mass lost in a million cycles in each interval between updates; none if one has no cycles or no wear.
 fn rates_mg_per_million(wear: &Table) -> Option<Vec<f64>> {
     let ends = wear
         .column("cycles")?

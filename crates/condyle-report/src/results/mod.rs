@@ -210,7 +210,7 @@ fn summary(path: &Path) -> Result<Option<Summary>, ReportError> {
     serde_json::from_str(&text).map(Some).map_err(failed)
 }
 
-/// Returns the table of a file; none where there is no such file.
+/// Returns the table of a file; none if there is no such file.
 pub(crate) fn table(path: &Path) -> Result<Option<Table>, ReportError> {
     let Some(text) = text(path)? else {
         return Ok(None);

@@ -98,9 +98,9 @@ fn notes(first: &Run, second: &Run) -> Vec<String> {
 pub struct SettingDifference {
     /// The dotted path of the key.
     pub key: String,
-    /// Its value in the first case; none where it is absent.
+    /// Its value in the first case; none if it is absent.
     pub first: Option<String>,
-    /// Its value in the second case; none where it is absent.
+    /// Its value in the second case; none if it is absent.
     pub second: Option<String>,
 }
 
@@ -164,13 +164,13 @@ pub struct NumberDifference {
     pub second: f64,
     /// Second minus first.
     pub difference: f64,
-    /// The difference in percent of the first; none where that is 0.
+    /// The difference in percent of the first; none if that is 0.
     pub difference_percent: Option<f64>,
     /// Estimated discretisation error of the first.
     pub first_error: Option<f64>,
     /// Estimated discretisation error of the second.
     pub second_error: Option<f64>,
-    /// The absolute difference over the sum of both errors: below 1 it may be due to discretisation alone. None where not
+    /// The absolute difference over the sum of both errors: below 1 it may be due to discretisation alone. None if not
     /// both errors are stated.
     pub times_errors: Option<f64>,
 }
@@ -242,7 +242,7 @@ pub struct CurveDifference {
     pub largest: f64,
     /// Percent of the cycle of the largest difference.
     pub largest_at_percent: f64,
-    /// The root mean square in percent of the first curve's range; none where that is flat.
+    /// The root mean square in percent of the first curve's range; none if that is flat.
     pub rms_percent_of_range: Option<f64>,
 }
 
@@ -332,11 +332,11 @@ pub struct MapDifference {
     pub z_mm: f64,
     /// Mean absolute difference over the surface.
     pub mean_absolute: f64,
-    /// The largest difference in percent of the first map's largest value; none where that is 0.
+    /// The largest difference in percent of the first map's largest value; none if that is 0.
     pub largest_percent: Option<f64>,
 }
 
-/// Maps that differ, ranked by difference over the largest value; none where maps cannot be subtracted.
+/// Maps that differ, ranked by difference over the largest value; none if maps cannot be subtracted.
 fn maps(first: &Run, second: &Run) -> Vec<MapDifference> {
     let Some((one, two)) = first.comparable_surfaces(second) else {
         return Vec::new();

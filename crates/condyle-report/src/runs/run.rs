@@ -46,7 +46,7 @@ impl Run {
         surfaces.filter(|_| self.maps_obstacle(other).is_none())
     }
 
-    /// Returns the reason why the maps of two runs cannot be subtracted; none where they can.
+    /// Returns the reason why the maps of two runs cannot be subtracted; none if they can.
     pub(super) fn maps_obstacle(&self, other: &Self) -> Option<String> {
         if self.results.surface.is_none() || other.results.surface.is_none() {
             return Some("one of the runs has no last mesh".to_owned());

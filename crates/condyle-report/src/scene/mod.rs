@@ -72,7 +72,7 @@ pub struct SceneCycle {
 }
 
 impl Scene {
-    /// Makes the scene of an unworn insert; none where no face has nodes that are all marked 1.
+    /// Makes the scene of an unworn insert; none if no face has nodes that are all marked 1.
     pub fn of_insert(mesh: &HexMesh, articulating: &[f64]) -> Option<Self> {
         let articulating = Articulating::of(mesh, articulating)?;
         let insert = SceneInsert {

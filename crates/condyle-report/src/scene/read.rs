@@ -139,7 +139,7 @@ fn or_missing<T>(read: Result<Option<T>, ReportError>, missing: &mut Vec<String>
 }
 
 impl SceneCycle {
-    /// Makes the first and the last cycle of a table like `femur_pose.csv`; none where it has other columns.
+    /// Makes the first and the last cycle of a table like `femur_pose.csv`; none if it has other columns.
     pub fn of_poses(poses: &Table) -> Vec<Self> {
         let names = poses.names().iter();
         let columns: Option<Vec<&[f64]>> = names.map(|name| poses.column(name)).collect();

@@ -132,7 +132,7 @@ const MIN_LEAD: f64 = 0.013;
 const FRONT: f64 = 0.35;
 
 /// Returns the lead of the right flange of a femoral component's trochlea over the left one, mm;
-/// negative where the left one leads, none where they are alike.
+/// negative where the left one leads, none if they are alike.
 ///
 /// The lateral flange holds the patella and is larger in every design with a left and a right version. The lead is
 /// measured forwards from the line behind both posterior condyles, and upwards from the

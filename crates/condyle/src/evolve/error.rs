@@ -1,4 +1,4 @@
-//! Why a march did not start, or ended early.
+//! The reasons why a march does not start, or ends early.
 
 use std::fmt;
 
@@ -11,10 +11,10 @@ use crate::{
     machine::{CycleError, Machine, MachineState, NotSettled},
 };
 
-/// A machine with more added inertia than this multiple of its own moves by that inertia and not by its loads.
+/// Added inertia, as a multiple of the machine's own, beyond which it dominates the motion instead of the loads.
 const HEAVY: f64 = 1.0;
 
-/// Why a march ended early.
+/// The reason why a march ended early.
 #[expect(missing_docs, reason = "the messages describe the fields")]
 #[derive(Clone, Debug, PartialEq, Error)]
 #[non_exhaustive]
@@ -129,7 +129,7 @@ impl MarchError {
     }
 }
 
-/// Why two bodies cannot be placed on each other.
+/// The reason why two bodies cannot be placed on each other.
 #[expect(missing_docs, reason = "the messages describe the fields")]
 #[derive(Clone, Debug, PartialEq, Error)]
 #[non_exhaustive]

@@ -120,7 +120,7 @@ impl Cycle {
     }
 }
 
-/// Why a cycle was not solved.
+/// The reason why a cycle was not solved.
 #[expect(missing_docs, reason = "the messages describe the fields")]
 #[derive(Clone, Debug, PartialEq, Error)]
 pub enum CycleError {

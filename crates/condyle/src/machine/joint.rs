@@ -1,6 +1,6 @@
 //! A joint as a description: its kind, its axis, and the waveforms that can drive it.
 
-/// How a joint moves.
+/// The kind of motion of a joint.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum JointKind {
     /// It rotates: rad and N mm in the solver, degrees in files.

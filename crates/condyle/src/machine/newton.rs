@@ -33,7 +33,7 @@ pub(super) struct NewtonIteration {
     taken: Vec6,
     /// Mean slip of the regions where the last correction was computed, mm/s.
     mean_slip: [Vec3; MAX_REGIONS],
-    /// Whether the whole of it was taken.
+    /// Whether the whole correction was taken.
     is_whole: bool,
     /// Largest predicted residual, N, at which the iteration may end without evaluating it; none if every correction
     /// requires its own tangent and every residual is evaluated.

@@ -256,7 +256,7 @@ pub fn low_passed(waveform: &Waveform, harmonics: usize) -> Vec<Knot> {
         .collect()
 }
 
-/// Why knots do not define a waveform.
+/// The reason why knots do not define a waveform.
 #[expect(missing_docs, reason = "the messages describe the fields")]
 #[derive(Clone, Debug, PartialEq, Error)]
 pub enum WaveformError {

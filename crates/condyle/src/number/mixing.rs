@@ -70,7 +70,7 @@ impl Mixing {
         }
     }
 
-    /// Returns the $\gamma$ of the changes; none where there are none.
+    /// Returns the $\gamma$ of the changes; none if there are none.
     fn parts(&self, left: &DVector<f64>) -> Option<DVector<f64>> {
         let count = self.changes.len();
         let of = |i: usize| &self.changes[i].left;

@@ -63,11 +63,11 @@ pub struct Calibration {
     pub confidence_percent: f64,
     /// The constants found.
     pub constants: Vec<CalibratedConstant>,
-    /// The amount of wear relative to the first run; none where single constants were found.
+    /// The amount of wear relative to the first run; none if single constants were found.
     pub times_as_much: Option<Estimate>,
     /// The tests.
     pub tests: Vec<CalibratedTest>,
-    /// Scatter of a specimen around the prediction, percent of the rate; none where weighings are counted, or without
+    /// Scatter of a specimen around the prediction, percent of the rate; none if weighings are counted, or without
     /// degrees of freedom.
     pub scatter_percent: Option<f64>,
     /// Observations less parameters.

@@ -226,7 +226,7 @@ impl Fit {
         weight
     }
 
-    /// Returns the motion that minimises the residuals; none where the surface does not determine it.
+    /// Returns the motion that minimises the residuals; none if the surface does not determine it.
     fn step(&self) -> Option<Isometry3<f64>> {
         let resistances = self.matrix.symmetric_eigenvalues();
         if resistances.min() <= MIN_RESISTANCE * resistances.max() {

@@ -16,7 +16,7 @@ use crate::{
     },
 };
 
-/// Why a mesh is not an insert.
+/// The reason why a mesh does not form an insert.
 #[expect(missing_docs, reason = "the messages describe the fields")]
 #[derive(Clone, Debug, PartialEq, Error)]
 pub enum InsertError {
