@@ -14,14 +14,14 @@ use crate::{
 const VECTORS: usize = 3;
 type Columns = Rhs<VECTORS>;
 
-/// Right-hand sides that go through a front while it is in the cache.
+/// Number of right-hand sides that are solved with a front while it is in the cache.
 const AT_ONCE: usize = 8 * Columns::COLUMNS;
 
-/// Displacements of some nodes by some forces, each alone.
+/// Displacements of some nodes by some forces, each acting alone.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Compliance {
     forces: usize,
-    /// Row-major, three rows a node, one column a force.
+    /// Row-major, three rows per node and one column per force.
     values: Vec<f64>,
 }
 
@@ -36,39 +36,40 @@ impl Compliance {
         self.forces
     }
 
-    /// Row-major, `3 * nodes` rows and `forces` columns: row `3 i + k` is the displacement of node `i` along axis
-    /// `k`, column `j` is by force `j`; both counted as they were given.
+    /// Returns the values, row-major, `3 * nodes` rows and `forces` columns: row `3 i + k` is the displacement of
+    /// node `i` along axis `k`, and column `j` belongs to force `j`, both in the order in which they were given.
     pub fn values(&self) -> &[f64] {
         &self.values
     }
 
-    /// Returns the displacement of a node by a force, both counted as they were given.
+    /// Returns the displacement of a node by a force, both in the order in which they were given.
     ///
     /// # Panics
-    /// If there are not as many.
+    /// If there is no such node or force.
     pub fn displacement(&self, node: usize, force: usize) -> Vec3 {
         Vec3::from_fn(|k, _| self.values[(3 * node + k) * self.forces + force])
     }
 }
 
 impl ElasticSolid {
-    /// Displacements of `nodes` by a unit force on each of them along its direction.
+    /// Returns the displacements of `nodes` by a unit force on each of them along its direction.
     ///
-    /// Column j is the force on `nodes[j]` along `directions[j]`, a unit vector; so values are in length a force.
+    /// Column j is the force on `nodes[j]` along `directions[j]`, a unit vector, so that values are lengths per
+    /// force.
     ///
     /// # Panics
-    /// If there is no such node, or not one direction a node.
+    /// If there is no such node, or not one direction per node.
     pub fn compliance(&self, nodes: &[u32], directions: &[Vec3]) -> Compliance {
         assert_eq!(nodes.len(), directions.len(), "a direction for every node");
         let forces = nodes.iter().copied().zip(directions.iter().copied());
         self.influence(nodes, &forces.collect::<Vec<_>>())
     }
 
-    /// Displacements of `nodes` by forces on other nodes, each alone.
+    /// Returns the displacements of `nodes` by forces on other nodes, each acting alone.
     ///
     /// By reciprocity it is also the displacement by forces on `nodes`, such as those of an eigenstrain
-    /// ([`YieldingElement::forces`](crate::YieldingElement::forces)), along the other forces. A force along a direction
-    /// that is held moves nothing. A column has the same bytes whatever the other columns are, on every run.
+    /// ([`YieldingElement::forces`](crate::YieldingElement::forces)), along the other forces. A force along a held
+    /// direction causes no displacement. A column has the same bytes whatever the other columns are, on every run.
     ///
     /// # Panics
     /// If there is no such node.
@@ -104,7 +105,7 @@ impl ElasticSolid {
     }
 }
 
-/// Displacements by forces at places, as many columns side by side as go.
+/// Solves for the displacements by forces at places, with as many columns side by side as possible.
 fn solved(
     factor: &Factor,
     columns: &[(u32, usize)],
@@ -126,28 +127,28 @@ fn solved(
     solved
 }
 
-/// Four forces by all that go side by side: twelve sums stay in registers.
+/// Products of four forces with all forces side by side: twelve sums stay in registers.
 type Sums = [[f64x4; VECTORS]; 4];
 
-/// Some forces on a solid, each alone, solved half way.
+/// Some forces on a solid, each acting alone, solved half way.
 ///
-/// With the stiffness K = L L' and forces a and b, what b moves along a is
+/// With the stiffness K = L L' and forces a and b, the displacement by b along a is
 ///
 /// $$ a^T K^{-1} b = (L^{-1} a) \cdot (L^{-1} b) : $$
 ///
-/// a product over the part of the factor that feels both. Where few places of a large solid are of interest that is
-/// far less than to solve for all that moves, and it is as exact.
+/// a product over the part of the factor that both forces affect. If few places of a large solid are of interest,
+/// this is much less work than a full solution, and as exact.
 #[derive(Clone, Debug)]
 pub struct HalfSolved {
     forces: usize,
     /// Groups of the factor that feel a force, ascending, and the rows of each.
     groups: Vec<(usize, Range<usize>)>,
-    /// The rows of all those groups, for as many forces as go side by side.
+    /// The rows of all those groups, for the forces that are solved side by side.
     strips: Vec<Vec<[f64x4; VECTORS]>>,
 }
 
 impl ElasticSolid {
-    /// Forces on nodes, each alone, solved half way.
+    /// Solves forces on nodes, each acting alone, half way.
     ///
     /// # Panics
     /// If there is no such node.
@@ -205,8 +206,8 @@ impl HalfSolved {
         self.forces
     }
 
-    /// Returns the displacement by each force here at each of the others and along it, row-major, a row for each force
-    /// here. By reciprocity the transpose has the same bytes the other way round.
+    /// Returns the displacement by each force here at each of the others and along it, row-major, a row for each
+    /// force here. By reciprocity, exchanging the two gives the bytes of the transpose.
     pub fn moved_along(&self, others: &Self) -> Vec<f64> {
         let common = self.common_rows(others);
         let mut moved = vec![0.0; self.forces * others.forces];
@@ -226,7 +227,7 @@ impl HalfSolved {
         moved
     }
 
-    /// Rows here and there of the groups that feel forces of both.
+    /// Returns the rows, here and in `others`, of the groups that forces of both affect.
     fn common_rows(&self, others: &Self) -> Vec<[Range<usize>; 2]> {
         let mut theirs = others.groups.iter().peekable();
         let mut common = Vec::new();
@@ -261,7 +262,7 @@ fn products(
     sums
 }
 
-/// Puts sums to their place in a row-major matrix of that size, as far as it goes.
+/// Writes sums to their places in a row-major matrix of that size, as far as they lie inside.
 fn put(matrix: &mut [f64], [rows, columns]: [usize; 2], [row, column]: [usize; 2], sums: &Sums) {
     for (row, sums) in (row..rows).zip(sums) {
         let numbers = sums.iter().flat_map(|sum| *sum.as_array());

@@ -1,7 +1,7 @@
-//! Strain that needs no stress, such as plastic strain, in an elastic solid.
+//! Stress-free strain, such as plastic strain, in an elastic solid.
 //!
-//! Its forces on the nodes move the solid as any others do, with the same stiffness, and the stress is
-//! that of the strain without it (Eshelby; Mura 1987).
+//! An eigenstrain acts through forces on the nodes, with unchanged stiffness; the stress follows from the strain less
+//! the eigenstrain (Eshelby; Mura 1987).
 
 use std::collections::BTreeMap;
 
@@ -17,7 +17,7 @@ use crate::{
 };
 
 impl ElasticSolid {
-    /// Displacements of all nodes by eigenstrains of some elements, and the stresses that stay in those.
+    /// Returns the displacements of all nodes by eigenstrains of some elements, and the residual stresses in these.
     ///
     /// # Panics
     /// If there is no such element.
@@ -50,8 +50,8 @@ impl ElasticSolid {
         self.stresses_with(displacements, &BTreeMap::new())
     }
 
-    /// Returns the mean stresses if some elements have eigenstrains at their Gauss points, and the displacements are
-    /// those under them too.
+    /// Returns the mean stresses if some elements have eigenstrains at their Gauss points; the displacements must
+    /// include their effect.
     ///
     /// # Panics
     /// If there are fewer displacements than nodes.
@@ -141,8 +141,8 @@ impl YieldingElement {
         std::array::from_fn(|p| material.respond(&strains[p], &before[p]).point)
     }
 
-    /// Returns the largest part of the yield stress that is used up at a Gauss point, more than 1 where it will flow:
-    /// under displacements of the nodes, with the plastic strains remembered.
+    /// Returns the largest ratio of stress to yield stress at a Gauss point, more than 1 if it will flow: under
+    /// displacements of the nodes, with the plastic strains remembered.
     pub fn use_of_yield<M: Material>(
         &self,
         solid: &ElasticSolid,

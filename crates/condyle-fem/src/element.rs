@@ -1,13 +1,13 @@
-//! The finite element: an 8-node hexahedron that neither locks nor is too stiff in bending.
+//! The finite element: an 8-node hexahedron without volumetric or shear locking.
 //!
-//! Two remedies make it good with few elements over a thickness:
+//! Two methods make it accurate with few elements through the thickness:
 //!
 //! - *Incompatible modes*: displacements $1 - \xi^2$, $1 - \eta^2$, $1 - \zeta^2$ inside the element, condensed out
 //!   again, let it bend without parasitic shear (Wilson; Taylor, Beresford and Wilson 1976, whose
 //!   gradients by the Jacobian of the centre pass the patch test on distorted meshes).
 //! - *Projected dilatation*: the divergence of every displacement is replaced by its best fit among
-//!   $1, \xi, \eta, \zeta$. The bilinear rest, which no incompatible mode can undo, would lock near a Poisson's
-//!   ratio of one half; the linear part cannot, and is kept since bending needs it.
+//! $1, \xi, \eta, \zeta$. The bilinear remainder, which no incompatible mode can cancel, would lock near a Poisson's
+//! ratio of one half; the linear part cannot, and is kept since bending needs it.
 
 use nalgebra::{Cholesky, Matrix3, Matrix4, SMatrix, Vector4};
 use wide::f64x4;
@@ -21,7 +21,7 @@ use crate::{
 
 /// Gauss points of an element.
 pub(crate) const POINTS: usize = 8;
-/// Incompatible functions besides the eight of the nodes.
+/// Number of incompatible functions, in addition to the eight of the nodes.
 const MODES: usize = 3;
 const FUNCTIONS: usize = 8 + MODES;
 
@@ -58,7 +58,7 @@ struct Point {
     gradients: [Vec3; FUNCTIONS],
     /// The projected divergence by a displacement of every function.
     dilatations: [Vec3; FUNCTIONS],
-    /// Its share of the volume.
+    /// The point's share of the volume.
     volume: f64,
 }
 
@@ -93,7 +93,7 @@ impl Stiffness {
 }
 
 impl Point {
-    /// Subtracts the stiffness that yielding loses along the flow.
+    /// Subtracts the stiffness that is lost along the flow by yielding.
     fn soften(&self, softening: &Softening, all: &mut SMatrix<f64, 33, 33>) {
         let along = self
             .gradients
@@ -213,8 +213,9 @@ impl Element {
 
     /// The lower triangle of the stiffness, without what is lost along the flow.
     ///
-    /// $2 G \operatorname{dev}:\operatorname{dev}$ between displacements along i and j of functions with gradients $a$ and $b$
-    /// is $G (a \cdot b\thinspace \delta_{ij} + b_i a_j - \tfrac{2}{3} a_i b_j)$, and $K$ goes with the projected divergences.
+    /// $2 G \operatorname{dev}:\operatorname{dev}$ between displacements along i and j of functions with gradients
+    /// $a$ and $b$ is $G (a \cdot b\thinspace \delta_{ij} + b_i a_j - \tfrac{2}{3} a_i b_j)$, and $K$ multiplies the
+    /// projected divergences.
     fn add_stiffness(
         &self,
         elastic: &Elastic,

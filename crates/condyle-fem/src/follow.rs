@@ -5,8 +5,8 @@ use crate::{
     mesh::{HEX_EDGES, HexMesh},
 };
 
-/// Relative residual at which the following is taken as solved: a hundredth of what one wear step
-/// moves, some tenths of a micrometre, is far below what the shape of an element can feel.
+/// Relative residual at which the displacement counts as solved: a hundredth of the motion of one wear step, some
+/// tenths of a micrometre, is far too small to affect the shape of an element.
 const RELATIVE_RESIDUAL: f64 = 1e-2;
 
 /// Spreads the displacement of some nodes into the mesh, harmonically: every free node moves by
@@ -19,12 +19,12 @@ pub struct InteriorFollower {
     free: Vec<u32>,
     /// The neighbours of every row.
     neighbours: Neighbours,
-    /// One over how many they are: the inverse of the diagonal, the preconditioner.
+    /// The inverse of their number: the inverse of the diagonal, the preconditioner.
     scale: Vec<f64>,
 }
 
 impl InteriorFollower {
-    /// Creates a follower of `mesh` whose `held` nodes take a given displacement, and the rest follow.
+    /// Creates a follower of `mesh`: the `held` nodes take a given displacement, and all other nodes follow.
     ///
     /// # Panics
     /// If `held` or an element names a node that the mesh does not have.
@@ -49,13 +49,14 @@ impl InteriorFollower {
 
     /// Replaces the displacement of every node that is not held by the harmonic one.
     ///
-    /// `displacement`: one vector a node; those of held nodes are the data, the others the
-    /// starting guess. Conjugate gradients, preconditioned by the diagonal.
+    /// `displacement`: one vector per node; the vectors of held nodes are the data, the others the initial guess.
+    /// Conjugate gradients, preconditioned by the diagonal.
     ///
     /// # Panics
     /// If there are fewer displacements than the mesh has nodes.
     pub fn follow(&self, displacement: &mut [Vec3]) {
-        // Relative to the pull of the held nodes, not to the first residual: a good starting guess then ends at once.
+        // Relative to the pull of the held nodes, not to the first residual: with a good initial guess the iteration
+        // then ends at once.
         let enough2 = (RELATIVE_RESIDUAL * self.pull_of_held(displacement)).powi(2);
         let mut residual: Vec<Vec3> = self.pulls(displacement).collect();
         let (mut length2, mut scaled2) = self.size(&residual);
@@ -78,7 +79,7 @@ impl InteriorFollower {
         }
     }
 
-    /// The next direction of search: the preconditioned residual, and some of the last direction.
+    /// Replaces the direction of search by the preconditioned residual plus a part of the last direction.
     fn turn(&self, direction: &mut [Vec3], residual: &[Vec3], keep: f64) {
         for ((r, scale), &node) in residual.iter().zip(&self.scale).zip(&self.free) {
             let d = &mut direction[node as usize];

@@ -1,7 +1,7 @@
 //! Hexahedral meshes and finite elements, independent of knees.
 //!
-//! Lengths are in whatever unit the mesh is in, and forces and moduli in units that go with it; condyle uses
-//! millimetre, newton and MPa.
+//! Lengths are in the unit of the mesh, and forces and moduli in consistent units; condyle uses millimetre, newton
+//! and MPa.
 //!
 //! The top of a block of two bricks, pressed down by a tenth of its height; the layer between follows:
 //!

@@ -7,7 +7,7 @@ use crate::{
     stress::{Strain, Stress},
 };
 
-/// A material of small strains, of which elastic stiffness is a bound: what yields is softer.
+/// A material under small strains whose stiffness never exceeds the elastic one: yielding only softens it.
 ///
 /// The elements ask every Gauss point for its response; a new material is one file with an implementation of this
 /// trait and of [`MaterialPoint`]. The solvers factor the elastic stiffness once and correct it where the response is
@@ -37,10 +37,10 @@ pub trait MaterialPoint: Copy + Debug + Default + PartialEq {
     /// The count of their numbers there.
     const NUMBERS: usize;
 
-    /// Returns the part of the strain that needs no stress.
+    /// Returns the stress-free part of the strain.
     fn eigenstrain(&self) -> Strain;
 
-    /// Tries another such strain, with all else as it is.
+    /// Replaces that strain, without changing the other variables.
     fn set_eigenstrain(&mut self, strain: Strain);
 
     /// Returns the accumulated equivalent plastic strain, which never falls.
@@ -63,7 +63,7 @@ pub struct Response<P> {
     pub stress: Stress,
     /// The internal variables if the load is accepted.
     pub point: P,
-    /// The loss of stiffness against elastic, if the point yields.
+    /// The loss of stiffness relative to the elastic one, if the point yields.
     pub softening: Option<Softening>,
 }
 

@@ -9,7 +9,7 @@ use crate::Vec3;
 
 /// A mesh of 8-node hexahedra.
 ///
-/// Clones share the numbers of the nodes, which stay when nodes move.
+/// Clones share the node numbers of the elements, which do not change when nodes move.
 #[derive(Clone, Debug, PartialEq)]
 pub struct HexMesh {
     /// Node positions.
@@ -58,7 +58,7 @@ impl HexMesh {
 
     /// Returns for each quad whether another hexahedron shares it.
     ///
-    /// Every quad is compared with those before it that have the same lowest node: a few.
+    /// Every quad is compared with the few earlier quads that have the same lowest node.
     fn shared_quads(&self) -> Vec<bool> {
         // Chained lists in two flat arrays: several times faster than a map of sorted quads.
         const NONE: u32 = u32::MAX;
@@ -81,7 +81,7 @@ impl HexMesh {
         is_shared
     }
 
-    /// Returns a quad by its number: six to an element.
+    /// Returns a quad by its number; each element has six.
     fn quad(&self, number: usize) -> [u32; 4] {
         let (hex, face) = (number / HEX_FACES.len(), number % HEX_FACES.len());
         HEX_FACES[face].map(|corner| self.hexes[hex][corner])
@@ -161,8 +161,8 @@ impl HexMesh {
     /// Returns the scaled Jacobian of every element, the smallest over its eight corners: 1 for a brick, 0 or less
     /// where the element is flat or inverted at a corner.
     ///
-    /// At each corner with edges $e, f, h$ it is $e \cdot (f \times h)/(|e| |f| |h|)$. Taken to the end it panics
-    /// if an element names a node that there is not.
+    /// At each corner with edges $e, f, h$ it is $e \cdot (f \times h)/(|e| |f| |h|)$. The iterator panics at an
+    /// element that names a missing node.
     pub fn qualities(&self) -> impl Iterator<Item = f64> + '_ {
         self.hexes.chunks(LANES).flat_map(|hexes| {
             let at = |corner: usize| self.gathered(hexes, corner);
@@ -183,7 +183,7 @@ impl HexMesh {
         self.qualities().fold(f64::INFINITY, f64::min)
     }
 
-    /// One corner of up to four hexahedra; the last stands in for those that are missing.
+    /// Returns one corner of up to four hexahedra; the last one replaces missing ones.
     #[inline(always)]
     fn gathered(&self, hexes: &[[u32; 8]], corner: usize) -> Vec3x4 {
         let at = |lane: usize| &self.nodes[hexes[lane.min(hexes.len() - 1)][corner] as usize];
@@ -241,10 +241,10 @@ fn cross(a: &Vec3x4, b: &Vec3x4) -> Vec3x4 {
 const SIGNS: [[f64; 2]; 4] = [[-1., -1.], [1., -1.], [1., 1.], [-1., 1.]];
 
 impl HexMesh {
-    /// Forces on nodes that do the work of a traction on some quads; a node comes once for every quad.
+    /// Returns the nodal forces that are equivalent to a traction on some quads; a node occurs once for every quad.
     ///
-    /// `traction`: force an area by place and by unit normal, which for [`Self::boundary_quads`] is outward, so that a
-    /// pressure p is `-n * p`. Two by two points of Gauss on each bilinear quad.
+    /// `traction`: force per area as a function of place and unit normal, which for [`Self::boundary_quads`] is
+    /// outward, so that a pressure p is `-n * p`. Two by two points of Gauss on each bilinear quad.
     ///
     /// # Panics
     /// If a quad names a missing node.

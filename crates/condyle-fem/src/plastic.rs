@@ -134,7 +134,7 @@ pub struct Hardening {
     kinematic_modulus: f64,
 }
 
-/// A hardening curve that no material has.
+/// A hardening curve that is physically impossible.
 #[derive(Clone, Debug, Error, PartialEq)]
 #[error("{problem}")]
 pub struct HardeningError {

@@ -18,14 +18,16 @@ use crate::{
     stress::Stress,
 };
 
-/// Force left over, as part of the forces of loads, elements and plastic strains on nodes, at which there is balance.
+/// Residual force at which the solid counts as balanced, as part of the forces of loads, elements and plastic strains
+/// on nodes.
 const BALANCED: f64 = 1e-9;
 
-/// Maximum number of Newton iterations; the method doubles its digits once it is near, so more are of no use.
+/// Maximum number of Newton iterations; the number of correct digits doubles near the solution, so that further
+/// iterations are of no use.
 const MAX_ITERATIONS: usize = 40;
 
-/// Part of the energy of what is left over at which the equations of a Newton step are solved: Newton's
-/// method then gains four digits a step, once near.
+/// Part of the energy of the residual at which the equations of a Newton step count as solved: near the solution,
+/// Newton's method then gains four digits per step.
 const SOLVED: f64 = 1e-8;
 
 /// Maximum number of steps of conjugate gradients for a Newton step.
@@ -70,7 +72,7 @@ pub enum PlasticError {
     NoBalance {
         /// Iterations done.
         iterations: usize,
-        /// Force left over, as part of the forces of the elements.
+        /// Residual force, as part of the forces of the elements.
         left: f64,
     },
     /// The state belongs to another mesh.
@@ -109,7 +111,7 @@ struct Balance<P> {
 struct Yielding {
     element: usize,
     stiffness: Stiffness,
-    /// The elastic stiffness of its nodes less this one.
+    /// The elastic stiffness of its nodes less the present one.
     lost: NodalStiffness,
 }
 
@@ -145,7 +147,7 @@ impl<M: Material> PlasticSolid<M> {
     /// The state is not changed: a caller that accepts the load continues from the state in the solution.
     ///
     /// # Errors
-    /// If there is no balance, or the state is of another mesh.
+    /// If no balance is found, or the state belongs to another mesh.
     ///
     /// # Panics
     /// If there is no such node.
@@ -175,7 +177,7 @@ impl<M: Material> PlasticSolid<M> {
         for iterations in 0..MAX_ITERATIONS {
             let balance = self.balance(&displacements, &modes, before);
             let residual = self.residual(external, &balance);
-            // The larger scale: at rest no stress is left, but rounding of the plastic forces is.
+            // The larger scale: without load there is no stress, but rounding of the plastic forces remains.
             let size = balance.size2.max(size2).sqrt();
             let modal2: f64 = balance.modal.iter().map(Modes::norm_squared).sum();
             left = dot(&residual, &residual).sqrt().max(modal2.sqrt()) / size;
@@ -292,7 +294,7 @@ impl<M: Material> PlasticSolid<M> {
         if yielding.is_empty() {
             return (direction, 1);
         }
-        // Elastic forces of the direction: kept besides it, so that none has to be computed.
+        // The elastic forces of the direction are updated with it, so that they need not be computed.
         let mut elastic_forces = residual.clone();
         let mut energy = dot(&residual, &direction);
         let enough = SOLVED * energy;
@@ -337,7 +339,7 @@ impl<M: Material> PlasticSolid<M> {
         forces
     }
 
-    /// Moves the modes on with the nodes.
+    /// Updates the modes for a motion of the nodes.
     fn follow(&self, step: &[Vec3], balance: &Balance<M::Point>, modes: &mut [Modes]) {
         let mut yielding = balance.yielding.iter().peekable();
         for (e, hex) in self.solid.mesh().hexes.iter().enumerate() {

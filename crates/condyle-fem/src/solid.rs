@@ -25,7 +25,7 @@ pub struct ElasticSolid {
 /// A solid that cannot be solved.
 #[derive(Clone, Debug, Error, PartialEq)]
 pub enum SolidError {
-    /// No material has these elastic constants.
+    /// The elastic constants are impossible.
     #[error(transparent)]
     Elastic(#[from] ElasticError),
     /// An element or a support names a node that the mesh does not have.
@@ -76,7 +76,7 @@ impl ElasticSolid {
         Self::with_supports(mesh, elastic, held)
     }
 
-    /// Returns a solid whose nodes cannot move along some axes, as on a plane of symmetry; a node that comes more
+    /// Returns a solid whose nodes cannot move along some axes, as on a plane of symmetry; a node that occurs more
     /// than once is held along all of its axes.
     ///
     /// # Errors
@@ -131,7 +131,7 @@ impl ElasticSolid {
 
     /// Returns the displacement of all nodes under forces on nodes; a node may come more than once.
     ///
-    /// A force along a direction that is held goes into the support.
+    /// The support carries a force along a held direction.
     ///
     /// # Panics
     /// If there is no such node.
@@ -161,7 +161,7 @@ impl ElasticSolid {
         displacements
     }
 
-    /// Returns the part of a force on a node that does not go into its support.
+    /// Returns the part of a force on a node that its support does not carry.
     pub(crate) fn felt(&self, node: u32, force: Vec3) -> Vec3 {
         let held = self.held[node as usize];
         Vec3::from_fn(|i, _| if held[i] { 0.0 } else { force[i] })

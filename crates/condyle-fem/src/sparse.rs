@@ -13,8 +13,8 @@ use crate::element::NodalStiffness;
 use dissection::Group;
 use tiles::{Front, Layout, TILE, Triangle};
 
-/// A pivot below this part of the stiffness that its freedom began with is none: rounding leaves some
-/// 1e-15 of it where a rigid motion is free, and the most slender solids above 1e-9.
+/// Ratio of a pivot to the assembled stiffness of its freedom below which the pivot counts as zero: rounding leaves
+/// about 1e-15 if a rigid motion is free, and the most slender solids more than 1e-9.
 const MIN_PIVOT: f64 = 1e-11;
 
 /// The multifrontal Cholesky factor of a stiffness.
@@ -30,7 +30,7 @@ pub(crate) struct Factor {
 /// The remainder that a group leaves to the group above.
 struct Remainder {
     triangle: Triangle,
-    /// Rows before those of the boundary.
+    /// Number of rows before those of the boundary.
     columns: usize,
 }
 
@@ -44,15 +44,15 @@ struct Assembly<'a, S> {
     rows: Vec<usize>,
     /// Stiffness of every freedom as it was assembled.
     diagonal: Vec<f64>,
-    /// Memory of fronts that are done with.
+    /// Memory of finished fronts, for reuse.
     spare: Vec<Vec<f64x4>>,
 }
 
 impl Factor {
     /// Factors the sum of the stiffnesses of all elements.
     ///
-    /// `held`: directions in which each node cannot move; where it is not held in all, they become freedoms
-    /// that nothing touches.
+    /// `held`: directions in which each node cannot move; if a node is not held in all directions, they become
+    /// uncoupled freedoms.
     ///
     /// # Errors
     /// A node that can move without force.
@@ -101,14 +101,14 @@ impl Factor {
 }
 
 impl<S: FnMut(usize) -> NodalStiffness> Assembly<'_, S> {
-    /// Returns the front of a group before its elimination.
+    /// Assembles the front of a group before its elimination.
     fn front(
         &mut self,
         group: &Group,
         layout: &Layout,
         left: &mut [Option<Remainder>],
     ) -> Triangle {
-        // Thousands of fronts of changing size: their memory goes round.
+        // There are thousands of fronts of different sizes, so their memory is reused.
         let memory = self.spare.pop().unwrap_or_default();
         let mut triangle = Triangle::zeros(layout.rows, memory);
         for (i, place) in group.own.clone().enumerate() {
@@ -134,7 +134,7 @@ impl<S: FnMut(usize) -> NodalStiffness> Assembly<'_, S> {
         triangle
     }
 
-    /// Rows of own freedoms that nothing touches: held ones, and those that fill a tile up.
+    /// Returns the rows of uncoupled own freedoms: held ones, and those that pad a tile.
     fn untouched(&self, group: &Group, layout: &Layout) -> Vec<usize> {
         let nodes = group.own.clone().map(|p| self.dissection.order[p as usize]);
         let held = nodes.flat_map(|node| self.held[node as usize]).enumerate();
@@ -164,7 +164,7 @@ impl<S: FnMut(usize) -> NodalStiffness> Assembly<'_, S> {
         }
     }
 
-    /// Adds what a child left on its boundary.
+    /// Adds the remainder of a child on its boundary.
     fn add_remainder(&self, remainder: &Remainder, boundary: &[u32], triangle: &mut Triangle) {
         let freedoms = boundary.iter().flat_map(|&place| {
             let row = self.rows[place as usize];
@@ -197,7 +197,7 @@ impl<const W: usize> Rhs<W> {
     /// The number of columns side by side.
     pub(crate) const COLUMNS: usize = 4 * W;
 
-    /// Of zeros.
+    /// Creates columns of zeros.
     pub(crate) fn new(freedoms: usize) -> Self {
         Self {
             rows: vec![[f64x4::ZERO; W]; freedoms],
@@ -219,7 +219,7 @@ impl<const W: usize> Rhs<W> {
 type Rows<const W: usize> = [[f64x4; W]; TILE];
 
 impl Factor {
-    /// Displacements in place of forces.
+    /// Replaces forces by displacements.
     pub(crate) fn solve<const W: usize>(&self, x: &mut Rhs<W>) {
         let mut front = Vec::new();
         for group in 0..self.fronts.len() {
@@ -230,10 +230,10 @@ impl Factor {
         }
     }
 
-    /// Displacements in place of forces, for some right-hand sides, where they are asked for.
+    /// Replaces forces by displacements, for some right-hand sides, in the groups where these are needed.
     ///
-    /// `loaded`: of every right-hand side the groups with forces, and all groups above those.
-    /// `wanted`: groups whose displacements are asked for, and all groups above those; other rows are undefined.
+    /// `loaded`: for every right-hand side, the groups with forces and all groups above those. `wanted`: groups whose
+    /// displacements are needed, and all groups above those; other rows are undefined.
     pub(crate) fn solve_some<const W: usize>(
         &self,
         xs: &mut [Rhs<W>],
@@ -259,8 +259,8 @@ impl Factor {
         }
     }
 
-    /// Solves half way for right-hand sides that only these groups feel, with all groups above those, ascending:
-    /// the rows of these, one after the other. Leaves zeros behind.
+    /// Solves half way for right-hand sides that affect only these groups, which include all groups above them,
+    /// ascending; returns their rows one after the other, and resets them to zero.
     pub(crate) fn solve_half<const W: usize>(
         &self,
         groups: &[usize],

@@ -19,7 +19,7 @@ const SAME_RESULT: f64 = 1e-12;
 pub(crate) enum Extrapolation {
     /// The differences shrink, so that the results tend to a value.
     Converging {
-        /// Observed order: the error goes with the step to this power.
+        /// Observed order: the error is proportional to the step to this power.
         order: f64,
         /// The limit of the results, in their unit.
         extrapolated: f64,

@@ -57,8 +57,8 @@ impl CaseReader {
 
     /// Reads the case file at `path` with some of its values changed, the last of several for the same key.
     ///
-    /// Messages show the changes as lines below the file. If a choice such as a wear law is set, the file's keys that do
-    /// not go with it are left out, of which building the case warns.
+    /// Messages show the changes as lines below the file. If a choice such as a wear law is set, the keys of the file
+    /// that do not apply to it are left out, with a warning when the case is built.
     ///
     /// # Errors
     /// As [`Self::read`]; a name that no key has, or several.

@@ -1,14 +1,14 @@
 //! The order in which nodes are eliminated: nested dissection by their places.
 //!
-//! A set of nodes is cut in two across its longest side; the nodes of the one half that touch the other
-//! part them, and come last. What is left of the halves is cut again (George 1973). So the halves know
-//! nothing of each other, and little fills in.
+//! A set of nodes is cut in two across its longest side; the nodes of one half that touch the other half separate
+//! them, and come last. The remaining halves are cut again (George 1973). So the halves are uncoupled, and there is
+//! little fill-in.
 
 use std::ops::Range;
 
 use crate::{Vec3, mesh::HexMesh};
 
-/// A set of so few nodes is not cut again.
+/// Largest number of nodes of a set that is not cut again.
 const SMALL: usize = 8;
 
 /// Place of a node that is held, and so is not eliminated.
@@ -18,7 +18,7 @@ const HELD: u32 = u32::MAX;
 pub(crate) struct Group {
     /// Places in the order.
     pub(crate) own: Range<u32>,
-    /// Later places that feel the elimination, ascending.
+    /// Later places that the elimination affects, ascending.
     pub(crate) boundary: Vec<u32>,
     /// Groups whose next later group this is.
     pub(crate) children: Vec<usize>,

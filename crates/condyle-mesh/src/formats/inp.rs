@@ -1,4 +1,4 @@
-//! Abaqus input files, in: the mesh, its sets and its element surfaces; other keywords are passed over.
+//! Reading of Abaqus input files: the mesh, its sets and its element surfaces; other keywords are ignored.
 
 use std::path::Path;
 
@@ -8,7 +8,7 @@ use super::{
     text::{At, Rows, decode},
 };
 
-/// Keywords that make or move nodes and elements in ways that the reader does not follow.
+/// Keywords that create or move nodes and elements in ways that the reader does not support.
 const NOT_FOLLOWED: [&str; 10] = [
     "INCLUDE",
     "NGEN",
@@ -62,7 +62,7 @@ pub(crate) fn parse(path: &Path, bytes: &[u8]) -> Result<HexFile, MeshFileError>
             _ => {}
         }
     }
-    // A surface may stand before the sets it is made of.
+    // A surface may precede the sets that it consists of.
     for keyword in keywords.iter().filter(|keyword| keyword.name == "SURFACE") {
         model.surface(keyword)?;
     }

@@ -166,7 +166,8 @@ pub(crate) fn parse_xml<'x>(path: &Path, xml: &'x str) -> Result<Document<'x>, M
     })
 }
 
-/// Splits a file into its XML, the bytes appended to it, and whether those are raw and so not even text.
+/// Splits a file into its XML and the bytes appended to it; the last value is whether these are raw bytes rather than
+/// text.
 fn split(bytes: &[u8]) -> (String, Option<&[u8]>, bool) {
     let find = |from: usize, pattern: &[u8]| {
         let mut windows = bytes[from..].windows(pattern.len());
@@ -183,7 +184,7 @@ fn split(bytes: &[u8]) -> (String, Option<&[u8]>, bool) {
     (xml, Some(&bytes[data_start..]), is_raw)
 }
 
-/// Returns the start of a tag that is longer than any of a mesh.
+/// Returns the start of a tag that is longer than any tag of a mesh file.
 fn long_tag(xml: &str) -> Option<usize> {
     const NO_TAGS: [(&str, &str); 3] = [("<!--", "-->"), ("<![CDATA[", "]]>"), ("<?", "?>")];
     let mut at = 0;

@@ -1,9 +1,8 @@
 //! VTK unstructured grids (`.vtu`), out: appended raw bytes, the same bytes for the same mesh.
 //!
-//! The blocks of bytes stand in the opposite order to the arrays that name them by their offsets.
-//! meshio 5.3 takes block after block, gives the first array that has the block's offset, and lets
-//! the array have another offset from then on, which may well be that of a later block. Where the
-//! array of the later block stands first, it is found first.
+//! The blocks of bytes are in the opposite order to the arrays that refer to them by their offsets. meshio 5.3 reads
+//! block after block, assigns each to the first array with the block's offset, and then changes the offset of that
+//! array, possibly to that of a later block. If the array of the later block comes first, meshio finds it first.
 
 use condyle_fem::HexMesh;
 

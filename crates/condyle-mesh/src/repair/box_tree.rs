@@ -92,15 +92,15 @@ impl BoxTree {
         number as u32
     }
 
-    /// Pairs and boxes that are compared, per triangle and at least: the surface of a scanned implant needs
-    /// some fifty per triangle, a flat bottom of long triangles between its 1500 vertices needs 15 million, and a
+    /// Limits on the compared pairs and boxes, per triangle and in all cases: the surface of a scanned implant needs
+    /// about fifty per triangle, a flat bottom of long triangles between its 1500 vertices needs 15 million, and a
     /// file of 1 MB takes less than a second.
     const MAX_LOOKS: (usize, usize) = (400, 20_000_000);
 
     /// Calls `visit` with each pair of different triangles whose boxes meet, once, until it breaks.
     ///
-    /// Gives up on triangles that all lie on one another. Returns two triangles at the place where a search ended
-    /// before all pairs were visited.
+    /// The search is abandoned if all triangles lie on one another. Returns two triangles at the place where a search
+    /// ended before all pairs were visited.
     pub(super) fn for_close_pairs(
         &self,
         mut visit: impl FnMut(usize, usize) -> ControlFlow<()>,

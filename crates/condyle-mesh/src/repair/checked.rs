@@ -21,7 +21,7 @@ pub struct CheckedMesh {
     pub mesh: TriangleMesh,
     /// True if no edge has only one triangle.
     pub closed: bool,
-    /// True if the mesh was inside-out and has been turned. An open surface has no known outside: this stays
+    /// True if the mesh was inside-out and has been reversed. The outside of an open surface is unknown: then this is
     /// false, and the caller decides.
     pub turned_round: bool,
     /// Number of triangles turned to agree with the majority of their neighbours.
@@ -135,12 +135,13 @@ impl Checks {
     }
 }
 
-/// Triangles per vertex beyond which they are no surface, not even one with doubled faces: a surface has two.
+/// Number of triangles per vertex beyond which a mesh is not a surface, not even one with doubled faces: a surface
+/// has two.
 const MAX_TRIANGLES_PER_VERTEX: usize = 16;
-/// So few triangles take no time, whatever they are.
+/// Number of triangles up to which any mesh is checked in negligible time.
 const FEW_TRIANGLES: usize = 1000;
 
-/// Refuses a mesh of many times more triangles than vertices before any other step, since it would take for ever.
+/// Rejects a mesh with many more triangles than vertices before any other step, since its check would not end.
 fn refuse_tangles(mesh: &TriangleMesh) -> Result<(), RepairError> {
     let max = FEW_TRIANGLES + MAX_TRIANGLES_PER_VERTEX * mesh.vertices.len();
     if mesh.triangles.len() <= max {

@@ -114,10 +114,9 @@ type Corners = [Vec3; 3];
 
 /// Returns the shortest shift of one of two triangles that parts them, if it is more than `min_depth` >= 0.
 ///
-/// By the separating-axis theorem the shortest such shift is along the normal of one of the two or
-/// across an edge of each (eleven directions). It is 0 for triangles that touch or lie in one
-/// plane, so the test needs no exact arithmetic: rounding moves the depth by some 1e-16 of the
-/// coordinates.
+/// By the separating-axis theorem the shortest such shift is along the normal of one of the two or across an edge of
+/// each (eleven directions). It is 0 for triangles that touch or lie in one plane, so the test needs no exact
+/// arithmetic: rounding moves the depth by about 1e-16 of the coordinates.
 fn depth_above(min_depth: f64, first: &Corners, second: &Corners) -> Option<f64> {
     let origin = first[0];
     let [first, second] = [first, second].map(|corners| corners.map(|corner| corner - origin));

@@ -113,8 +113,8 @@ impl KnownCompliance {
     }
 }
 
-/// A place counts as shaken down if less plastic strain than this accumulates in a cycle: the flow of an increment is found
-/// to some 3e-6.
+/// A place counts as shaken down if less plastic strain than this accumulates in a cycle: the flow of an increment is
+/// found to about 3e-6.
 const SHAKEN_DOWN: f64 = 1e-5;
 
 /// The state below the surface of an insert that is a solid.

@@ -8,8 +8,8 @@ use crate::number::{F64x4, Number};
 
 /// Number of changes that are stored side by side.
 const SIDES: usize = ROWS;
-/// Nodes per change at which the matrix is factored again: factoring takes n^3/6 products, and each change at least
-/// n^2/2.
+/// Number of nodes per change below which the matrix is factored again: factoring takes n^3/6 products, and each
+/// change at least n^2/2.
 const NODES_A_CHANGE: usize = 4;
 /// Bounds on the number of changes beyond which the matrix is factored again.
 const MAX_CHANGES: [usize; 2] = [32, 320];
