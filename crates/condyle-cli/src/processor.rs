@@ -2,7 +2,7 @@
 
 use std::process::ExitCode;
 
-/// Returns an error and its exit code where this machine's processor lacks what the build asks for.
+/// Returns an error and its exit code if the processor lacks instructions that the build requires.
 ///
 /// Without this look it would stop at the first vector with "illegal instruction". The standard library's
 /// own look answers from the build, and not from the processor.

@@ -1,4 +1,4 @@
-//! `condyle study`, and the studies with plans made ready: `converge`, `sensitivity` and `uncertainty`.
+//! `condyle study`, and the studies with ready-made plans: `converge`, `sensitivity` and `uncertainty`.
 
 use std::{
     collections::BTreeSet,
@@ -122,7 +122,7 @@ fn answer_in_memory<T: serde::Serialize>(
     }
 }
 
-/// Returns the number of threads asked for, or that of the machine's cores.
+/// Returns the requested number of threads, or the number of cores.
 pub fn threads(asked_for: Option<u16>) -> usize {
     let cores = || thread::available_parallelism().map_or(1, usize::from);
     asked_for.map_or_else(cores, usize::from)

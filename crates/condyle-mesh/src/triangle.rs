@@ -59,7 +59,7 @@ pub(crate) fn height_over([a, b, c]: &[Vec3; 3], (x, z): (f64, f64)) -> Option<f
 
 /// Returns the distance along a ray to a triangle, if it hits (Moller & Trumbore 1997).
 pub fn hit([a, b, c]: &[Vec3; 3], from: &Vec3, direction: &Vec3) -> Option<f64> {
-    // A little generous at the edges, so that no ray slips between two triangles.
+    // With a small tolerance at the edges, so that no ray passes between two triangles.
     const EDGE: f64 = 1e-9;
     let (ab, ac) = (b - a, c - a);
     let across = direction.cross(&ac);

@@ -26,7 +26,7 @@ pub struct Summary {
     scalars: BTreeMap<&'static str, f64>,
     /// Reasons to doubt the numbers, the worst first.
     pub plausibility: Vec<PlausibilityWarning>,
-    /// Estimated discretisation errors; none if the case does not ask for them.
+    /// Estimated discretisation errors; none if the case does not request them.
     pub error: Option<ErrorEstimate>,
     /// Wear by every law for the same histories, that of the run first; only that one moved the surface.
     pub wear_laws: Vec<LawWear>,

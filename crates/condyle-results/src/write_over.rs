@@ -51,7 +51,7 @@ impl ResultsFolder {
     /// again.
     ///
     /// # Errors
-    /// Where the system refuses.
+    /// The system refuses to remove a file.
     pub fn clear(&self) -> Result<(), ResultsError> {
         for file in self.files_of_a_run() {
             remove(&file)?;

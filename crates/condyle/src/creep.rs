@@ -55,7 +55,7 @@ impl LeePienkowski {
         known: Known::Read,
     };
 
-    /// Returns J, the strain per MPa after so many minutes under load, 1/MPa.
+    /// Returns J, the strain per MPa after `minutes` under load, 1/MPa.
     pub fn compliance_per_mpa(&self, minutes: f64) -> f64 {
         if minutes <= 0.0 {
             return 0.0;

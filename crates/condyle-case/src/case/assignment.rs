@@ -108,7 +108,8 @@ impl Assignment {
     /// Sets the key at the dotted path `key` to the number written as `text`.
     ///
     /// # Errors
-    /// The text is no finite number. Whether the key exists and the number is in its range is checked when a case is read.
+    /// The text is not a finite number. Whether the key exists and the number is in its range is checked when a case
+    /// is read.
     pub fn number(key: &str, text: &str) -> Result<Self, AssignmentError> {
         let assignment = Self::new(key, text.trim());
         match assignment.as_number() {
@@ -141,7 +142,7 @@ impl Assignment {
         self.key.contains('.')
     }
 
-    /// Returns the same with the dotted path of its key in `case`.
+    /// Returns the assignment with the dotted path of its key in `case`.
     pub(super) fn placed_in(&self, case: &Case) -> Result<Self, AssignmentError> {
         Ok(Self::new(&case.path_of_key(&self.key)?, self.text.clone()))
     }
@@ -281,7 +282,8 @@ pub struct NumberKey {
 }
 
 impl Case {
-    /// Returns the dotted path of every key with its value, defaults too, in the order they are written.
+    /// Returns the dotted path of every key with its value, including defaults, in the order in which they are
+    /// written.
     pub(super) fn keys(&self) -> Vec<(String, toml::Value)> {
         let mut keys = Vec::new();
         add_keys(self.to_toml().parse().unwrap_or_default(), "", &mut keys);
@@ -294,7 +296,7 @@ impl Case {
         keys.find_map(|(key, value)| (key == path).then_some(value))
     }
 
-    /// Returns the number at the dotted `path`, defaults too.
+    /// Returns the number at the dotted `path`, which may be a default.
     pub fn number_at(&self, path: &str) -> Option<f64> {
         let value = self.value_at(path)?;
         value
@@ -302,8 +304,8 @@ impl Case {
             .or(value.as_integer().map(|whole| whole as f64))
     }
 
-    /// Returns the number at the dotted `path` as the case has it; of the processing of a waveform, which is no part of a
-    /// read case, as the file gives it.
+    /// Returns the number at the dotted `path` in the case; a number of the processing of a waveform, which is not
+    /// part of a read case, is that of the file.
     pub fn number_at_or_written(&self, path: &str) -> Option<f64> {
         let written = || {
             let text = self.origin.source.inner();
@@ -318,12 +320,12 @@ impl Case {
         self.number_at(path).or_else(written).or_else(default)
     }
 
-    /// Returns the word at the dotted `path`, defaults too.
+    /// Returns the word at the dotted `path`, which may be a default.
     pub fn word_at(&self, path: &str) -> Option<String> {
         self.value_at(path)?.as_str().map(str::to_owned)
     }
 
-    /// Returns true if the case has a key or a table at the dotted `path`, defaults too.
+    /// Returns true if the case has a key or a table at the dotted `path`, including defaults.
     pub fn has(&self, path: &str) -> bool {
         let path = current_path(path);
         let is_below = |(key, _): &(String, _)| {
@@ -333,7 +335,7 @@ impl Case {
         self.keys().iter().any(is_below)
     }
 
-    /// Returns every number of the case, defaults too, in the order they are written.
+    /// Returns every number of the case, including defaults, in the order in which they are written.
     pub fn number_keys(&self) -> Vec<NumberKey> {
         let numbers = self.keys().into_iter().filter_map(|(path, value)| {
             let is_whole = value.is_integer();

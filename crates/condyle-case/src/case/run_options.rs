@@ -29,7 +29,7 @@ impl Limits {
     /// Bytes of a node of the distance field of a femur in triangles, while that is made.
     pub const BYTES_OF_FIELD_NODE: f64 = 48.0;
 
-    /// Returns how many items of so many bytes fit into the memory.
+    /// Returns the number of items of `bytes_each` bytes that fit into the memory.
     pub(super) fn most(&self, bytes_each: f64) -> usize {
         (self.memory_gb * 1e9 / bytes_each) as usize
     }

@@ -24,12 +24,12 @@ pub struct Wear {
 /// A constant that a wear law cannot have.
 #[derive(Clone, Copy, Debug, PartialEq, Error)]
 pub enum ConstantError {
-    /// The law has none of that name.
+    /// The law has no constant with that name.
     #[error("the wear law \"{law}\" has no `{name}`; take a case with a law that has")]
     Unknown {
         /// Word of the law.
         law: &'static str,
-        /// The constant asked for.
+        /// The requested constant.
         name: &'static str,
     },
     /// A value outside its range.
@@ -124,7 +124,8 @@ impl Wear {
         }
     }
 
-    /// Returns true if the law of that word, with the constants of the case if it is the case's, is quoted from memory.
+    /// Returns true if the law with that word is quoted from memory; the law of the case is judged with the constants
+    /// of the case.
     pub fn is_approximate(&self, word: &str) -> bool {
         if word != self.kind.word {
             let other = self.offered.iter().find(|other| other.word == word);
@@ -137,7 +138,7 @@ impl Wear {
         self.kind.known == Known::Approximate || constants.any(is_from_memory)
     }
 
-    /// Returns every other law on offer, with the defaults of its constants.
+    /// Returns every other available law, with the defaults of its constants.
     pub(super) fn comparison_laws(&self) -> Vec<NamedLaw> {
         let others = self.offered.iter();
         let others = others.filter(|other| other.word != self.kind.word);

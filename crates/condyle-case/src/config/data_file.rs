@@ -19,15 +19,15 @@ use condyle_mesh::files::Files;
 #[cfg(feature = "file-system")]
 use condyle_mesh::files::path_from;
 
-/// A file that another names, and that was there when that one was read.
+/// A file that another file names, and that existed when the other was read.
 ///
-/// Two of them are equal if their paths are, wherever they are kept.
+/// Two files are equal if their paths are, whatever their storage.
 #[derive(Clone, Debug)]
 pub struct DataFile {
     files: Arc<dyn Files>,
     /// Absolute on a disk, its folder without `..` or links.
     path: PathBuf,
-    /// The path as a file that names it has it.
+    /// The path as written in the file that names it.
     written: PathBuf,
 }
 

@@ -66,8 +66,8 @@ pub(crate) fn set_value<'i>(
     }
 }
 
-/// Returns the table at a dotted path; with `place` a missing one is added, in place of a value that is no table, for the
-/// reader to report what it lacks.
+/// Returns the table at a dotted path; with `place`, a missing table is added and replaces a value that is not a
+/// table, so that the reader reports its missing entries.
 fn table_at<'a, 'i>(
     table: &'a mut DeTable<'i>,
     path: &str,

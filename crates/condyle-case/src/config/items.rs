@@ -1,4 +1,4 @@
-//! Entries of declared tables: the reader, the schema and the book know a table by them.
+//! Entries of declared tables: they define a table for the reader, the schema and the book.
 
 use super::key::{Key, Kind, WhereSilent};
 use super::log::Log;
@@ -12,7 +12,7 @@ pub(crate) enum Item {
     Key(Key),
     Choice(Choices),
     Table(TableItem),
-    /// Exactly one of these keys is to be given.
+    /// Exactly one of these keys must be given.
     OneOf(Vec<&'static str>),
     /// The first key needs the second.
     Needs(&'static str, &'static str),
@@ -158,7 +158,7 @@ pub(crate) fn check(section: &Section<'_>, items: &[Item], log: &mut Log<'_>) {
         valid.push(item);
         if let Item::Choice(choices) = item {
             let word = choices.word_in(section);
-            // With an unknown word, which is reported elsewhere, nothing tells which keys belong here.
+            // An unknown word is reported elsewhere; the keys that belong here are then unknown.
             let is_chosen = |offer: &&Offered| word.is_none_or(|word| word == offer.word);
             let offered = choices.offered.iter().filter(is_chosen);
             valid.extend(offered.flat_map(|offer| &offer.items));

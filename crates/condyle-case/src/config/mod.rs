@@ -1,7 +1,7 @@
 //! Files of keys and values: every key is declared once, read with the place of each problem, and written back.
 //!
-//! The layer knows no contents: cases, studies and measured data declare their own keys ([`Settings`]) and their own
-//! problems ([`Reason`]).
+//! The layer is independent of contents: cases, studies and measured data declare their own keys ([`Settings`]) and
+//! their own problems ([`Reason`]).
 
 mod columns;
 mod data_file;

@@ -26,7 +26,7 @@ pub(crate) fn read_source(files: &dyn Files, path: &Path) -> Result<Source, Faul
     }
 }
 
-/// A reason and where it stands in a text that is known from elsewhere.
+/// A reason and its place in a text that the context defines.
 #[derive(Clone, Debug)]
 pub(crate) struct Placed {
     pub span: Range<usize>,
@@ -40,7 +40,7 @@ impl Placed {
     }
 }
 
-/// One thing that is wrong, at its place.
+/// One problem, at its place.
 #[derive(Clone, Debug)]
 pub struct Problem {
     /// Description of the problem as data.
@@ -100,7 +100,7 @@ impl Problem {
         self.key.as_deref()
     }
 
-    /// Name of the file it is in.
+    /// Returns the name of the file that has the problem.
     pub fn file(&self) -> Option<&str> {
         self.source.as_ref().map(|source| source.name())
     }
@@ -114,7 +114,7 @@ impl fmt::Display for Problem {
 
 impl std::error::Error for Problem {}
 
-/// Everything that is wrong with a file and the files it names, in the order of the file.
+/// All problems of a file and of the files that it names, in the order of the file.
 #[derive(Clone, Debug)]
 pub struct Problems {
     problems: Vec<Problem>,

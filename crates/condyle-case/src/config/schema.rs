@@ -1,7 +1,7 @@
 //! Declared tables described: a page of the book in Markdown, and a JSON schema, draft 2020-12, with which editors complete
 //! keys and underline errors.
 //!
-//! The schema accepts every file that the reader accepts; the reader may refuse more.
+//! The schema accepts every file that the reader accepts; the reader may reject more.
 
 use std::collections::BTreeMap;
 use std::fmt::Write;

@@ -30,7 +30,7 @@ impl<'a> Section<'a> {
         }
     }
 
-    /// Returns the table `name` inside this one; reports a value that is no table.
+    /// Returns the table `name` inside this one; reports a value that is not a table.
     pub(crate) fn table(&self, name: &str, log: &mut Log<'_>) -> Self {
         let part = self.part(name);
         if let (Some(value), None) = (self.value(name), part.table) {
@@ -41,7 +41,7 @@ impl<'a> Section<'a> {
         part
     }
 
-    /// Returns the table `name` inside this one; an absent one where it is no table.
+    /// Returns the table `name` inside this one; an absent table if it is not a table.
     pub(crate) fn part(&self, name: &str) -> Self {
         let path = match self.path.as_str() {
             "" => name.to_owned(),
@@ -56,7 +56,7 @@ impl<'a> Section<'a> {
         }
     }
 
-    /// Returns the tables of the list `name` at the top of the file, or reports what it is instead.
+    /// Returns the tables of the list `name` at the top of the file, or reports a value of another type.
     pub(crate) fn list(&self, name: &str, log: &mut Log<'_>) -> Option<Vec<Self>> {
         let Some(value) = self.value(name) else {
             return Some(Vec::new());

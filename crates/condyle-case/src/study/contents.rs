@@ -49,7 +49,7 @@ pub struct Alternative {
 }
 
 impl Alternative {
-    /// Creates a design that no file describes.
+    /// Creates a design without a file.
     pub fn new(name: String, set: Vec<Assignment>) -> Self {
         let span = 0..0;
         Self { name, set, span }
@@ -69,7 +69,7 @@ impl Study {
     /// Creates a study of the case at `case_path` that no file describes; it varies nothing yet.
     ///
     /// # Errors
-    /// Everything that is wrong with the case.
+    /// The problems of the case.
     pub fn of_case(case_path: &Path, design: Design) -> Result<Self, Problems> {
         let cases = CaseReader::default();
         let outputs: Vec<_> = catalogue::outputs().collect();

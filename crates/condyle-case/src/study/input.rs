@@ -9,7 +9,8 @@ use super::reason::StudyReason;
 use crate::case::{Assignment, Case};
 use crate::config::{DataFile, Level, Levels, Log, Placed, Section, Settings, check};
 
-/// A normal input must be accepted up to this many standard deviations from its mean: of a million values 63 lie beyond.
+/// Deviation from the mean, in standard deviations, up to which a case must accept a normal input: of a million
+/// values 63 lie beyond.
 const NORMAL_REACH: f64 = 4.0;
 
 /// Up to this many levels, all are tried on the case.
@@ -140,7 +141,7 @@ impl Input {
         [low, high].map(|end| self.level(end)).to_vec()
     }
 
-    /// Returns a number as this input takes it.
+    /// Converts a number to a value of this input.
     pub fn level(&self, number: f64) -> Level {
         Level::Number(if self.is_whole {
             number.round()

@@ -33,7 +33,7 @@ impl Study {
     /// Reads the study file at `path` on the disk, and the case that it names; paths in each count from its folder.
     ///
     /// # Errors
-    /// Everything that is wrong with either, a key that the case does not have, and values that it does not take.
+    /// The problems of either file, a key that the case does not have, and values that it does not accept.
     pub fn read(path: &Path) -> Result<Self, Problems> {
         Self::read_in(Disk, path)
     }

@@ -1,4 +1,4 @@
-//! Dense triangles of numbers in tiles of four by four, and what is done to them.
+//! Dense triangular matrices in tiles of four by four, and the operations on them.
 //!
 //! Row `t` of tiles holds the columns from 0 on, each as the vector of its four rows. So a product of two
 //! rows of tiles runs through both in order, and nothing is repacked.
@@ -29,7 +29,7 @@ fn start_of_row(t: usize) -> usize {
 }
 
 impl Triangle {
-    /// Of zeros, in memory that was another's.
+    /// Creates a triangle of zeros in reused memory.
     pub(crate) fn zeros(size: usize, mut memory: Vec<f64x4>) -> Self {
         memory.clear();
         memory.resize(start_of_row(size / TILE), f64x4::ZERO);
@@ -39,7 +39,7 @@ impl Triangle {
         }
     }
 
-    /// Its memory, for another.
+    /// Returns its memory, for reuse.
     pub(crate) fn into_memory(self) -> Vec<f64x4> {
         self.vectors
     }
@@ -49,21 +49,21 @@ impl Triangle {
         &self.vectors[start_of_row(t)..start_of_row(t + 1)]
     }
 
-    /// Returns the number at a row and a column not after it.
+    /// Returns the number at a row and a column, which must not exceed the row.
     #[inline(always)]
     pub(crate) fn at_mut(&mut self, row: usize, column: usize) -> &mut f64 {
         let vector = &mut self.vectors[start_of_row(row / TILE) + column];
         &mut vector.as_mut_array()[row % TILE]
     }
 
-    /// Returns the number at a row and a column not after it.
+    /// Returns the number at a row and a column, which must not exceed the row.
     #[inline(always)]
     pub(crate) fn at(&self, row: usize, column: usize) -> f64 {
         self.vectors[start_of_row(row / TILE) + column].as_array()[row % TILE]
     }
 
-    /// Eliminates the first `columns`, a multiple of [`TILE`]: there stands the Cholesky factor then, with
-    /// the inverses on its diagonal, and in the rest what the elimination leaves.
+    /// Eliminates the first `columns`, a multiple of [`TILE`]: they then hold the Cholesky factor, with the inverses
+    /// on its diagonal, and the rest holds the remainder of the elimination.
     ///
     /// `least`: pivots that are too small for each column.
     ///
@@ -127,7 +127,7 @@ impl Triangle {
         }
     }
 
-    /// Cholesky factor of a tile on the diagonal.
+    /// Factors a tile on the diagonal.
     fn factor_tile(&mut self, tile: usize, least: &[f64]) -> Result<(), usize> {
         let start = TILE * tile;
         for j in start..start + TILE {
@@ -192,8 +192,8 @@ fn products<const N: usize>(strips: [&[f64x4]; N], other: &[f64x4]) -> [[f64x4; 
 
 /// Columns of the factor that a group eliminates, in rows of tiles as in a [`Triangle`].
 ///
-/// The rows are the freedoms of the group's own nodes, filled up to whole tiles by freedoms that nothing
-/// touches, and then those of its boundary, filled up too.
+/// The rows are the freedoms of the group's own nodes, padded to whole tiles by uncoupled freedoms, and then those of
+/// its boundary, also padded.
 pub(crate) struct Front {
     /// Freedoms eliminated, a multiple of [`TILE`].
     pub(crate) columns: usize,

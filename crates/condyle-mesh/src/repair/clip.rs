@@ -8,10 +8,11 @@ use super::{
 };
 use crate::{Vec3, triangle_mesh::TriangleMesh};
 
-/// Vertices this near to the height are moved onto it, mm: a thousandth of the wear of a test. Otherwise slivers remain.
+/// Distance from the height within which vertices are moved onto it, mm: a thousandth of the wear of a test.
+/// Otherwise slivers remain.
 const ON_MM: f64 = 1e-4;
 
-/// Cuts away what lies below a height along y, and closes the cut with triangles that face down.
+/// Removes the part of a mesh below a height along y, and closes the cut with triangles that face down.
 pub(super) fn clip_below(mesh: &TriangleMesh, height_mm: f64) -> TriangleMesh {
     let mut vertices = mesh.vertices.clone();
     for at in &mut vertices {

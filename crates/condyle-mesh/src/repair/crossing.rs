@@ -7,14 +7,14 @@ use crate::{Vec3, triangle_mesh::TriangleMesh};
 
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(super) struct Crossings {
-    /// Pairs of triangles whose cut is no wrinkle, rising, each with a point of the cut, mm.
+    /// Pairs of triangles whose cut is not a wrinkle, ascending, each with a point of the cut, mm.
     pub(super) found: Vec<([usize; 2], Vec3)>,
     /// The place where the search ended because too many triangles lie on one another.
     pub(super) gave_up_at_mm: Option<Vec3>,
     pub(super) wrinkles: usize,
 }
 
-/// Shift that parts two triangles, over the shorter of their longest edges, below which they only touch.
+/// Shift that separates two triangles, over the shorter of their longest edges, below which they only touch.
 ///
 /// Single-precision coordinates of 100 mm are rounded to 8e-6 mm, which is 2e-4 of an edge of
 /// 0.04 mm, the shortest of the real meshes at hand.
@@ -22,22 +22,22 @@ const MIN_DEPTH: f64 = 1e-3;
 
 /// Depth over the diagonal of the mesh up to which neighbours that cross are a wrinkle.
 ///
-/// Remeshed scans have such knots of a few elements (up to 0.1 mm on an insert of 97 mm); the
-/// surface around is sound, and a contact patch does not feel them.
+/// Remeshed scans have such knots of a few elements (up to 0.1 mm on an insert of 97 mm); the surface around is
+/// sound, and they do not affect a contact patch.
 const WRINKLE_DEPTH: f64 = 1.0 / 500.0;
 
-/// The search ends at this many crossings: they are no flaw of a surface but no surface.
+/// Number of crossings at which the search ends: the mesh is then not a surface with flaws, but no surface at all.
 const MAX_CROSSINGS: usize = 10_000;
 
-/// Part of a triangle left out at the corner that it shares with another, where the two touch rightly.
+/// Part of a triangle that is left out at the corner that it shares with another, where the two must touch.
 const LEFT_OUT: f64 = 0.05;
 
 /// Finds where a triangle mesh passes through itself.
 ///
-/// Two triangles cross if only a shift of more than [`MIN_DEPTH`] parts them. Those that share an edge or overlap in
-/// one plane do not; those that share a corner are compared without the region of that corner. A pair is a wrinkle if
-/// a corner of one is a corner of the other or joined to one by an edge, and it is no deeper than [`WRINKLE_DEPTH`]:
-/// two sheets that cross are never such neighbours all along.
+/// Two triangles cross if only a shift of more than [`MIN_DEPTH`] separates them. Those that share an edge or overlap
+/// in one plane do not; those that share a corner are compared without the region of that corner. A pair is a wrinkle
+/// if a corner of one is a corner of the other or joined to one by an edge, and it is no deeper than
+/// [`WRINKLE_DEPTH`]: two sheets that cross are not such neighbours everywhere.
 pub(super) fn crossings(mesh: &TriangleMesh) -> Crossings {
     let mut pairs: Vec<([usize; 2], f64)> = Vec::new();
     let gave_up = BoxTree::new(mesh).for_close_pairs(|one, other| {
@@ -112,7 +112,7 @@ fn cut_corner(corners: &mut Corners, corner: usize) {
 
 type Corners = [Vec3; 3];
 
-/// Returns the shortest shift of one of two triangles that parts them, if it is more than `min_depth` >= 0.
+/// Returns the shortest shift of one of two triangles that separates them, if it is more than `min_depth` >= 0.
 ///
 /// By the separating-axis theorem the shortest such shift is along the normal of one of the two or across an edge of
 /// each (eleven directions). It is 0 for triangles that touch or lie in one plane, so the test needs no exact
@@ -135,7 +135,7 @@ fn depth_above(min_depth: f64, first: &Corners, second: &Corners) -> Option<f64>
         if length_squared <= 1e-20 * scale {
             continue;
         }
-        // Shift along the axis, times its length, that parts the shadows of the two triangles.
+        // Shift along the axis, times its length, that separates the projections of the two triangles.
         let [(low, high), (other_low, other_high)] = [&first, &second].map(|corners| {
             let [a, b, c] = corners.each_ref().map(|corner| corner.dot(&axis));
             (a.min(b).min(c), a.max(b).max(c))
@@ -163,7 +163,7 @@ fn edges([a, b, c]: &Corners) -> [Vec3; 3] {
 /// Returns a point that two crossing triangles share: an edge of one pierces the other there.
 fn meeting_point(first: &Corners, second: &Corners) -> Vec3 {
     let pierced = piercing(first, second).or_else(|| piercing(second, first));
-    // Edges that just miss by rounding: the crossing is between the two.
+    // By rounding the edges may just miss: the crossing is between the two.
     pierced.unwrap_or_else(|| (first.iter().sum::<Vec3>() + second.iter().sum::<Vec3>()) / 6.0)
 }
 

@@ -20,7 +20,7 @@ pub enum DefectKind {
     Doubled,
     /// Edges of three or more triangles.
     NonManifoldEdge,
-    /// Edges across which the surface returns turned over, as on a Moebius strip.
+    /// Edges across which the surface returns reversed, as on a Moebius strip.
     OneSided,
     /// Pairs of triangles that pass through one another.
     Crossing,
@@ -28,7 +28,7 @@ pub enum DefectKind {
     Fragment,
     /// Loops of open edges in a surface.
     Hole,
-    /// So many triangles on one another that the search for crossings was ended.
+    /// The search for crossings was abandoned, since too many triangles lie on one another.
     Tangle,
 }
 
@@ -68,7 +68,7 @@ pub struct Defect {
 }
 
 impl Defect {
-    /// Number of places kept; a longer list is of no use.
+    /// Largest number of stored places; a longer list is of no use.
     pub const MAX_PLACES: usize = 20;
 
     /// Describes kind, count and the first `max` places: "2 holes at (1.00, 2.00, 3.00), ... mm".
@@ -134,7 +134,7 @@ pub enum RepairError {
     },
 }
 
-/// Lists all kinds, with twenty places between them.
+/// Lists all kinds, with twenty places in total.
 fn listed(defects: &[Defect]) -> String {
     let mut left = Defect::MAX_PLACES;
     let mut parts = Vec::new();

@@ -1,4 +1,4 @@
-//! The triangles at each edge, and triangles turned to agree with their neighbours.
+//! The triangles at each edge, and the orientation of triangles in agreement with their neighbours.
 
 use std::collections::BTreeMap;
 
@@ -44,7 +44,7 @@ pub struct EdgeReport {
     pub boundary_loops: Vec<Vec<u32>>,
     /// Edges with three triangles or more.
     pub non_manifold_edges: Vec<[u32; 2]>,
-    /// Number of edges whose two triangles are turned against one another.
+    /// Number of edges whose two triangles have opposite orientations.
     pub inconsistent_edges: usize,
 }
 
@@ -119,7 +119,7 @@ pub(super) struct Oriented {
     pub(super) pieces: Vec<Piece>,
     /// Some closed piece was inside-out.
     pub(super) turned_round: bool,
-    /// Number of triangles turned to agree with their neighbours.
+    /// Number of triangles that were reversed to agree with their neighbours.
     pub(super) made_consistent: usize,
     /// Middles of edges whose triangles cannot agree.
     pub(super) one_sided: Vec<Vec3>,
@@ -156,7 +156,7 @@ pub(super) fn orient(mesh: &mut TriangleMesh, uses: &[EdgeUse]) -> Oriented {
     }
 }
 
-/// The triangle across each side, and whether the two are turned against one another.
+/// The triangle across each side, and whether the two have opposite orientations.
 type Neighbours = Vec<Vec<(u32, bool)>>;
 
 /// Returns the pieces, and the middles of edges where triangles cannot agree.
@@ -219,7 +219,7 @@ fn outer_pairs(mesh: &TriangleMesh, round: &[EdgeUse]) -> Vec<[EdgeUse; 2]> {
         .collect()
 }
 
-/// Spreads the sense of turning from one triangle; calls `clash` with pairs that cannot agree.
+/// Spreads the orientation from one triangle; calls `clash` with pairs that cannot agree.
 fn flood(
     seed: u32,
     neighbours: &Neighbours,

@@ -15,7 +15,7 @@ use crate::{
 };
 
 /// Length of the longest loop of a piece over that of the piece, corner to corner, above which it is the rim of the
-/// piece and no hole.
+/// piece and not a hole.
 const RIM: f64 = 1.0 / 3.0;
 
 /// Judges all holes, and closes those where nothing touches, flat from edge to edge.
@@ -204,7 +204,7 @@ fn vertices_on_edges(
     let mut found: BTreeMap<u32, ([u32; 2], Between)> = BTreeMap::new();
     let open = by_edge(uses).filter(|edge| edge.len() == 1);
     let open: Vec<EdgeUse> = open.map(|edge| edge[0]).collect();
-    // Triangles that share no edges are no surface with a few joints.
+    // Triangles that share no edges do not form a surface with a few joints.
     if open.len() > mesh.triangles.len() {
         return found;
     }

@@ -16,10 +16,11 @@ const MAX_LINES: f64 = 400.0;
 const MAX_LAYERS: usize = 32;
 /// Visible share of a part's own projection, seen from above, below which the part lies under another one.
 const HIDDEN_SHARE: f64 = 0.5;
-/// A part below with a smaller share of the body's shadow that reaches into the body is a peg of it, and no tray.
+/// A part below with a smaller share of the body's shadow that reaches into the body is a peg of the body and not a
+/// tray.
 const PEG_SHARE: f64 = 0.25;
-/// A part whose shadow is smaller than this share of the largest one is a speck: the parts of an insert of two parts,
-/// or of one with a separate post, are larger.
+/// Share of the largest projection below which a part is a speck: the parts of an insert of two parts, or of one with
+/// a separate post, are larger.
 const SPECK_SHARE: f64 = 0.02;
 
 /// The parts of a file that are the body.
@@ -90,7 +91,7 @@ struct Part<'a> {
     piece: &'a Piece,
     low: Vec3,
     high: Vec3,
-    /// Number of lines that meet it: its shadow.
+    /// Number of lines that meet it: the size of its projection.
     shadow: usize,
     /// Number of lines that meet it before any other part.
     first: usize,
@@ -98,7 +99,7 @@ struct Part<'a> {
     shared: usize,
 }
 
-/// Returns the pieces as seen from above; none if they cover one another too often to be looked at.
+/// Returns the pieces as seen from above; none if they cover one another too often to be examined.
 fn seen_parts<'a>(mesh: &TriangleMesh, pieces: &'a [Piece]) -> Option<Vec<Part<'a>>> {
     let (low, high) = mesh.bounds();
     let size = high - low;

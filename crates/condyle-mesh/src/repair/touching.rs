@@ -2,7 +2,7 @@
 
 use crate::{Vec3, triangle_mesh::TriangleMesh};
 
-/// The part of a body that can touch another one, by a plain rule that errs towards touching.
+/// The part of a body that can touch another one, by a simple rule that includes doubtful places.
 ///
 /// A place belongs to it if it lies at most 1 mm below the first surface on the line of sight to it
 /// along one of the directions of view.
@@ -47,7 +47,7 @@ const MAX_LAYERS: usize = 32;
 
 pub(super) struct TouchMap {
     touching: Touching,
-    /// None if the mesh covers itself too often to be looked at.
+    /// The views; none if the mesh covers itself too often to be examined.
     views: Option<Vec<View>>,
 }
 
@@ -62,7 +62,7 @@ impl TouchMap {
     }
 
     pub(super) fn contains(&self, at_mm: &Vec3) -> bool {
-        // Without views, every defect matters: the rule errs towards touching.
+        // Without views, every defect matters: the rule includes doubtful places.
         let Some(views) = &self.views else {
             return true;
         };
@@ -127,7 +127,7 @@ impl View {
                 let at = [self.middle(0, i), self.middle(1, k)];
                 let parts = [cross(at, b, c), cross(at, c, a), cross(at, a, b)];
                 let weights = parts.map(|part| part / all);
-                // A little generous, so that no line slips between two triangles.
+                // With a small tolerance, so that no line passes between two triangles.
                 if weights.iter().all(|&weight| weight >= -1e-9) {
                     let reach = weights[0] * a[2] + weights[1] * b[2] + weights[2] * c[2];
                     let cell = &mut self.reach_mm[i * self.cells[1] + k];

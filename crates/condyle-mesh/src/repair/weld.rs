@@ -43,7 +43,7 @@ fn rename(mesh: &mut TriangleMesh, replacement: &[u32]) {
     }
 }
 
-/// Drops the vertices that no triangle names.
+/// Removes the vertices that no triangle uses.
 pub(super) fn drop_unused(mesh: &mut TriangleMesh) {
     let mut new_number = vec![u32::MAX; mesh.vertices.len()];
     for &vertex in mesh.triangles.iter().flatten() {
@@ -144,7 +144,7 @@ fn merge_into_neighbour(
     let turned = [[a, b, c], [b, c, a], [c, a, b]].into_iter();
     let longest_edge_last = turned.max_by(|one, other| length(one).total_cmp(&length(other)));
     let [end, middle, other_end] = longest_edge_last.unwrap_or([a, b, c]);
-    // An edge of more triangles belongs to no surface; it is not searched again and again.
+    // An edge of more triangles does not belong to a surface; it is not searched repeatedly.
     const MAX_ROUND: usize = 16;
     let round = on_edge.get(&[end.min(other_end), end.max(other_end)]);
     let round = round.filter(|round| round.len() <= MAX_ROUND).into_iter();
@@ -182,7 +182,7 @@ fn sides(&[a, b, c]: &[u32; 3]) -> [[u32; 2]; 3] {
     [[a, b], [b, c], [c, a]].map(|[a, b]| [a.min(b), a.max(b)])
 }
 
-/// Vertices with more triangles around than this are left alone: the tip of a fan.
+/// Largest number of triangles around a vertex that is processed; the tip of a fan has more.
 const MAX_AROUND: usize = 64;
 /// A collapsed edge keeps its neighbours from collapsing in the same round; more rounds do not help.
 const MAX_COLLAPSE_ROUNDS: usize = 8;

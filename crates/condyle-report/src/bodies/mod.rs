@@ -1,7 +1,7 @@
 //! Femur and insert in place, seen from three sides: a picture of a case before it runs.
 //!
-//! The surfaces, plain triangles, are drawn into small images with a depth buffer, so that sixty thousand triangles make a
-//! file no larger than six hundred; names, axes and scale stand over the images as vectors.
+//! The surfaces, plain triangles, are drawn into small images with a depth buffer, so that sixty thousand triangles
+//! make a file no larger than six hundred; names, axes and scale are drawn over the images as vectors.
 
 mod frame;
 mod raster;

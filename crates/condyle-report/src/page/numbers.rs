@@ -18,7 +18,7 @@ pub(super) struct Group {
     rows: Vec<Listed>,
 }
 
-/// A number as it stands in the list.
+/// A number in the list.
 #[derive(Serialize)]
 struct Listed {
     label: String,

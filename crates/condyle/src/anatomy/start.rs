@@ -10,8 +10,8 @@ use crate::{Mat3, geometry::TriangleMesh};
 /// body's longest extent: on a flat one the middle of the flat part counts.
 const FLAT: f64 = 0.003;
 
-/// Returns the start position of the femoral frame in the insert frame, (x, z), mm: the lowest points of the
-/// condyles over those of the dishes, and the middle of one body over that of the other.
+/// Returns the start position of the femoral frame in the insert frame, (x, z), mm, at which the lowest points of the
+/// condyles are over the lowest points of the dishes, and the middle of the femur is over the middle of the insert.
 ///
 /// Both bodies in mm, x anterior, y superior, z right; the femur is flexed by `flexion_rad` first. None for
 /// bodies without extent.

@@ -10,7 +10,7 @@ use crate::geometry::{ArticulatingSurface, FemoralSurface, Insert};
 /// The bodies of a contact as they are now.
 #[derive(Clone, Copy)]
 pub struct Bodies<'a> {
-    /// The femoral surface, made ready for the insert's shares.
+    /// The femoral surface, prepared for the insert's shares.
     pub femur: &'a FemoralSurface,
     /// The insert, worn or not.
     pub insert: &'a Insert,
@@ -49,8 +49,8 @@ pub trait ContactLaw: Debug + Send + Sync {
         None
     }
 
-    /// Returns the known compliance of an unworn insert, for another run; none if it has no more than so many pairs of
-    /// tiles, or no more than were known at first.
+    /// Returns the known compliance of an unworn insert, for another run; none if it has no more than
+    /// `_more_than_pairs` pairs of tiles, or no more than were known initially.
     fn known_compliance(
         &self,
         _insert: &Insert,

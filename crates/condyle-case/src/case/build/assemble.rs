@@ -38,8 +38,8 @@ impl Case {
     /// Reads the meshes and makes bodies, machine and laws; `threads` share the work on a mesh.
     ///
     /// # Errors
-    /// A mesh that cannot be read or is no shell, an open insert without a thickness, a surface
-    /// that is not in its file, or an insert that cannot be meshed.
+    /// A mesh that cannot be read or does not form a shell, an open insert without a thickness, a surface that is not
+    /// in its file, or an insert that cannot be meshed.
     pub fn build(&self, threads: usize) -> Result<Built, BuildError> {
         self.build_kept(threads, &KeepNothing)
     }
@@ -126,7 +126,7 @@ impl Case {
     /// Returns the law of contact of this case with its insert.
     ///
     /// # Errors
-    /// A deformable insert that is no elastic solid.
+    /// A deformable insert that cannot be modelled as an elastic solid.
     pub fn contact_law(&self, insert: &Insert) -> Result<Arc<dyn ContactLaw>, BuildError> {
         self.contact_law_sharing(insert, &KeepNothing, &SharedBodies::default())
     }

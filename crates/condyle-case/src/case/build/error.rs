@@ -216,7 +216,7 @@ pub enum MeshFault {
         /// Memory that the case allows.
         memory_gb: f64,
     },
-    /// Triangles that are no shell.
+    /// Triangles that do not form a shell.
     #[error("{0}")]
     Shell(RepairError),
     /// A height of the cut that is outside the body.

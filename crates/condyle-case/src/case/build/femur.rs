@@ -236,7 +236,7 @@ const ICOSAHEDRON: f64 = 20.0;
 
 impl Case {
     /// Returns the surface of the femur of `test`, which this case built, in the femoral frame of a right knee, mm;
-    /// triangles anticlockwise seen from outside. A mesh has its own; other shapes get about so many.
+    /// triangles anticlockwise seen from outside. A mesh has its own triangles; other shapes get about `about`.
     ///
     /// # Errors
     /// A mesh that cannot be read again.

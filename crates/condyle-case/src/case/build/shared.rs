@@ -144,7 +144,7 @@ impl Case {
     /// Loads the kept compliance of an insert into a law without one.
     ///
     /// # Errors
-    /// An insert that is no elastic solid.
+    /// An insert that cannot be modelled as an elastic solid.
     pub(super) fn tell_compliance(
         &self,
         law: &Deformable,

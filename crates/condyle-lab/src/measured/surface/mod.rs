@@ -356,7 +356,7 @@ fn sounded(tree: &RTree<Sounding>, node: &Vec3, radius: f64) -> Option<f64> {
         // Wendland's function: 1 at the node, smoothly 0 at the radius.
         let part = away.norm();
         let weight = (1.0 - part).max(0.0).powi(4) * (4.0 * part + 1.0);
-        // Steep surfaces are rare on an insert, so x and z stand for directions along it.
+        // Steep surfaces are rare on an insert, so x and z approximate directions along it.
         let row = Vec3::new(1.0, away.x, away.z);
         matrix += row * row.transpose() * weight;
         right_side += row * (weight * sounding.data);

@@ -186,7 +186,8 @@ impl ElasticSurface {
         })
     }
 
-    /// Estimates the memory of the solid, and of so many loads on each of some nodes with the compliance between them, bytes.
+    /// Estimates the memory of the solid, and of `loads_a_node` loads on each of `nodes` nodes with the compliance
+    /// between them, bytes.
     pub fn bytes(&self, nodes: f64, loads_a_node: [f64; 2]) -> f64 {
         let nodes = nodes.min(self.nodes.len() as f64);
         let of_loads = loads_a_node.map(|each| each * nodes * (each * nodes + self.felt()));

@@ -19,8 +19,8 @@ const MIN_LIMIT_N: f64 = 1e-12;
 /// Nodes whose load is to change by more than this part of their limit are updated before a Newton step, which would
 /// otherwise start with the wrong nodes sticking.
 const FAR: f64 = 0.5;
-/// If at most one in so many nodes has changed, only the contributions of these are updated; otherwise everything is
-/// recomputed, which then costs no more.
+/// If at most one node in this number has changed, only the contributions of the changed nodes are updated; otherwise
+/// everything is recomputed, which then costs no more.
 const FEW: usize = 8;
 /// A Newton step is kept if it reduces the residual to at most this part; sweeps do that, too, but slowly.
 const KEPT: f64 = 0.5;

@@ -147,7 +147,8 @@ impl Tray {
         [x.hypot(z), (turn * self.gyration_mm).abs()]
     }
 
-    /// Estimates the memory of a tray of so many numbers, with its influence on some nodes of the surface, bytes.
+    /// Estimates the memory of a tray with `freedoms` numbers of motion, with its influence on `nodes` nodes of the
+    /// surface, bytes.
     pub fn bytes(freedoms: f64, nodes: f64, felt: f64) -> f64 {
         size_of::<f64>() as f64 * freedoms * (2.0 * freedoms + nodes + felt)
     }

@@ -42,7 +42,7 @@ type Blocks = BTreeMap<(u32, u32), Arc<[f64]>>;
 pub(crate) type ByTile = BTreeMap<u32, Vec<f64>>;
 
 impl Influence {
-    /// Prepares the influence in a solid whose surface has nodes at `surface`, in so many tiles.
+    /// Prepares the influence in a solid whose surface has nodes at `surface`, in a given number of tiles.
     pub fn new(solid: &Arc<ElasticSolid>, surface: &[Vec3], surface_tiles: usize) -> Self {
         let mesh = solid.mesh();
         let node_tiles = tiles(&mesh.nodes, TILE_NODES);
