@@ -42,7 +42,7 @@ pub struct AtRest {
 const NEAR_MM: f64 = 0.25;
 
 impl AtRest {
-    /// Creates the bodies of a march that has not begun.
+    /// Evaluates the settled bodies of a march that has not begun.
     pub(crate) fn of(march: &March) -> Self {
         let test = march.test();
         let positions = settled(march);

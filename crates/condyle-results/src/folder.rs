@@ -180,7 +180,7 @@ pub enum Found {
 }
 
 impl ResultsFolder {
-    /// Creates the folder at `path`, as it is.
+    /// Returns the folder at `path` without changing it.
     pub fn existing(path: &Path) -> Self {
         let path = path.to_owned();
         Self { path }

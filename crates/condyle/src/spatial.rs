@@ -336,7 +336,7 @@ pub(crate) struct FrameChange {
 }
 
 impl FrameChange {
-    /// Creates the change at a pose of the femur.
+    /// Creates the change of frame at a pose of the femur.
     pub fn to_femur(pose: &Pose) -> Self {
         let turn = pose.rotation.transpose();
         let mut matrix = Mat6::zeros();
@@ -371,7 +371,7 @@ pub(crate) struct Pose4 {
 }
 
 impl Pose4 {
-    /// Creates the same pose for every point.
+    /// Creates a pose that is the same for every point.
     pub fn new(pose: &Pose) -> Self {
         let column = |axis: usize| Vec3::from(pose.rotation.column(axis)).map(F64x4::splat);
         Self {
@@ -408,7 +408,7 @@ pub(crate) struct Twist4 {
 }
 
 impl Twist4 {
-    /// Creates the same twist for every point.
+    /// Creates a twist that is the same for every point.
     pub fn new(twist: &Twist<Femur, Femur>) -> Self {
         Self {
             angular: twist.angular.map(F64x4::splat),

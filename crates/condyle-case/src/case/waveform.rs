@@ -40,7 +40,7 @@ const NONE: NamedWaveform = NamedWaveform {
 };
 
 impl CaseChannel {
-    /// Creates the load that presses the femur on the insert.
+    /// Returns the channel of the load that presses the femur on the insert.
     pub(super) fn load() -> Self {
         Self(&machine::knee::AXIAL_FORCE)
     }

@@ -66,7 +66,7 @@ pub struct Correlation {
 }
 
 impl Study {
-    /// Creates a study of the case at `case_path` that no file describes; it varies nothing yet.
+    /// Creates a study of the case at `case_path` without a study file and without varied inputs.
     ///
     /// # Errors
     /// The problems of the case.

@@ -47,7 +47,7 @@ pub struct ScaledKey {
 }
 
 impl Input {
-    /// Creates an input of real numbers that no file describes.
+    /// Creates an input of real numbers without a study file.
     pub fn new(key: &str, variation: Variation) -> Self {
         Self {
             key: key.to_owned(),

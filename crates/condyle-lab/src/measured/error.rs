@@ -37,7 +37,8 @@ pub enum CompareError {
 }
 
 impl CompareError {
-    /// Creates a file of the results folder that the table `[table]` of measured data is compared with.
+    /// Creates the error for a missing file of the results folder with which the table `[table]` of measured data is
+    /// compared.
     pub(crate) fn missing_file(path: &Path, table: &str) -> Self {
         let path = path.display();
         Self::NotComparable(format!(

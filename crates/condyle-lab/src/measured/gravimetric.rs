@@ -274,7 +274,7 @@ pub struct Interval {
 }
 
 impl Interval {
-    /// Returns whether `value` lies inside, the ends included.
+    /// Returns whether `value` lies inside or at an end.
     pub(crate) fn holds(&self, value: f64) -> bool {
         (self.low..=self.high).contains(&value)
     }
@@ -333,7 +333,7 @@ pub(crate) fn mean_interval(values: &[f64], confidence: f64) -> Option<Interval>
     Some(Interval::around(middle, quantile * standard_error))
 }
 
-/// Returns the mean of values; NaN for none.
+/// Returns the mean of values, or NaN if there are none.
 pub(crate) fn mean(values: &[f64]) -> f64 {
     values.iter().sum::<f64>() / values.len() as f64
 }

@@ -50,9 +50,9 @@ impl Trial {
 }
 
 impl Fit<'_> {
-    /// Returns the table with the least squares of the relative errors of peak pressure and area, with every region
-    /// under the force that it carries on the deformable insert: by the Levenberg-Marquardt method, from the linear
-    /// law.
+    /// Returns the table that minimises the sum of squares of the relative errors of peak pressure and area, with
+    /// every region under the force that it carries on the deformable insert: by the Levenberg-Marquardt method, from
+    /// the linear law.
     ///
     /// The parameters are logarithms of strain increments, so that every table rises.
     pub fn table(&self, modulus_mpa: f64) -> PressureTable {

@@ -187,7 +187,7 @@ fn clean(mesh: &mut TriangleMesh) -> (Vec<Defect>, usize) {
     (defects, removed_degenerate)
 }
 
-/// Judges edges of three triangles or more, and those across which the surface returns turned over.
+/// Judges edges of three triangles or more, and those across which the surface returns reversed.
 fn judge_edges(mesh: &TriangleMesh, uses: &[EdgeUse], one_sided: &[Vec3], judge: &mut Judge) {
     for edge in by_edge(uses).filter(|edge| edge.len() > 2) {
         let ends = edge[0].ends.map(|end| mesh.vertices[end as usize]);

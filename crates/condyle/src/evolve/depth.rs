@@ -51,7 +51,7 @@ impl Default for DepthFields {
 }
 
 impl DepthFields {
-    /// Creates an unworn surface of `node_count` nodes.
+    /// Creates the depths of an unworn surface of `node_count` nodes.
     pub(super) fn none(node_count: usize) -> Self {
         let fields = vec![DepthField::wear(vec![0.0; node_count])];
         Self { node_count, fields }

@@ -64,8 +64,8 @@ impl Spread {
 /// The rates of the tests as a function of the parameters.
 pub(crate) type Model<'a> = dyn FnMut(&[f64]) -> Result<Vec<f64>, CalibrateError> + 'a;
 
-/// Returns the parameters with the least sum of weight (predicted / measured - 1)^2, by Gauss and Newton's iteration
-/// with Broyden's slopes.
+/// Finds the parameters that minimise the sum of weight (predicted / measured - 1)^2, by Gauss-Newton iteration with
+/// Broyden's slopes.
 ///
 /// The relative scatter is the same in all tests. It is pooled from the scatter of the specimens or weighings within each
 /// test and from the residuals of the tests: a law that does not fit gets a wider interval.
@@ -312,7 +312,7 @@ fn undetermined() -> CalibrateError {
     CalibrateError::Unsuitable(problem.to_owned())
 }
 
-/// Returns the scale of changes of a parameter; 1 for one that is 0.
+/// Returns the scale of changes of a parameter; 1 for a parameter of 0.
 fn size(parameter: f64) -> f64 {
     if parameter == 0.0 {
         1.0
@@ -336,7 +336,7 @@ enum Parameters {
 }
 
 impl Free {
-    /// Creates the constants of these names, or the amount of wear if there are none.
+    /// Frees the constants with these names, or the amount of wear if there are none.
     pub(crate) fn new(law: Wear, names: &[String]) -> Result<Self, CalibrateError> {
         if names.is_empty() {
             let free = Parameters::Level;

@@ -425,7 +425,7 @@ impl Test {
         Ok(())
     }
 
-    /// Returns the rate with another law, run in memory; that of the folder where the law is the same.
+    /// Returns the rate with another law, run in memory; if the law is the same, the rate of the folder.
     pub(crate) fn rate(&self, law: &Wear) -> Result<f64, CalibrateError> {
         if *law == self.case.wear {
             return Ok(self.weighed.predicted.mg_per_million_cycles);
