@@ -6,8 +6,8 @@
 //!   again, let it bend without parasitic shear (Wilson; Taylor, Beresford and Wilson 1976, whose
 //!   gradients by the Jacobian of the centre pass the patch test on distorted meshes).
 //! - *Projected dilatation*: the divergence of every displacement is replaced by its best fit among
-//! $1, \xi, \eta, \zeta$. The bilinear remainder, which no incompatible mode can cancel, would lock near a Poisson's
-//! ratio of one half; the linear part cannot, and is kept since bending needs it.
+//!   $1, \xi, \eta, \zeta$. The bilinear remainder, which no incompatible mode can cancel, would lock near a Poisson's
+//!   ratio of one half; the linear part cannot, and is kept since bending needs it.
 
 use nalgebra::{Cholesky, Matrix3, Matrix4, SMatrix, Vector4};
 use wide::f64x4;
