@@ -94,9 +94,8 @@ pub fn converge(
 ) -> Result<Convergence, StudyError> {
     let plan = plan(case_path, over)?;
     let input = &plan.study().inputs[0];
-    let tests = || (0..plan.tests()).filter_map(|row| plan.test(row));
     let mut cases = Vec::new();
-    for test in tests() {
+    for test in tests(&plan) {
         let mut case = plan.case_of(&test)?;
         // The study itself shows the errors that each run would otherwise estimate.
         case.accuracy.estimate = false;
@@ -107,6 +106,38 @@ pub fn converge(
             "the folder is not empty; give another one with --out, or go on with --resume";
         return Err(StudyError::folder(&options.out, problem));
     }
+    let points = run_points(&plan, &cases, options, listener)?;
+    let step = |point: &Point| {
+        if input.is_whole {
+            1.0 / point.value
+        } else {
+            point.value
+        }
+    };
+    let convergence = Convergence {
+        key: input.key.clone(),
+        steps: points.iter().map(step).collect(),
+        points,
+    };
+    for (name, text) in [
+        ("converge.csv", convergence.csv()),
+        ("converge.json", convergence.json()),
+        ("converge.svg", convergence.svg()),
+    ] {
+        let path = options.out.join(name);
+        fs::write(&path, text).map_err(StudyError::refused(&path))?;
+    }
+    Ok(convergence)
+}
+
+/// Runs the case of every test, and returns the points from coarse to fine.
+fn run_points(
+    plan: &Plan,
+    cases: &[Case],
+    options: &ConvergeOptions,
+    listener: &mut Listener<'_>,
+) -> Result<Vec<Point>, StudyError> {
+    let input = &plan.study().inputs[0];
     let work = |test: &Test, reporter: &Reporter<'_, Ran>| {
         let value = value_of(test);
         let ran = run(
@@ -129,7 +160,7 @@ pub fn converge(
         ran
     };
     let mut points = Vec::new();
-    for (test, ran) in tests().zip(run_all(&plan, options.threads, &work, listener)?) {
+    for (test, ran) in tests(plan).zip(run_all(plan, options.threads, &work, listener)?) {
         let value = value_of(&test);
         let ran = ran.map_err(|source| StudyError::RunWith {
             number: format!("{} = {value}", input.key),
@@ -141,27 +172,12 @@ pub fn converge(
             summary: *ran.ok_or(StudyError::Interrupted)?,
         });
     }
-    let step = |point: &Point| {
-        if input.is_whole {
-            1.0 / point.value
-        } else {
-            point.value
-        }
-    };
-    let convergence = Convergence {
-        key: input.key.clone(),
-        steps: points.iter().map(step).collect(),
-        points,
-    };
-    for (name, text) in [
-        ("converge.csv", convergence.csv()),
-        ("converge.json", convergence.json()),
-        ("converge.svg", convergence.svg()),
-    ] {
-        let path = options.out.join(name);
-        fs::write(&path, text).map_err(StudyError::refused(&path))?;
-    }
-    Ok(convergence)
+    Ok(points)
+}
+
+/// Returns the tests of a plan in the order of their rows.
+fn tests(plan: &Plan) -> impl Iterator<Item = Test> {
+    (0..plan.tests()).filter_map(|row| plan.test(row))
 }
 
 /// One test for each value, from coarse to fine.

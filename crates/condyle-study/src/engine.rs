@@ -202,21 +202,7 @@ fn run_tests<T: Send>(
     thread::scope(|scope| {
         for _ in 0..threads.max(1) {
             let (sender, tests, stop) = (sender.clone(), &tests, &stop);
-            scope.spawn(move || {
-                let reporter = Reporter { sender, stop };
-                while !stop.load(Ordering::Relaxed) {
-                    let test = tests.lock().expect("no thread panics with it").next();
-                    let Some(test) = test else { break };
-                    let result = work(&test, &reporter);
-                    if reporter
-                        .sender
-                        .send(Message::Found((test, result)))
-                        .is_err()
-                    {
-                        break;
-                    }
-                }
-            });
+            scope.spawn(move || work_off(tests, work, &Reporter { sender, stop }));
         }
         drop(sender);
         let started = listener(&StudyEvent::Progress(*progress));
@@ -255,6 +241,23 @@ fn run_tests<T: Send>(
             Break(()) => last.and(Err(StudyError::Interrupted)),
         }
     })
+}
+
+/// Runs `work` on one test after another until none is left or the study is to stop.
+fn work_off<T>(
+    tests: &Mutex<&mut (dyn Iterator<Item = Test> + Send)>,
+    work: &Work<'_, T>,
+    reporter: &Reporter<'_, T>,
+) {
+    while !reporter.stop.load(Ordering::Relaxed) {
+        let test = tests.lock().expect("no thread panics with it").next();
+        let Some(test) = test else { break };
+        let result = work(&test, reporter);
+        let found = Message::Found((test, result));
+        if reporter.sender.send(found).is_err() {
+            break;
+        }
+    }
 }
 
 /// Runs tests in memory; bodies that do not vary are built once and shared.

@@ -14,6 +14,20 @@ use crate::results::{Region, Results, SurfaceFields, Table};
 /// Depth above which a place counts as part of the scar, as a share of the largest depth.
 const SCAR_SHARE: f64 = 0.05;
 
+/// The fields of a cycle whose largest values are compared, with their names and units.
+const LARGEST_OF_CYCLE: [(&str, &str, &str); 2] = [
+    (
+        "peak_pressure_mpa",
+        "Highest pressure of a node in the last cycle",
+        "MPa",
+    ),
+    (
+        "sliding_distance_mm",
+        "Longest sliding distance in a cycle",
+        "mm",
+    ),
+];
+
 /// A quantity with its values on the medial side, the lateral side and both.
 #[derive(Serialize)]
 pub(super) struct Comparison {
@@ -59,18 +73,7 @@ pub(super) fn compartments(results: &Results) -> Vec<Comparison> {
             &|region| Some(fixed(surface.area_above(depth, scar_mm, region), 0)),
         ),
     ];
-    for (field, name, unit) in [
-        (
-            "peak_pressure_mpa",
-            "Highest pressure of a node in the last cycle",
-            "MPa",
-        ),
-        (
-            "sliding_distance_mm",
-            "Longest sliding distance in a cycle",
-            "mm",
-        ),
-    ] {
+    for (field, name, unit) in LARGEST_OF_CYCLE {
         rows.extend(
             surface
                 .field(field)

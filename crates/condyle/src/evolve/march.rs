@@ -249,14 +249,7 @@ impl March {
         let worn = worn(self.test.wear.as_ref(), &mean);
         let contact = self.test.contact.as_ref();
         let rates = Rates::new(contact, &self.insert, &solved.surface, &mean, &worn);
-        let start = StepStart {
-            rates: &rates,
-            last: self.state.last_step.as_ref(),
-            worn_mm: self.state.depths.wear_mm(),
-            cycles: self.cycles(),
-            updates: update,
-            creeps: self.test.creep.is_some(),
-        };
+        let start = self.step_start(&rates);
         let step = next_step(start, &self.test.schedule);
         let settled_error = self.state.settled_error.after(start);
         let step_error = settled_error.with_last(start, &step);
@@ -323,6 +316,18 @@ impl March {
             counters,
             memory,
         }))
+    }
+
+    /// Returns the state of the test at the start of a step that wears at `rates`.
+    fn step_start<'a>(&'a self, rates: &'a Rates) -> StepStart<'a> {
+        StepStart {
+            rates,
+            last: self.state.last_step.as_ref(),
+            worn_mm: self.state.depths.wear_mm(),
+            cycles: self.cycles(),
+            updates: self.state.updates.len(),
+            creeps: self.test.creep.is_some(),
+        }
     }
 
     /// Returns the creep by the end of a step, and its memory then, if the insert creeps.

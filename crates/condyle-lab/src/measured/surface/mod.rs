@@ -184,21 +184,8 @@ pub(crate) fn summarised(
     };
     let everywhere = errors(compared, &nodes);
     let covered_area_share = everywhere.area_mm2 / area;
-    let mut notes = vec![CREEP.to_owned()];
-    let standard_error_mm = registration.weakest_standard_error_mm;
-    if standard_error_mm > MAX_STANDARD_ERROR_MM {
-        notes.push(format!(
-            "the fitted surface leaves one motion of the scan uncertain by {standard_error_mm:.3} mm (standard error)"
-        ));
-    }
-    if covered_area_share < MIN_COVERED {
-        let percent = 100.0 * covered_area_share;
-        notes.push(format!(
-            "the scan covers {percent:.0} % of the articulating surface"
-        ));
-    }
     Ok(SurfaceComparison {
-        notes,
+        notes: notes(&registration, covered_area_share),
         registration,
         scan_points: scan.points.len(),
         covered_area_share,
@@ -212,6 +199,24 @@ pub(crate) fn summarised(
         scanned_volume_mm3: volume(&compared.scanned_mm),
         fields: fields(unworn, compared),
     })
+}
+
+/// Returns the remarks on the interpretation of a comparison.
+fn notes(registration: &Registration, covered_area_share: f64) -> Vec<String> {
+    let mut notes = vec![CREEP.to_owned()];
+    let standard_error_mm = registration.weakest_standard_error_mm;
+    if standard_error_mm > MAX_STANDARD_ERROR_MM {
+        notes.push(format!(
+            "the fitted surface leaves one motion of the scan uncertain by {standard_error_mm:.3} mm (standard error)"
+        ));
+    }
+    if covered_area_share < MIN_COVERED {
+        let percent = 100.0 * covered_area_share;
+        notes.push(format!(
+            "the scan covers {percent:.0} % of the articulating surface"
+        ));
+    }
+    notes
 }
 
 fn place(unworn: &SurfaceFields, compared: &Compared, node: usize) -> NodeDepths {
