@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 use std::ops::Range;
 use std::sync::Arc;
 
-use condyle::wear::{WEAR_LAWS, WearLawKind};
+use condyle::wear::WEAR_LAWS;
 
 use super::activity::Activities;
 use super::contact::Contact;
@@ -15,13 +15,10 @@ use super::machine::Machine;
 use super::material::{Creep, Material};
 use super::run_options::{Accuracy, Limits, Output};
 use super::schedule::{March, Time};
-use super::wear::Wear;
+use super::wear::{Wear, WearLaws};
 use crate::config::{
     Item, Log, Section, Settings, Source, Writer, keys, rows, sections, settings, table_schema,
 };
-
-/// Kinds of wear law to choose from; the first is the default.
-pub type WearLaws = &'static [&'static WearLawKind];
 
 const OPENING: &str = "\
 # The case file

@@ -38,7 +38,7 @@ pub use contact::{
     FrictionModelWord, J2Plasticity, PlasticityChoice, PressureLawChoice, RestingBackside,
     SearchWord, SofteningCurve,
 };
-pub use contents::{Case, Origin, WearLaws, json_schema, schema_markdown};
+pub use contents::{Case, Origin, json_schema, schema_markdown};
 pub use femur::{
     CylinderFemur, Femur, FemurPlacement, FemurShape, GenericFemur, MeshFemur, SphereFemur,
 };
@@ -59,7 +59,7 @@ pub use reader::{CaseReader, template};
 pub use run_options::{Accuracy, Limits, Output};
 pub use schedule::{AutoUpdates, FixedUpdates, IntegratorWord, March, Time, Update};
 pub use waveform::{CaseChannel, InterpolationWord};
-pub use wear::{ConstantError, Wear};
+pub use wear::{ConstantError, Wear, WearLaws};
 
 #[cfg(feature = "file-system")]
 pub use draft::{Draft, DraftError, Drafted};

@@ -10,9 +10,10 @@ use condyle::wear::WEAR_LAWS;
 use miette::NamedSource;
 
 use super::assignment::{Assignment, ChangeError, Lines};
-use super::contents::{Case, WearLaws};
+use super::contents::Case;
 use super::machine::Preset;
 use super::renamed::rename_keys;
+use super::wear::WearLaws;
 use crate::config::{
     Base, DataFile, Problems, Section, Settings, Source, check, read_part, read_source,
 };

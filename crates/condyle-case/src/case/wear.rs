@@ -6,11 +6,13 @@ use condyle::parameter::{Known, Parameter};
 use condyle::wear::{NamedLaw, WEAR_LAWS, WearLawKind};
 use thiserror::Error;
 
-use super::contents::WearLaws;
 use crate::config::{
     Choices, Item, Key, Limits, Log, Offered, Section, Setting, Settings, TableItem, WhereSilent,
     Writer, within,
 };
+
+/// Kinds of wear law to choose from; the first is the default.
+pub type WearLaws = &'static [&'static WearLawKind];
 
 /// A wear law and its constants.
 #[derive(Clone, Debug)]

@@ -3,10 +3,12 @@
 use std::error::Error;
 use std::path::Path;
 
+use condyle::parameter::{split_unit, unit_of};
 use thiserror::Error;
+use toml::de::DeValue;
 
-use super::key::quoted_list;
-use super::suggest::nearest;
+use super::key::{number, quoted_list};
+use super::suggest::{bases, convert, likeliest, nearest};
 
 /// A problem of a file as data; `Display` describes it.
 ///
@@ -60,6 +62,33 @@ pub(crate) fn out_of_range(key: &str, value: &str, range: &str) -> Fault {
         format!("`{key}` is {value}, outside its range"),
         format!("it can be {range}"),
     )
+}
+
+/// Returns the likeliest reason why `section` has no `key` among `keys`.
+pub(crate) fn explain(key: &str, value: &DeValue<'_>, section: &str, keys: &[&str]) -> Fault {
+    if let Some(fault) = wrong_unit(key, value, keys) {
+        return fault;
+    }
+    let advice = match likeliest(key, keys) {
+        Some(near) => format!("did you mean `{near}`?"),
+        None => format!("remove it; the keys here are {}", keys.join(", ")),
+    };
+    Fault::new(format!("{section} has no key `{key}`"), advice)
+}
+
+fn wrong_unit(key: &str, value: &DeValue<'_>, keys: &[&str]) -> Option<Fault> {
+    let same_quantity = |known: &&&str| {
+        let (base, unit) = split_unit(known);
+        unit.is_some() && bases(key).any(|written| written == base)
+    };
+    let meant = *keys.iter().find(same_quantity)?;
+    let unit = unit_of(meant)?;
+    let advice = match number(value).and_then(|number| convert(key, meant, number)) {
+        Some(value) => format!("write `{meant} = {value}`"),
+        None => format!("write `{meant}`, with the value in {unit}"),
+    };
+    let message = format!("`{key}` is in another unit: the key is `{meant}`, in {unit}");
+    Some(Fault::new(message, advice))
 }
 
 pub(crate) fn unknown_word(key: &str, word: &str, words: &[&str]) -> Fault {

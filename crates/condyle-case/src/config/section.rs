@@ -8,9 +8,8 @@ use toml::de::{DeString, DeTable, DeValue};
 use super::key::{Key, names, type_name};
 use super::log::{Base, Log};
 use super::problem::{Problems, Source};
-use super::reason::{Fault, idle, missing_key, syntax, wrong_type};
+use super::reason::{Fault, explain, idle, missing_key, syntax, wrong_type};
 use super::setting::Setting;
-use super::suggest::explain;
 
 /// A table of a file; an absent one has no keys.
 pub(crate) struct Section<'a> {

@@ -1,10 +1,8 @@
 //! Suggestions for a key that does not exist.
 
-use condyle::parameter::{split_unit, unit_of};
-use toml::de::DeValue;
+use condyle::parameter::split_unit;
 
-use super::key::{number, plain};
-use super::reason::Fault;
+use super::key::plain;
 
 /// Units a person may write that condyle does not take: (ending, ending taken, factor).
 const CONVERSIONS: &[(&str, &str, f64)] = &[
@@ -34,33 +32,6 @@ const CONVERSIONS: &[(&str, &str, f64)] = &[
     ("_us", "_s", 1e-6),
 ];
 
-/// Returns the likeliest reason why `section` has no `key` among `keys`.
-pub(crate) fn explain(key: &str, value: &DeValue<'_>, section: &str, keys: &[&str]) -> Fault {
-    if let Some(fault) = wrong_unit(key, value, keys) {
-        return fault;
-    }
-    let advice = match likeliest(key, keys) {
-        Some(near) => format!("did you mean `{near}`?"),
-        None => format!("remove it; the keys here are {}", keys.join(", ")),
-    };
-    Fault::new(format!("{section} has no key `{key}`"), advice)
-}
-
-fn wrong_unit(key: &str, value: &DeValue<'_>, keys: &[&str]) -> Option<Fault> {
-    let same_quantity = |known: &&&str| {
-        let (base, unit) = split_unit(known);
-        unit.is_some() && bases(key).any(|written| written == base)
-    };
-    let meant = *keys.iter().find(same_quantity)?;
-    let unit = unit_of(meant)?;
-    let advice = match number(value).and_then(|number| convert(key, meant, number)) {
-        Some(value) => format!("write `{meant} = {value}`"),
-        None => format!("write `{meant}`, with the value in {unit}"),
-    };
-    let message = format!("`{key}` is in another unit: the key is `{meant}`, in {unit}");
-    Some(Fault::new(message, advice))
-}
-
 pub(crate) fn likeliest(key: &str, keys: &[&str]) -> Option<String> {
     synonym(key, keys).or_else(|| nearest(key, keys.iter().copied()))
 }
@@ -72,13 +43,13 @@ fn synonym(key: &str, keys: &[&str]) -> Option<String> {
     words.find_map(|word| meant(word, keys)).map(str::to_owned)
 }
 
-fn bases(key: &str) -> impl Iterator<Item = &str> {
+pub(super) fn bases(key: &str) -> impl Iterator<Item = &str> {
     let foreign = CONVERSIONS.iter().map(|conversion| conversion.0);
     let own = std::iter::once(split_unit(key).0).filter(move |base| *base != key);
     own.chain(foreign.filter_map(|ending| key.strip_suffix(ending)))
 }
 
-fn convert(key: &str, meant: &str, number: f64) -> Option<String> {
+pub(super) fn convert(key: &str, meant: &str, number: f64) -> Option<String> {
     let fits = |&&(from, to, _): &&(&str, &str, f64)| {
         key.strip_suffix(from)
             .is_some_and(|base| meant.strip_suffix(to) == Some(base))

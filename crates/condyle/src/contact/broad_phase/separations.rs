@@ -1,8 +1,8 @@
 //! Lower bounds on the separation of every block, updated as the femur moves.
 
+use super::share_block::ShareBlock;
 use crate::{
     Mat3, Vec3, Vector,
-    contact::broad_phase::ShareBlock,
     geometry::{CurvatureBounds, MAX_GAP_SLOPE, SurfaceSample},
     number::{F32x8, F64x4, LANES, LANES_F32, Number, dot},
     spatial::Pose,

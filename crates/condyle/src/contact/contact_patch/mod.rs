@@ -2,17 +2,20 @@
 //!
 //! `near_blocks` finds the blocks near the femur and samples it there. `traction` holds the tractions on a block and the
 //! sum of their derivatives. `peak` interpolates between the nodes and looks for the highest pressure there.
+//! `settings` holds what the contacts of all laws have in common.
 
 mod near_blocks;
 mod peak;
+mod settings;
 mod traction;
 
 pub(crate) use near_blocks::{CachedSample, NearBlock, NearBlocks};
 pub(crate) use peak::{MIN_NODES, Quadratic, highest_mpa};
-pub(crate) use traction::{Coulomb, Sliding, Tractions4};
+pub(crate) use settings::{ContactSettings, Coulomb};
+pub(crate) use traction::{Sliding, Tractions4};
 
 use super::{
-    broad_phase::{Search, ShareBlock},
+    broad_phase::ShareBlock,
     law::Bodies,
     model::{ContactCache, MAX_REGIONS, Tangent, TouchedNode},
 };
@@ -24,16 +27,6 @@ use crate::{
     },
 };
 use traction::TangentSum;
-
-/// The settings that the contacts of all laws have in common.
-#[derive(Clone, Copy)]
-pub(crate) struct ContactSettings {
-    /// Regularised friction.
-    pub friction: Coulomb,
-    pub search: Search,
-    /// Motion up to which a sample of the femur is extrapolated, mm.
-    pub sample_reuse_mm: f64,
-}
 
 /// The blocks under pressure at a response, and the tractions on them.
 pub(crate) struct ContactPatch<'a> {

@@ -1,6 +1,6 @@
 //! The blocks of shares near the femur, each with its sample of it.
 
-use super::ContactSettings;
+use super::settings::ContactSettings;
 use crate::{
     Vector,
     contact::broad_phase::{BroadPhase, SeparationBound, ShareBlock},

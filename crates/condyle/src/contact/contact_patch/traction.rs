@@ -14,14 +14,6 @@ use crate::{
 /// the tangent needs.
 const STANDSTILL_MM_PER_S: f64 = 1e-9;
 
-/// Coulomb's law of friction, regularised.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Coulomb {
-    pub coefficient: f64,
-    /// Speed at which friction has reached 71 % of its full value, v0, mm/s, > 0.
-    pub slip_tolerance_mm_per_s: f64,
-}
-
 /// The tractions on a block of four shares; all vectors in the femoral frame.
 ///
 /// The force on the insert is f = L (n + mu s t1), L the area times the pressure, t1 the direction
