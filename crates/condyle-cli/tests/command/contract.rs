@@ -118,8 +118,8 @@ fn peaks_say_of_which_cycle_they_are() {
     assert_eq!(last[5], summary[&catalogue::LAST_CYCLE_CONTACT_AREA_MM2]);
     let said = bench.say(&["run", "case.toml", "--out", "again"]).out;
     let when = |cycle: f64| match cycle {
-        0.0 => ", in the first cycle\n".to_owned(),
-        later => format!(", after {later:.0} cycles\n"),
+        0.0 => ", in the first cycle, ".to_owned(),
+        later => format!(", after {later:.0} cycles, "),
     };
     for cycle in [
         summary[&catalogue::PEAK_PRESSURE_CYCLE],
