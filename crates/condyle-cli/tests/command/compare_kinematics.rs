@@ -185,7 +185,7 @@ fn bad_motions_are_refused_with_their_place() {
     );
     refuses(
         "percent,ap_mm,ap_mm\n0,1,2\n5,1,2\n",
-        &["`ap_mm` stands twice", "a name of its own"],
+        &["the column `ap_mm` is in its file twice", "its own name"],
     );
     refuses(
         "percent,ap_mm\n0,1\n0,2\n",

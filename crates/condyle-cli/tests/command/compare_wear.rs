@@ -182,7 +182,7 @@ fn bad_masses_are_refused_with_their_place() {
     );
     refuses(
         &format!("cycles,k_mg,k_mg\n{rows}"),
-        &["`k_mg` stands twice"],
+        &["the column `k_mg` is in its file twice"],
     );
     refuses(
         &format!("cycles,soak1_mg,soak2_mg\n{rows}"),

@@ -181,7 +181,7 @@ fn a_key_that_is_none_is_refused() {
     assert_refused("updatse=1,2", &words);
     let words = [
         "[march] has no key `updatse`",
-        "case.toml with march.updatse = 2:7:1",
+        "case.toml with march.updatse = 2:9:1",
         "^^^^^^^",
         "did you mean `updates`?",
     ];
@@ -201,14 +201,14 @@ fn a_key_that_is_none_is_refused() {
 fn a_value_that_is_none_is_refused() {
     let words = [
         "`updates` is 0, outside its range",
-        "case.toml with march.updates = 0:5:11",
+        "case.toml with march.updates = 0:9:17",
         "^",
         "it can be 1 to 10000",
     ];
     assert_refused("updates=2,0", &words);
     let words = [
         "`increments` must be a whole number",
-        "case.toml with time.increments = 40.5:8:14",
+        "case.toml with time.increments = 40.5:9:19",
     ];
     assert_refused("increments=30,40.5", &words);
     let words = ["`ten` is no value for `march.updates`", "write a number"];

@@ -31,8 +31,8 @@ fn says(bench: &Bench, name: &str, how: &str) {
     let is_named = before.contains(name) || (is_last_mesh && before.contains("insert_*.vtu"));
     assert!(is_named, "{name} {how}: the page does not name it");
     let headings = [
-        ("Where it wears", "insert_0003.vtu"),
-        ("How it wears over the test", "wear.csv"),
+        ("Wear on the surface", "insert_0003.vtu"),
+        ("Wear over the test", "wear.csv"),
         ("Motion and load in a", "kinematics.csv"),
         ("All numbers", "summary.json"),
         ("The case file with every default", "case.toml"),
