@@ -92,7 +92,7 @@ impl Scatter {
             })
         });
         let mut input = Input::new(self.name, variation);
-        input.scaled = scaled.collect();
+        input.scaled = Some(scaled.collect());
         input
     }
 }

@@ -167,7 +167,7 @@ impl Study {
         for input in &self.inputs {
             out.line(&input.key, "");
             input.variation.write(&mut out);
-            for scaled in &input.scaled {
+            for scaled in input.scaled.iter().flatten() {
                 out.line(&format!("{scaled:?}"), "");
             }
         }

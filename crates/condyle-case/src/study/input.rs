@@ -30,8 +30,9 @@ pub struct Input {
     pub variation: Variation,
     /// True if its values are whole numbers.
     pub is_whole: bool,
-    /// The keys that a value counts standard deviations of; empty where it is the value of `key` itself.
-    pub scaled: Vec<ScaledKey>,
+    /// The keys that a value counts standard deviations of, perhaps none of a case; `None` where it is the value of
+    /// `key` itself.
+    pub scaled: Option<Vec<ScaledKey>>,
     pub(super) span: Range<usize>,
 }
 
@@ -54,7 +55,7 @@ impl Input {
             name: key.to_owned(),
             variation,
             is_whole: false,
-            scaled: Vec::new(),
+            scaled: None,
             span: 0..0,
         }
     }
@@ -99,8 +100,8 @@ impl Input {
                 format!("{number:?}")
             }
         };
-        if let (Level::Number(deviations), false) = (level, self.scaled.is_empty()) {
-            let scaled = self.scaled.iter().map(|scaled| {
+        if let (Level::Number(deviations), Some(scaled)) = (level, &self.scaled) {
+            let scaled = scaled.iter().map(|scaled| {
                 let value = scaled.mean + scaled.standard_deviation * deviations;
                 Assignment::new(scaled.key, format!("{:?}", rounded(value)))
             });
