@@ -6,6 +6,10 @@ use std::ops::Range;
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
+/// Most dots of a path whose tables are added; no key of a case or study has as many. The reader of a document recurses
+/// into its tables, so a path from outside must not nest them at will.
+const MAX_DOTS: usize = 16;
+
 /// Returns the value at a dotted path; a table of a list is found by its `name`.
 pub(crate) fn value_at<'a, 'i>(
     table: &'a DeTable<'i>,
@@ -52,14 +56,17 @@ pub(crate) fn rename(table: &mut DeTable<'_>, from: &str, to: &str) -> bool {
     true
 }
 
-/// Puts `value` at a dotted path, whose key is at `place`; tables that are missing are added.
+/// Puts `value` at a dotted path, whose key is at `place`; tables that are missing are added. A path with more than
+/// [`MAX_DOTS`] dots is put as one key of `table`, which the reader reports as unknown.
 pub(crate) fn set_value<'i>(
     table: &mut DeTable<'i>,
     path: &str,
     place: Range<usize>,
     value: Spanned<DeValue<'i>>,
 ) {
-    let (above, name) = path.rsplit_once('.').unwrap_or(("", path));
+    let is_deep = path.matches('.').nth(MAX_DOTS).is_some();
+    let split = path.rsplit_once('.').filter(|_| !is_deep);
+    let (above, name) = split.unwrap_or(("", path));
     if let Some(table) = table_at(table, above, Some(&place)) {
         table.remove(name);
         table.insert(Spanned::new(place, Cow::Owned(name.to_owned())), value);

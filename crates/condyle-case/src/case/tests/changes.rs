@@ -175,3 +175,10 @@ fn keys_are_read_under_their_previous_names_with_a_note() {
         "{shown}"
     );
 }
+
+#[test]
+fn a_path_with_very_many_parts_is_an_unknown_key() {
+    let path = format!("contact{}friction", ".".repeat(50_000));
+    let shown = refusal("", &[&format!("{path}=0.1")]);
+    assert!(shown.contains("no key `contact..."), "{shown:.400}");
+}
