@@ -2,9 +2,7 @@
 
 use std::sync::Arc;
 
-use super::law::{
-    CIRCLE_FACTOR, MEASURED_AT, NodeWear, WearLaw, WearLawKind, first_times,
-};
+use super::law::{CIRCLE_FACTOR, MEASURED_AT, NodeWear, WearLaw, WearLawKind, first_times};
 use super::{MM_PER_M, MeanCycle};
 use crate::parameter::{Known, Parameter};
 
