@@ -77,7 +77,7 @@ def test_stubs_are_those_of_the_compiled_module() -> None:
 
 
 def test_pyright_is_content_with_the_examples() -> None:
-    command = [sys.executable, "-m", "pyright", "--pythonpath", sys.executable]
+    command = [sys.executable, "-m", "pyright", "--project", ".", "--pythonpath", sys.executable]
     done = subprocess.run(command, capture_output=True, text=True, cwd=ROOT / "python", check=False)
     assert done.returncode == 0, done.stdout + done.stderr
 

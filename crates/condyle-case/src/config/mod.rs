@@ -1,6 +1,6 @@
 //! Files of keys and values: every key is declared once, read with the place of each problem, and written back.
 //!
-//! The layer is independent of contents: cases, studies and measured data declare their own keys ([`Settings`]) and
+//! The layer is independent of contents: cases, studies and measured data declare their own keys (`Settings`) and
 //! their own problems ([`Reason`]).
 
 mod columns;
@@ -29,7 +29,7 @@ pub use setting::{Level, Levels, Names, Points};
 pub(crate) use columns::{Cell, Columns, no_column, other_unit};
 pub(crate) use document::{rename, set_value, take, value_at};
 pub(crate) use items::{Choices, Item, Offered, TableItem, check, keys};
-pub(crate) use key::{Key, Kind, WhereSilent, names, number, plain, quoted_list, within};
+pub(crate) use key::{Key, Kind, WhereSilent, names, number, plain, quoted, quoted_list, within};
 pub(crate) use log::{Base, Log};
 pub(crate) use problem::{Placed, Source, read_source};
 pub(crate) use reason::{Fault, both, idle, out_of_range, unknown_word};
@@ -39,9 +39,6 @@ pub(crate) use setting::{Setting, choice, read_word, wrong_type};
 pub(crate) use settings::{Settings, settings, variants};
 pub(crate) use suggest::{likeliest, nearest};
 pub(crate) use writer::Writer;
-
-#[cfg(feature = "file-system")]
-pub(crate) use key::quoted;
 
 #[cfg(test)]
 pub(crate) use suggest::SYNONYMS;

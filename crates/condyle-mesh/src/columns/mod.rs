@@ -6,7 +6,8 @@
 //! let block = TriangleMesh::block(Vec3::new(-10.0, 0.0, -15.0), Vec3::new(10.0, 8.0, 15.0));
 //! let (columns, holes) = column_mesh(&block, true, None, Meshing { edge_mm: 2.0, layers: 3 })?;
 //! assert!((columns.mesh.volume() - 4800.0).abs() < 1.0);
-//! assert!(columns.mesh.worst_quality() > 0.9 && holes.is_empty());
+//! // The elements at the corners of the outline are mitred, which costs them about sin 45 degrees.
+//! assert!(columns.mesh.worst_quality() > 0.6 && holes.is_empty());
 //! # Ok::<(), condyle_mesh::columns::ColumnError>(())
 //! ```
 

@@ -48,7 +48,7 @@ impl FemoralSurface {
     /// The gap is the mean over a small flat share of surface around the point: with the share's
     /// second moment M that is g + K:M/2, taken as g + `spread_mm2` div n, and exact to third
     /// order. `spread_mm2` is tr M / 4, a 24th of the area of a square share. A mesh's field includes
-    /// its own spread already, see [`SmoothField::averaged_over`].
+    /// its own spread already.
     #[inline(always)]
     pub fn sample<T: Number>(&self, point: &Vector<T>, spread_mm2: T) -> SurfaceSample<T> {
         match self {

@@ -197,7 +197,7 @@ impl Insert {
         }
     }
 
-    /// Moves every surface node inwards along its normal, or [along its wall](Self::with_rim_along_walls), and the mesh
+    /// Moves every surface node inwards along its normal, or along its wall at the rim, and the mesh
     /// below with it.
     ///
     /// `depth_mm`: one per surface node, 0 or more. The thickness shrinks by as much.
