@@ -61,7 +61,7 @@ pub fn exception(class: &str, arguments: impl for<'py> PyCallArgs<'py>) -> PyErr
 fn fields(problem: &Problem) -> (String, [Option<String>; 3], Option<(usize, usize)>) {
     let file = problem.file().map(str::to_owned);
     let texts = [
-        problem.reason.advice(),
+        problem.advice().map(str::to_owned),
         problem.key().map(str::to_owned),
         file,
     ];

@@ -77,7 +77,7 @@ impl From<&Problem> for Wrong {
         let (line, column) = problem.line_and_column().unzip();
         Self {
             message: problem.to_string(),
-            advice: problem.reason.advice(),
+            advice: problem.advice().map(str::to_owned),
             file: problem.file().map(str::to_owned),
             line,
             column,

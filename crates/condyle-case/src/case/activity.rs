@@ -1,9 +1,9 @@
 //! Activities of the machine, each with its own inputs.
 
-use condyle::machine::Waveform;
+use condyle::machine::{Waveform, knee};
 
 use super::machine::{Freedoms, Machine, Sign, Waveforms};
-use super::waveform::{CaseChannel, waveform_items};
+use super::waveform::waveform_items;
 use crate::config::{Fault, Item, Log, Section, Settings, TableItem, Writer, settings, within};
 
 /// Largest deviation of the sum of shares from 1: thirds are written with a few digits.
@@ -131,14 +131,13 @@ impl Activity {
             Waveforms::read(section, freedoms, log)
         });
         let (keys, waveforms) = (keys?, waveforms?);
-        let load = CaseChannel::load();
         let presses = |waveform: &Waveform| waveform.knots().iter().any(|knot| knot.value > 0.0);
-        if !waveforms.get(load).is_none_or(presses) {
+        if !waveforms.get(&knee::AXIAL_FORCE).is_none_or(presses) {
             let name = &keys.name;
             let message =
                 format!("the activity \"{name}\" has no load: its axial force is never above 0 N");
             let fault = Fault::new(message, "give it an axial force that presses");
-            log.problem(section.key_span(load.name()), fault);
+            log.problem(section.key_span(knee::AXIAL_FORCE.name), fault);
             return None;
         }
         Some(Self { keys, waveforms })
@@ -154,11 +153,11 @@ fn check_inputs(
 ) -> Option<()> {
     let mut complete = Some(());
     for channel in freedoms.channels() {
-        let table = channel.name();
+        let table = channel.name;
         if section.value(table).is_some() {
             continue;
         }
-        let (what, none) = if channel == CaseChannel::load() {
+        let (what, none) = if *channel == knee::AXIAL_FORCE {
             ("load", "")
         } else {
             (table, ", or its `waveform = \"none\"`")

@@ -6,43 +6,16 @@ use condyle::contact::{
 use condyle_fem::{Elastic, ElasticPlastic, Hardening, HardeningError};
 
 use super::pressure_table::StrainTable;
-use crate::config::{Fault, Log, Points, Section, choice, settings, variants, within};
+use crate::config::{Fault, Log, Points, Section, settings, variants, within, words};
 
-choice! {
-    /// Friction of a deformable insert.
-    FrictionModelWord {
-        /// Friction goes with the sliding speed, and does not move the surface.
+words! {
+    FrictionModel {
         Regularised = "regularised",
-        /// The surface yields along itself, and each node sticks or slides.
         StickSlip = "stick-slip",
     }
-
-    /// Search for the nodes that may touch.
-    SearchWord {
-        /// By bounds that are carried along as the femur moves.
+    Search {
         Coherent = "coherent",
-        /// Every node is a candidate, every time.
         BruteForce = "brute-force",
-    }
-}
-
-impl FrictionModelWord {
-    /// Returns the model of friction.
-    pub fn model(self) -> FrictionModel {
-        match self {
-            Self::Regularised => FrictionModel::Regularised,
-            Self::StickSlip => FrictionModel::StickSlip,
-        }
-    }
-}
-
-impl SearchWord {
-    /// Returns the search.
-    pub fn search(self) -> Search {
-        match self {
-            Self::Coherent => Search::Coherent,
-            Self::BruteForce => Search::BruteForce,
-        }
     }
 }
 
@@ -54,7 +27,7 @@ settings! {
         /// Sliding speed at which friction is nearly full: smaller is truer and slower.
         slip_tolerance_mm_per_s: f64 = 0.3, in within(1e-6, 1000.0);
         /// Search for the nodes that may touch; the results are the same, brute force is the slow reference.
-        search: SearchWord = SearchWord::Coherent;
+        search: Search = Search::Coherent;
         /// Motion up to which a sample of the femur is extrapolated rather than computed again, which changes the force by less than a hundred-thousandth; 0 computes every sample.
         sample_reuse_mm: f64 = Foundation::SAMPLE_REUSE_MM, in within(0.0, 0.02);
         /// The model of the insert.
@@ -70,7 +43,7 @@ settings! {
     /// The insert as a body of finite elements on its tray.
     DeformableContact {
         /// Friction: regularised, it goes with the sliding speed by slip_tolerance_mm_per_s; stick-slip, the surface yields along itself, and each node sticks or slides by Coulomb's law, without a tolerance, which takes some seven times the time and the implicit integrator.
-        friction_model: FrictionModelWord = FrictionModelWord::Regularised;
+        friction_model: FrictionModel = FrictionModel::Regularised;
         /// Yield of the insert.
         [flat] plasticity: PlasticityChoice;
         /// Support of the backside.
@@ -173,7 +146,7 @@ impl Contact {
 impl DeformableContact {
     /// An elastic insert with regularised friction that is bonded to its tray.
     pub const ELASTIC: Self = Self {
-        friction_model: FrictionModelWord::Regularised,
+        friction_model: FrictionModel::Regularised,
         plasticity: PlasticityChoice::None,
         backside: BacksideChoice::Bonded,
     };

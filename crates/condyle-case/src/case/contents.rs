@@ -149,7 +149,7 @@ impl Settings for Origin {
     fn read(_: &Section<'_>, log: &mut Log<'_>) -> Option<Self> {
         let places = log.places.iter();
         Some(Self {
-            source: Arc::clone(log.source()),
+            source: Arc::clone(&log.source),
             places: places
                 .map(|(place, path)| (path.clone(), place.clone()))
                 .collect(),

@@ -5,21 +5,16 @@ use thiserror::Error;
 use toml::Spanned;
 use toml::de::DeValue;
 
-use crate::config::{Fault, Key, Kind, Log, Setting, choice, read_word, settings, wrong_type};
+use crate::config::{
+    Fault, Key, Kind, Log, Setting, choice, read_word, settings, words, wrong_type,
+};
 
 pub use condyle_results::Side;
 
-impl Setting for Side {
-    fn kind() -> Kind {
-        Kind::Word(Self::WORDS.to_vec())
-    }
-
-    fn read(value: &Spanned<DeValue<'_>>, key: &Key, log: &mut Log<'_>) -> Option<Self> {
-        Self::from_word(read_word(value, key, Self::WORDS, log)?)
-    }
-
-    fn text(&self) -> Option<String> {
-        Some(format!("{:?}", self.word()))
+words! {
+    Side {
+        Right = "right",
+        Left = "left",
     }
 }
 

@@ -109,7 +109,7 @@ impl Case {
         let source = &self.origin.source;
         let problem = |(location, message): &(KeyLocation, String)| {
             let (key, span) = location.place(&self.origin.places);
-            Problem::at(source, span, key.as_deref(), Fault::new(message, ""))
+            Problem::at(source, (span, Fault::new(message, "")), key)
         };
         Problems::new(errors.iter().map(problem).collect(), source)
     }

@@ -1,14 +1,13 @@
 //! The simulator: its own keys, its six freedoms, and the waveforms that drive them.
 
 use condyle::machine::knee::{self, KNEE};
-use condyle::machine::{JointDescription, JointIndex, JointKind, Waveform};
+use condyle::machine::{Channel, JointDescription, JointIndex, JointKind, Waveform};
 use toml::Spanned;
 use toml::de::DeValue;
 
-use super::waveform::{CaseChannel, waveform_items};
-use super::waveform_points;
+use super::waveform::{self, waveform_items};
 use crate::config::{
-    Fault, Item, Key, Kind, Log, Section, Setting, Settings, TableItem, Writer, choice, idle, keys,
+    Fault, Item, Key, Kind, Log, Section, Setting, Settings, TableItem, Writer, choice, idle,
     number, quoted_list, rows, settings, within, wrong_type,
 };
 
@@ -73,30 +72,6 @@ settings! {
         free_play_mm: f64 = 2.5, in within(0.0, 50.0);
         /// Distance of each spring to the side of the IE axis.
         lateral_offset_mm: f64 = 28.0, in within(0.0, 100.0);
-    }
-
-    /// A freedom that translates. No source gives inertia and damping: the book explains the defaults.
-    Translation {
-        /// Its drive; that of the preset if not given.
-        drive: Option<DriveWord> = None;
-        /// Position at which it is held when locked.
-        locked_at_mm: f64 = 0.0, in within(-100.0, 100.0);
-        /// Mass that moves with it.
-        inertia_kg: f64 = 1e3 * knee::MASS_TONNE, in within(0.0, 1000.0);
-        /// Viscous damping.
-        damping_n_s_per_mm: f64 = knee::DAMPING_N_S_PER_MM, in within(0.0, 1000.0);
-    }
-
-    /// A freedom that rotates. No source gives inertia and damping: the book explains the defaults.
-    Rotation {
-        /// Its drive; that of the preset if not given.
-        drive: Option<DriveWord> = None;
-        /// Position at which it is held when locked.
-        locked_at_deg: f64 = 0.0, in within(-180.0, 180.0);
-        /// Moment of inertia that moves with it.
-        inertia_kg_m2: f64 = 1e-3 * knee::MOMENT_OF_INERTIA_TONNE_MM2, in within(0.0, 100.0);
-        /// Viscous damping.
-        damping_nm_s_per_rad: f64 = 1e-3 * knee::DAMPING_NMM_S_PER_RAD, in within(0.0, 1000.0);
     }
 }
 
@@ -175,7 +150,7 @@ pub struct Freedoms {
 /// The waveforms of a machine, each in the unit of its key.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Waveforms {
-    given: Vec<(CaseChannel, Waveform)>,
+    given: Vec<(&'static Channel, Waveform)>,
 }
 
 impl Preset {
@@ -211,44 +186,81 @@ impl DriveWord {
     }
 
     /// Returns the waveform that the drive of a joint needs.
-    fn channel(self, joint: &JointDescription) -> Option<CaseChannel> {
-        let channel = match self {
+    fn channel(self, joint: &JointDescription) -> Option<&'static Channel> {
+        match self {
             Self::Locked => None,
             Self::Prescribed => joint.motion,
             Self::Loaded => joint.load_channel(),
-        };
-        channel.map(CaseChannel::of)
+        }
     }
 }
 
 impl Freedom {
+    /// Returns the keys of a freedom: its drive, and position when locked, inertia and damping, each with its default.
+    /// No source gives inertia and damping: the book explains the defaults.
+    fn keys(kind: JointKind) -> (Key, [(Key, f64); 3]) {
+        let number = |name, doc: &'static str, default, least, most| {
+            (
+                Key::number(name, doc, default, within(least, most)),
+                default,
+            )
+        };
+        let about = "Its drive; that of the preset if not given.";
+        let drive = Key::optional("drive", about, DriveWord::kind());
+        let (held, damping) = (
+            "Position at which it is held when locked.",
+            "Viscous damping.",
+        );
+        let numbers = match kind {
+            JointKind::Translation => {
+                let mass = "Mass that moves with it.";
+                [
+                    number("locked_at_mm", held, 0.0, -100.0, 100.0),
+                    number("inertia_kg", mass, 1e3 * knee::MASS_TONNE, 0.0, 1000.0),
+                    number(
+                        "damping_n_s_per_mm",
+                        damping,
+                        knee::DAMPING_N_S_PER_MM,
+                        0.0,
+                        1000.0,
+                    ),
+                ]
+            }
+            JointKind::Rotation => {
+                let moment = "Moment of inertia that moves with it.";
+                let inertia_kg_m2 = 1e-3 * knee::MOMENT_OF_INERTIA_TONNE_MM2;
+                let damping_nm_s_per_rad = 1e-3 * knee::DAMPING_NMM_S_PER_RAD;
+                [
+                    number("locked_at_deg", held, 0.0, -180.0, 180.0),
+                    number("inertia_kg_m2", moment, inertia_kg_m2, 0.0, 100.0),
+                    number(
+                        "damping_nm_s_per_rad",
+                        damping,
+                        damping_nm_s_per_rad,
+                        0.0,
+                        1000.0,
+                    ),
+                ]
+            }
+        };
+        (drive, numbers)
+    }
+
     fn read(
         joint: &JointDescription,
         preset: Preset,
         section: &Section<'_>,
         log: &mut Log<'_>,
     ) -> Option<Self> {
-        let (drive, locked_at, inertia, damping) = match joint.kind() {
-            JointKind::Translation => {
-                let keys = Translation::read(section, log)?;
-                (
-                    keys.drive,
-                    keys.locked_at_mm,
-                    keys.inertia_kg,
-                    keys.damping_n_s_per_mm,
-                )
-            }
-            JointKind::Rotation => {
-                let keys = Rotation::read(section, log)?;
-                (
-                    keys.drive,
-                    keys.locked_at_deg,
-                    keys.inertia_kg_m2,
-                    keys.damping_nm_s_per_rad,
-                )
-            }
+        let (drive, numbers) = Self::keys(joint.kind());
+        let drive: Option<Option<DriveWord>> = section.setting(&drive, Some(None), log);
+        let read = numbers
+            .each_ref()
+            .map(|(key, default)| section.setting(key, Some(*default), log));
+        let [Some(locked_at), Some(inertia), Some(damping)] = read else {
+            return None;
         };
-        let drive = drive.unwrap_or(preset.drive(joint.name));
+        let drive = drive?.unwrap_or(preset.drive(joint.name));
         if !drive.fits(joint) {
             let (freedom, word) = (joint.name, drive.word());
             let fault = Fault::new(
@@ -258,10 +270,7 @@ impl Freedom {
             log.problem(section.value_span("drive"), fault);
         }
         if drive != DriveWord::Locked && locked_at != 0.0 {
-            let key = match joint.kind() {
-                JointKind::Translation => "locked_at_mm",
-                JointKind::Rotation => "locked_at_deg",
-            };
+            let key = numbers[0].0.name;
             log.problem(section.key_span(key), idle(key, "`drive = \"locked\"`"));
         }
         Some(Self {
@@ -273,39 +282,24 @@ impl Freedom {
     }
 
     fn write(&self, joint: &JointDescription, out: &mut Writer) {
-        let drive = Some(self.drive);
-        match joint.kind() {
-            JointKind::Translation => Translation {
-                drive,
-                locked_at_mm: self.locked_at,
-                inertia_kg: self.inertia,
-                damping_n_s_per_mm: self.damping,
-            }
-            .write(out),
-            JointKind::Rotation => Rotation {
-                drive,
-                locked_at_deg: self.locked_at,
-                inertia_kg_m2: self.inertia,
-                damping_nm_s_per_rad: self.damping,
-            }
-            .write(out),
+        let (drive, numbers) = Self::keys(joint.kind());
+        self.drive.write(&drive, out);
+        let values = [self.locked_at, self.inertia, self.damping];
+        for ((key, _), value) in numbers.iter().zip(values) {
+            value.write(key, out);
         }
     }
 
     fn item(joint: &'static JointDescription) -> Item {
-        let mut items = match joint.kind() {
-            JointKind::Translation => Translation::items(),
-            JointKind::Rotation => Rotation::items(),
-        };
-        for item in &mut items {
-            if let Item::Key(key) = item
-                && key.name == "drive"
-            {
-                key.kind = Kind::Word(DriveWord::words_for(joint));
-            }
-        }
+        let (mut drive, numbers) = Self::keys(joint.kind());
+        drive.kind = Kind::Word(DriveWord::words_for(joint));
+        let keys = [drive].into_iter().chain(numbers.map(|(key, _)| key));
         let about = format!("{}: + is {}.", joint.title, joint.positive);
-        Item::Table(TableItem::new(joint.name, &about, items))
+        Item::Table(TableItem::new(
+            joint.name,
+            &about,
+            keys.map(Item::Key).collect(),
+        ))
     }
 }
 
@@ -327,7 +321,7 @@ impl Freedoms {
     }
 
     /// Returns the waveforms that the freedoms need.
-    pub(super) fn channels(&self) -> impl Iterator<Item = CaseChannel> {
+    pub(super) fn channels(&self) -> impl Iterator<Item = &'static Channel> {
         self.in_files()
             .filter_map(|(joint, freedom)| freedom.drive.channel(joint))
     }
@@ -341,24 +335,20 @@ impl Freedoms {
 
     /// Describes the table; the book describes freedoms of a kind together.
     fn item() -> Item {
-        let items = joints_in_files().map(Freedom::item).collect();
-        let page = |kind: JointKind, keys: &[&Key]| {
+        let page = [JointKind::Translation, JointKind::Rotation].map(|kind| {
             let joints = joints_in_files().filter(|joint| joint.kind() == kind);
             let names: Vec<&str> = joints.map(|joint| joint.name).collect();
             let (last, others) = names
                 .split_last()
                 .expect("a machine has freedoms of each kind");
             let others = others.join(", .");
-            format!(
-                "\n## `[machine.freedoms.{others} and .{last}]`\n\n{}",
-                rows(keys)
-            )
-        };
-        let (translation, rotation) = (Translation::items(), Rotation::items());
-        let page = page(JointKind::Translation, &keys(&translation))
-            + &page(JointKind::Rotation, &keys(&rotation));
+            let (drive, [(held, _), (inertia, _), (damping, _)]) = Freedom::keys(kind);
+            let rows = rows(&[&drive, &held, &inertia, &damping]);
+            format!("\n## `[machine.freedoms.{others} and .{last}]`\n\n{rows}")
+        });
+        let items = joints_in_files().map(Freedom::item).collect();
         Item::Table(TableItem {
-            page: Some(page),
+            page: Some(page.concat()),
             ..TableItem::new("freedoms", "The six freedoms.", items)
         })
     }
@@ -370,7 +360,7 @@ fn joints_in_files() -> impl Iterator<Item = &'static JointDescription> {
 
 impl Waveforms {
     /// Returns the waveform of `channel`, if the machine uses it.
-    pub fn get(&self, channel: CaseChannel) -> Option<&Waveform> {
+    pub fn get(&self, channel: &Channel) -> Option<&Waveform> {
         let mut given = self.given.iter();
         given.find_map(|(of, waveform)| (*of == channel).then_some(waveform))
     }
@@ -384,20 +374,18 @@ impl Waveforms {
         let mut given = Vec::new();
         let mut complete = true;
         for (joint, freedom) in freedoms.in_files() {
-            let motion = joint.motion.map(CaseChannel::of);
-            let load = joint.load_channel().map(CaseChannel::of);
-            for channel in [motion, load].into_iter().flatten() {
+            for channel in [joint.motion, joint.load_channel()].into_iter().flatten() {
                 if freedom.drive.channel(joint) == Some(channel) {
-                    let waveform = waveform_points::read(channel, machine, log);
+                    let waveform = waveform::read(channel, machine, log);
                     complete &= waveform.is_some();
                     given.extend(waveform.map(|waveform| (channel, waveform)));
-                } else if machine.value(channel.name()).is_some() {
-                    let wanted = if motion == Some(channel) {
+                } else if machine.value(channel.name).is_some() {
+                    let wanted = if joint.motion == Some(channel) {
                         DriveWord::Prescribed
                     } else {
                         DriveWord::Loaded
                     };
-                    let table = format!("[{}.{}]", machine.path(), channel.name());
+                    let table = format!("[{}.{}]", machine.path(), channel.name);
                     let (name, drive, wanted) = (joint.name, freedom.drive.word(), wanted.word());
                     let fault = Fault::new(
                         format!(
@@ -405,7 +393,7 @@ impl Waveforms {
                         ),
                         format!("remove {table}, or make the freedom `drive = \"{wanted}\"`"),
                     );
-                    log.problem(machine.key_span(channel.name()), fault);
+                    log.problem(machine.key_span(channel.name), fault);
                 }
             }
         }
@@ -414,10 +402,10 @@ impl Waveforms {
 
     /// Writes a table for each waveform.
     pub(super) fn write(&self, out: &mut Writer) {
-        for channel in CaseChannel::all() {
+        for channel in KNEE.channels {
             if let Some(waveform) = self.get(channel) {
-                out.table(channel.name(), |out| {
-                    waveform_points::write(channel, waveform, out);
+                out.table(channel.name, |out| {
+                    waveform::write(channel, waveform, out);
                 });
             }
         }
@@ -427,7 +415,7 @@ impl Waveforms {
 impl Machine {
     /// Returns the freedoms of the machine of a case, ignoring all other problems of the machine.
     pub(super) fn freedoms_in(root: &Section<'_>, log: &Log<'_>) -> Option<Freedoms> {
-        let mut discarded = log.discarded();
+        let mut discarded = Log::new(&log.source, log.base);
         let section = root.part("machine");
         let preset = MachineSettings::read(&section, &mut discarded)?.preset;
         Freedoms::read(&section, preset, &mut discarded)
@@ -474,8 +462,8 @@ impl Settings for Machine {
         if root.value("activity").is_none() {
             return Self::read(&section, log);
         }
-        for channel in CaseChannel::all() {
-            let table = channel.name();
+        for channel in KNEE.channels {
+            let table = channel.name;
             if section.value(table).is_some() {
                 let fault = Fault::new(
                     format!(

@@ -24,7 +24,6 @@ mod schedule;
 #[cfg(test)]
 mod tests;
 mod waveform;
-mod waveform_points;
 mod wear;
 
 pub use activity::{Activities, Activity, ActivityKeys};
@@ -35,8 +34,7 @@ pub use build::{
 };
 pub use contact::{
     BacksideChoice, Contact, ContactModelChoice, DeformableContact, FoundationContact,
-    FrictionModelWord, J2Plasticity, PlasticityChoice, PressureLawChoice, RestingBackside,
-    SearchWord, SofteningCurve,
+    J2Plasticity, PlasticityChoice, PressureLawChoice, RestingBackside, SofteningCurve,
 };
 pub use contents::{Case, Origin, json_schema, schema_markdown};
 pub use femur::{
@@ -48,8 +46,8 @@ pub use insert::{
     InsertShape, MeshInsert,
 };
 pub use machine::{
-    DriveWord, Freedom, Freedoms, Machine, MachineSettings, Preset, Rotation, Sign, Springs,
-    StiffnessOf, Translation, Waveforms,
+    DriveWord, Freedom, Freedoms, Machine, MachineSettings, Preset, Sign, Springs, StiffnessOf,
+    Waveforms,
 };
 pub use material::{
     Creep, CrossLinking, HighlyCrossLinked, LogarithmicCreep, Material, ModeratelyCrossLinked,
@@ -58,7 +56,6 @@ pub use pressure_table::{StrainTable, TableError};
 pub use reader::{CaseReader, template};
 pub use run_options::{Accuracy, Limits, Output};
 pub use schedule::{AutoUpdates, FixedUpdates, IntegratorWord, March, Time, Update};
-pub use waveform::{CaseChannel, InterpolationWord};
 pub use wear::{ConstantError, Wear, WearLaws};
 
 #[cfg(feature = "file-system")]

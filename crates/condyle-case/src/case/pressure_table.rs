@@ -188,7 +188,7 @@ impl Form {
 
     fn csv_points(&self, text: &str, file: &str) -> Result<PressureTable, Vec<Placed>> {
         let header = self.header.join(",");
-        let columns = Columns::split(text, file, &header).map_err(|placed| vec![placed])?;
+        let columns = Columns::split(text, file, &header)?;
         self.check_header(&columns)?;
         let (overclosures, pressures) = (columns.numbers(0)?, columns.numbers(1)?);
         let point = |(d, p): (&Cell, &Cell)| (d.value, p.value);
@@ -196,7 +196,7 @@ impl Form {
         PressureTable::new(points).map_err(|error| {
             let cell = overclosures.get(point_of(&error));
             let at = cell.map_or(0..0, |cell| cell.span.clone());
-            vec![Placed::new(at, self.fault(self.ways[1], &error))]
+            vec![(at, self.fault(self.ways[1], &error))]
         })
     }
 
@@ -204,7 +204,7 @@ impl Form {
         let names = columns.names();
         let problem = |index: usize| {
             let (unit, suffix) = self.units[index];
-            Placed::new(
+            (
                 columns.name_span(index),
                 other_unit(names[index], unit, suffix),
             )

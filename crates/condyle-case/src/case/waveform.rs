@@ -1,192 +1,97 @@
-//! Waveforms of the machine: the named ones, their tables in a case, and their keys.
+//! Waveforms of the machine: the shipped ones, their tables in a case, and their points there or in a CSV file.
 
-use condyle::machine::knee::KNEE;
-use condyle::machine::{self, ChannelUnit, Interpolation};
+use std::ops::Range;
+use std::sync::Arc;
+
+use condyle::machine::knee::{self, KNEE};
+use condyle::machine::{
+    Channel, ChannelUnit, Interpolation, Knot, Waveform, WaveformError, low_passed, without_drift,
+};
 use condyle::parameter::unit_of;
+use miette::NamedSource;
 
 use crate::config::{
-    DataFile, Item, Key, Kind, Limits, Settings, TableItem, WhereSilent, choice, keys, rows,
-    settings, within,
+    self, Columns, DataFile, Fault, Item, Key, Kind, Limits, Log, Placed, Points, Section, Setting,
+    Settings, Source, TableItem, Writer, both, idle, keys, no_column, other_unit, plain, rows,
+    settings, unknown_word, within, words,
 };
 
-/// A waveform of the machine, as a case has it.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct CaseChannel(&'static machine::Channel);
-
 /// A shipped waveform, as a CSV text.
-pub(super) struct NamedWaveform {
-    pub word: &'static str,
-    pub file: &'static str,
-    pub text: &'static str,
-    pub interpolation: Interpolation,
+struct NamedWaveform {
+    /// Name of the channel with hyphens; empty for every channel.
+    channel: &'static str,
+    word: &'static str,
+    file: &'static str,
+    text: &'static str,
+    interpolation: Interpolation,
 }
 
 macro_rules! shipped {
-    ($word:literal, $file:literal, $interpolation:ident) => {
-        NamedWaveform {
+    ($( $channel:literal $interpolation:ident: $($word:literal)+; )+) => {
+        &[$($(NamedWaveform {
+            channel: $channel,
             word: $word,
-            file: concat!("cases/waveforms/", $file),
-            text: include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/waveforms/", $file)),
+            file: concat!("cases/waveforms/", $word, "-", $channel, ".csv"),
+            text: include_str!(concat!(
+                env!("CARGO_MANIFEST_DIR"), "/waveforms/", $word, "-", $channel, ".csv"
+            )),
             interpolation: Interpolation::$interpolation,
-        }
+        },)+)+]
     };
 }
 
+const SHIPPED: &[NamedWaveform] = shipped! {
+    "axial-force" HalfCosine: "iso-like" "paper-like" "stairs-like" "chair-like";
+    "flexion" HalfCosine: "iso-like" "stairs-like" "chair-like";
+    "ap-force" HalfCosine: "iso-like" "stairs-like" "chair-like";
+    "ie-torque" HalfCosine: "iso-like" "stairs-like" "chair-like";
+    "ap-motion" Spline: "iso-like";
+    "ie-motion" Spline: "iso-like";
+};
+
 const NONE: NamedWaveform = NamedWaveform {
+    channel: "",
     word: "none",
     file: "none",
     text: "percent,none\n0,0\n",
     interpolation: Interpolation::HalfCosine,
 };
 
-impl CaseChannel {
-    /// Returns the channel of the load that presses the femur on the insert.
-    pub(super) fn load() -> Self {
-        Self(&machine::knee::AXIAL_FORCE)
-    }
+/// Returns the shipped waveforms of a channel; every channel except the load may also be zero.
+fn named(channel: &'static Channel) -> impl Iterator<Item = &'static NamedWaveform> {
+    let name = channel.name.replace('_', "-");
+    let shipped = SHIPPED.iter().filter(move |one| one.channel == name);
+    shipped.chain((*channel != knee::AXIAL_FORCE).then_some(&NONE))
+}
 
-    /// Returns every channel, in the order they are written.
-    pub fn all() -> impl Iterator<Item = Self> {
-        KNEE.channels.iter().copied().map(Self)
-    }
+pub(super) fn words_of(channel: &'static Channel) -> Vec<&'static str> {
+    named(channel).map(|named| named.word).collect()
+}
 
-    /// Returns the channel of a machine.
-    pub fn of(channel: &'static machine::Channel) -> Self {
-        Self(channel)
-    }
-
-    /// Returns the machine's description.
-    pub fn of_machine(self) -> &'static machine::Channel {
-        self.0
-    }
-
-    /// Name of its table inside `[machine]`.
-    pub fn name(self) -> &'static str {
-        self.0.name
-    }
-
-    /// Describes it and its positive direction.
-    pub fn about(self) -> &'static str {
-        self.0.about
-    }
-
-    /// Returns the key that gives its knots in the case file.
-    pub fn knots_key(self) -> &'static str {
-        match self.0.unit {
-            ChannelUnit::Newton => "knots_n",
-            ChannelUnit::NewtonMetre => "knots_nm",
-            ChannelUnit::Millimetre => "knots_mm",
-            ChannelUnit::Degree => "knots_deg",
-        }
-    }
-
-    pub(super) fn knots(self) -> Key {
-        Key {
-            name: self.knots_key(),
-            doc: "Points [percent of the cycle, value] in the case file itself.".into(),
-            kind: Kind::Pairs,
-            silent: WhereSilent::LeftOut,
-            limits: Some(self.limits()),
-        }
-    }
-
-    /// Returns the keys of which exactly one gives the points: by name, from a file, or directly.
-    pub(super) fn ways(self) -> [&'static str; 3] {
-        ["waveform", "file", self.knots_key()]
-    }
-
-    fn items(self) -> Vec<Item> {
-        let mut items = WaveformSource::items();
-        for item in &mut items {
-            if let Item::Key(key) = item
-                && key.name == "waveform"
-            {
-                key.kind = Kind::Word(self.words());
-            }
-        }
-        items.extend([
-            Item::Key(self.knots()),
-            Item::OneOf(self.ways().to_vec()),
-            Item::Needs("column", "file"),
-        ]);
-        items
-    }
-
-    /// Returns the range of its values, in its unit.
-    pub fn limits(self) -> Limits {
-        within(self.0.least, self.0.most)
-    }
-
-    pub(super) fn words(self) -> Vec<&'static str> {
-        self.named().iter().map(|named| named.word).collect()
-    }
-
-    pub(super) fn named(self) -> &'static [NamedWaveform] {
-        const AXIAL_FORCE: &[NamedWaveform] = &[
-            shipped!("iso-like", "iso-like-axial-force.csv", HalfCosine),
-            shipped!("paper-like", "paper-like-axial-force.csv", HalfCosine),
-            shipped!("stairs-like", "stairs-like-axial-force.csv", HalfCosine),
-            shipped!("chair-like", "chair-like-axial-force.csv", HalfCosine),
-        ];
-        const FLEXION: &[NamedWaveform] = &[
-            shipped!("iso-like", "iso-like-flexion.csv", HalfCosine),
-            shipped!("stairs-like", "stairs-like-flexion.csv", HalfCosine),
-            shipped!("chair-like", "chair-like-flexion.csv", HalfCosine),
-            NONE,
-        ];
-        const AP_FORCE: &[NamedWaveform] = &[
-            shipped!("iso-like", "iso-like-ap-force.csv", HalfCosine),
-            shipped!("stairs-like", "stairs-like-ap-force.csv", HalfCosine),
-            shipped!("chair-like", "chair-like-ap-force.csv", HalfCosine),
-            NONE,
-        ];
-        const IE_TORQUE: &[NamedWaveform] = &[
-            shipped!("iso-like", "iso-like-ie-torque.csv", HalfCosine),
-            shipped!("stairs-like", "stairs-like-ie-torque.csv", HalfCosine),
-            shipped!("chair-like", "chair-like-ie-torque.csv", HalfCosine),
-            NONE,
-        ];
-        const AP_MOTION: &[NamedWaveform] =
-            &[shipped!("iso-like", "iso-like-ap-motion.csv", Spline), NONE];
-        const IE_MOTION: &[NamedWaveform] =
-            &[shipped!("iso-like", "iso-like-ie-motion.csv", Spline), NONE];
-        match self.name() {
-            "axial_force" => AXIAL_FORCE,
-            "flexion" => FLEXION,
-            "ap_force" => AP_FORCE,
-            "ie_torque" => IE_TORQUE,
-            "ap_motion" => AP_MOTION,
-            "ie_motion" => IE_MOTION,
-            _ => &[],
-        }
+/// Returns the key that gives the points of a channel in the case file.
+fn knots_key(channel: &Channel) -> Key {
+    let name = match channel.unit {
+        ChannelUnit::Newton => "knots_n",
+        ChannelUnit::NewtonMetre => "knots_nm",
+        ChannelUnit::Millimetre => "knots_mm",
+        ChannelUnit::Degree => "knots_deg",
+    };
+    let doc = "Points [percent of the cycle, value] in the case file itself.";
+    let limits = Some(limits(channel));
+    Key {
+        limits,
+        ..Key::optional(name, doc, Kind::Pairs)
     }
 }
 
-choice! {
-    /// Interpolation between the points of a waveform.
-    InterpolationWord {
-        /// Half a cosine: flat at every point.
+fn limits(channel: &Channel) -> Limits {
+    within(channel.least, channel.most)
+}
+
+words! {
+    Interpolation {
         HalfCosine = "half-cosine",
-        /// The periodic cubic spline, for samples.
         Spline = "spline",
-    }
-}
-
-impl InterpolationWord {
-    /// Returns the word for an interpolation.
-    pub fn of(interpolation: Interpolation) -> Self {
-        match interpolation {
-            Interpolation::HalfCosine => Self::HalfCosine,
-            Interpolation::Spline => Self::Spline,
-        }
-    }
-
-    /// Returns the interpolation.
-    pub fn interpolation(self) -> Interpolation {
-        match self {
-            Self::HalfCosine => Interpolation::HalfCosine,
-            Self::Spline => Interpolation::Spline,
-        }
     }
 }
 
@@ -208,61 +113,319 @@ settings! {
         /// Keeps the mean and this many harmonics, for noisy samples.
         low_pass_harmonics: Option<u64> = None, in within(1.0, 50.0);
         /// From point to point; half-cosine, but spline for a file or a low pass.
-        interpolation: Option<InterpolationWord> = None;
+        interpolation: Option<Interpolation> = None;
     }
 }
 
 /// The waveform of a case that gives none.
-pub(super) const DEFAULT_WAVEFORM: &str = "iso-like";
-
-const WAVEFORMS: &str = "\
-One of `waveform`, `file` or the points themselves. A freedom takes the waveform that its drive \
-needs; one for another drive is an error.
-
-";
-
-const POINTS: &str = "
-| table | points | unit | values may be | named | what |
-| --- | --- | --- | --- | --- | --- |
-";
+const DEFAULT_WAVEFORM: &str = "iso-like";
 
 /// Describes the table of each waveform; with `in_book`, the first also describes all of them in the book.
 pub(super) fn waveform_items(in_book: bool) -> Vec<Item> {
-    let items = CaseChannel::all().enumerate().map(|(index, channel)| {
+    let table = |(index, channel): (usize, &&'static Channel)| {
         let page = if in_book && index == 0 {
             page()
         } else {
             String::new()
         };
+        let mut items = WaveformSource::items();
+        for item in &mut items {
+            if let Item::Key(key) = item
+                && key.name == "waveform"
+            {
+                key.kind = Kind::Word(words_of(channel));
+            }
+        }
+        let knots = knots_key(channel);
+        let one_of = Item::OneOf(vec!["waveform", "file", knots.name]);
+        items.extend([Item::Key(knots), one_of, Item::Needs("column", "file")]);
         Item::Table(TableItem {
             page: Some(page),
-            ..TableItem::new(channel.name(), channel.about(), channel.items())
+            ..TableItem::new(channel.name, channel.about, items)
         })
-    });
-    items.collect()
+    };
+    KNEE.channels.iter().enumerate().map(table).collect()
 }
 
 fn page() -> String {
-    let named = |channel: CaseChannel| format!("`[machine.{}]`", channel.name());
-    let tables: Vec<String> = CaseChannel::all().map(named).collect();
+    let table = |channel: &&Channel| format!("`[machine.{}]`", channel.name);
+    let tables: Vec<String> = KNEE.channels.iter().map(table).collect();
     let keys = rows(&keys(&WaveformSource::items()));
-    let channels: String = CaseChannel::all().map(row).collect();
+    let row = |channel: &&'static Channel| {
+        let key = knots_key(channel).name;
+        format!(
+            "| `{}` | `{key}` | {} | {} | {} | {} |\n",
+            channel.name,
+            unit_of(key).unwrap_or_default(),
+            limits(channel),
+            words_of(channel).join(", "),
+            channel.about,
+        )
+    };
+    let channels: String = KNEE.channels.iter().map(row).collect();
     format!(
-        "\n## Waveforms: {}\n\n{WAVEFORMS}{keys}{POINTS}{channels}",
+        "\n## Waveforms: {}\n\n\
+        One of `waveform`, `file` or the points themselves. A freedom takes the waveform that its drive \
+        needs; one for another drive is an error.\n\n{keys}\n\
+        | table | points | unit | values may be | named | what |\n\
+        | --- | --- | --- | --- | --- | --- |\n{channels}",
         tables.join(", ")
     )
 }
 
-fn row(channel: CaseChannel) -> String {
-    let key = channel.knots_key();
-    format!(
-        "| `{}` | `{key}` | {} | {} | {} | {} |\n",
-        channel.name(),
-        unit_of(key).unwrap_or_default(),
-        channel.limits(),
-        channel.words().join(", "),
-        channel.about(),
-    )
+/// Points of a waveform before they are scaled.
+struct Samples {
+    knots: Vec<Knot>,
+    /// Place of each point in `source`.
+    spans: Vec<Range<usize>>,
+    /// The text that the points are in; `None` for the case file.
+    source: Option<Source>,
+    interpolation: Interpolation,
+}
+
+/// Reads the waveform of `channel` from its table in `machine`.
+pub(super) fn read(
+    channel: &'static Channel,
+    machine: &Section<'_>,
+    log: &mut Log<'_>,
+) -> Option<Waveform> {
+    let section = machine.table(channel.name, log);
+    let keys = WaveformSource::read(&section, log)?;
+    let samples = samples(channel, &section, &keys, log)?;
+    let mut knots = samples.knots;
+    for knot in &mut knots {
+        knot.value = knot.value * keys.scale + keys.offset;
+    }
+    if keys.remove_drift {
+        knots = without_drift(&knots);
+    }
+    let interpolation = keys.interpolation.unwrap_or(samples.interpolation);
+    let mut waveform = Waveform::new(knots.clone(), interpolation);
+    if let (Ok(noisy), Some(harmonics)) = (&waveform, keys.low_pass_harmonics) {
+        waveform = Waveform::new(low_passed(noisy, harmonics as usize), Interpolation::Spline);
+    }
+    let (index, fault) = match waveform {
+        Ok(waveform) => match out_of_range(channel, &knots) {
+            Some(found) => found,
+            None => return Some(waveform),
+        },
+        Err(error) => {
+            let advice = match error {
+                WaveformError::Seam { .. } => "or, for a measured cycle, set `remove_drift = true`",
+                _ => "",
+            };
+            let fault = Fault::new(format!("[{}]: {error}", section.path()), advice);
+            (point_of(&error, &knots), fault)
+        }
+    };
+    let span = samples.spans.get(index).cloned().unwrap_or(section.span());
+    match &samples.source {
+        Some(source) => log.noted(source, Err(vec![(span, fault)])),
+        None => {
+            log.problem(span, fault);
+            None
+        }
+    }
+}
+
+/// Writes the table of a waveform, by the default name or by its points.
+pub(super) fn write(channel: &Channel, waveform: &Waveform, out: &mut Writer) {
+    out.comment(channel.about);
+    if out.names_waveforms {
+        let name = format!("waveform = {DEFAULT_WAVEFORM:?}");
+        out.line(&name, "Or file and column, or knots.");
+        return;
+    }
+    let interpolation = waveform.interpolation().text().unwrap_or_default();
+    out.line(
+        &format!("interpolation = {interpolation}"),
+        "From point to point.",
+    );
+    let key = knots_key(channel).name;
+    out.comment(&format!(
+        "[percent of the cycle, {}]",
+        unit_of(key).unwrap_or_default()
+    ));
+    let knots = waveform.knots().iter();
+    let pairs: Vec<(f64, f64)> = knots.map(|knot| (knot.percent, knot.value)).collect();
+    out.pairs(key, &pairs);
+}
+
+/// Reads the points that the table gives by name, by file or directly.
+fn samples(
+    channel: &'static Channel,
+    section: &Section<'_>,
+    keys: &WaveformSource,
+    log: &mut Log<'_>,
+) -> Option<Samples> {
+    let knots = knots_key(channel);
+    let ways = ["waveform", "file", knots.name];
+    let mut given = ways.into_iter().filter(|way| section.value(way).is_some());
+    if let (Some(first), Some(second)) = (given.next(), given.next()) {
+        let fault = both(&section.name(), first, second);
+        log.problem(section.key_span(second), fault);
+        return None;
+    }
+    if keys.column.is_some() && keys.file.is_none() {
+        log.problem(section.key_span("column"), idle("column", "`file`"));
+    }
+    if let Some(file) = &keys.file {
+        return from_file(channel, section, file, keys.column.as_deref(), log);
+    }
+    let points: Option<Points> = section.setting(&knots, Some(None), log)?;
+    if let Some(Points(points)) = points {
+        let place = |index| section.item_span(knots.name, index);
+        let knot = |&(percent, value): &(f64, f64)| Knot { percent, value };
+        return Some(Samples {
+            knots: points.iter().map(knot).collect(),
+            spans: (0..points.len()).map(place).collect(),
+            source: None,
+            interpolation: Interpolation::HalfCosine,
+        });
+    }
+    if section.is_given() && keys.waveform.is_none() {
+        let message = format!("{} needs one of `{}`", section.name(), ways.join("`, `"));
+        log.problem(section.span(), Fault::new(message, ""));
+        return None;
+    }
+    let word = keys.waveform.as_deref().unwrap_or(DEFAULT_WAVEFORM);
+    let Some(named) = named(channel).find(|named| named.word == word) else {
+        let fault = unknown_word("waveform", word, &words_of(channel));
+        log.problem(section.value_span("waveform"), fault);
+        return None;
+    };
+    let source = Arc::new(NamedSource::new(named.file, named.text.to_owned()));
+    let columns = Columns::split(named.text, named.file, "");
+    let read = columns.and_then(|columns| column_points(&columns, 1));
+    Samples::in_text(source, read, named.interpolation, log)
+}
+
+fn from_file(
+    channel: &Channel,
+    section: &Section<'_>,
+    file: &DataFile,
+    column: Option<&str>,
+    log: &mut Log<'_>,
+) -> Option<Samples> {
+    let source = file.source(section, "file", log)?;
+    let key = knots_key(channel).name;
+    let suffix = key.trim_start_matches("knots");
+    let example = format!("percent,{}{suffix}", channel.name);
+    let split = Columns::split(source.inner(), &file.name(), &example);
+    let columns = log.noted(&source, split)?;
+    let names = columns.names();
+    let index = match column {
+        Some(column) => (1..names.len()).find(|&index| names[index] == column),
+        None => (names.len() == 2).then_some(1),
+    };
+    let Some(index) = index else {
+        let (columns, file) = (&names[1..], file.name());
+        let (key, fault) = match column {
+            Some(column) => ("column", no_column(column, &file, columns)),
+            None => {
+                let message = format!("{file} has several columns and the case names none of them");
+                let advice = format!("add `column = `, one of {}", columns.join(", "));
+                ("file", Fault::new(message, advice))
+            }
+        };
+        log.problem(section.value_span(key), fault);
+        return None;
+    };
+    let mut problems = Vec::new();
+    let first = names[0].to_lowercase();
+    if !["percent", "pct", "%"]
+        .iter()
+        .any(|word| first.contains(word))
+    {
+        let fault = Fault::new(
+            format!(
+                "the first column must be the percent of the cycle, this one is `{}`",
+                names[0]
+            ),
+            "name it `percent`, and let it run from 0 to 100",
+        );
+        problems.push((columns.name_span(0), fault));
+    }
+    // The unit ends what precedes a bracket, as in `ant_mm(xtrans)`.
+    let name = names[index].split('(').next().unwrap_or_default();
+    let unit = unit_of(key);
+    if unit_of(&name.to_lowercase()) != unit {
+        let fault = other_unit(names[index], unit.unwrap_or_default(), suffix);
+        problems.push((columns.name_span(index), fault));
+    }
+    let read = if problems.is_empty() {
+        column_points(&columns, index)
+    } else {
+        Err(problems)
+    };
+    Samples::in_text(Arc::clone(&source), read, Interpolation::Spline, log)
+}
+
+type PlacedKnots = (Vec<Knot>, Vec<Range<usize>>);
+
+impl Samples {
+    fn in_text(
+        source: Source,
+        read: Result<PlacedKnots, Vec<Placed>>,
+        interpolation: Interpolation,
+        log: &mut Log<'_>,
+    ) -> Option<Self> {
+        let (knots, spans) = log.noted(&source, read)?;
+        let source = Some(source);
+        Some(Self {
+            knots,
+            spans,
+            source,
+            interpolation,
+        })
+    }
+}
+
+/// Reads percent from the first column and values from column `index`.
+fn column_points(columns: &Columns<'_>, index: usize) -> Result<PlacedKnots, Vec<Placed>> {
+    let (percents, values) = match (columns.numbers(0), columns.numbers(index)) {
+        (Ok(percents), Ok(values)) => (percents, values),
+        (percents, values) => {
+            let problems = [percents.err(), values.err()].into_iter().flatten();
+            return Err(problems.flatten().collect());
+        }
+    };
+    let rows = percents.iter().zip(&values).map(|(percent, value)| {
+        let knot = Knot {
+            percent: percent.value,
+            value: value.value,
+        };
+        (knot, percent.span.start..value.span.end)
+    });
+    Ok(rows.unzip())
+}
+
+/// Returns the first value outside the channel's range.
+fn out_of_range(channel: &Channel, knots: &[Knot]) -> Option<(usize, Fault)> {
+    let limits = limits(channel);
+    let index = knots.iter().position(|knot| !limits.allow(knot.value))?;
+    let (knot, unit) = (
+        &knots[index],
+        unit_of(knots_key(channel).name).unwrap_or_default(),
+    );
+    let value = format!("{} {unit} at {} %", plain(knot.value), knot.percent);
+    let fault = config::out_of_range(channel.name, &value, &format!("{limits} {unit}"));
+    Some((index, fault))
+}
+
+/// Returns the index of the point at fault.
+fn point_of(error: &WaveformError, knots: &[Knot]) -> usize {
+    match *error {
+        WaveformError::Empty => 0,
+        WaveformError::NotFinite { index }
+        | WaveformError::OutsideCycle { index, .. }
+        | WaveformError::NotIncreasing { index, .. } => index,
+        WaveformError::Gap { from, .. } => {
+            let at = |knot: &Knot| knot.percent == from;
+            knots.iter().position(at).unwrap_or(0)
+        }
+        WaveformError::Seam { .. } => knots.len() - 1,
+    }
 }
 
 #[cfg(test)]
@@ -271,10 +434,14 @@ mod tests {
 
     #[test]
     fn every_waveform_has_a_default_and_a_key_with_its_unit() {
-        for channel in CaseChannel::all() {
-            assert!(!channel.named().is_empty(), "{}", channel.name());
-            let suffix = channel.of_machine().unit.suffix();
-            assert_eq!(channel.knots_key(), format!("knots_{suffix}"));
+        for channel in KNEE.channels {
+            assert!(
+                words_of(channel).contains(&DEFAULT_WAVEFORM),
+                "{}",
+                channel.name
+            );
+            let suffix = channel.unit.suffix();
+            assert_eq!(knots_key(channel).name, format!("knots_{suffix}"));
         }
     }
 }

@@ -1,14 +1,11 @@
 //! The wear law: any of a list of kinds, each with the constants that it declares.
 
-use std::borrow::Cow;
-
 use condyle::parameter::{Known, Parameter};
 use condyle::wear::{NamedLaw, WEAR_LAWS, WearLawKind};
 use thiserror::Error;
 
 use crate::config::{
-    Choices, Item, Key, Limits, Log, Offered, Section, Setting, Settings, TableItem, WhereSilent,
-    Writer, within,
+    Choices, Item, Key, Limits, Log, Offered, Section, Setting, Settings, TableItem, Writer, within,
 };
 
 /// Kinds of wear law to choose from; the first is the default.
@@ -205,20 +202,12 @@ impl Settings for Wear {
 }
 
 fn key_of(parameter: &Parameter) -> Key {
-    Key {
-        name: parameter.name,
-        doc: doc_of(parameter),
-        kind: f64::kind(),
-        silent: WhereSilent::Takes(format!("{:?}", parameter.default)),
-        limits: Some(limits_of(parameter)),
-    }
-}
-
-fn doc_of(parameter: &Parameter) -> Cow<'static, str> {
-    if parameter.known == Known::Approximate {
-        return format!("{} The default is approximate.", parameter.about).into();
-    }
-    parameter.about.into()
+    let approximate = match parameter.known {
+        Known::Approximate => " The default is approximate.",
+        Known::Read | Known::Chosen => "",
+    };
+    let doc = format!("{}{approximate}", parameter.about);
+    Key::number(parameter.name, doc, parameter.default, limits_of(parameter))
 }
 
 fn limits_of(parameter: &Parameter) -> Limits {

@@ -1,23 +1,20 @@
-//! Files that a file names.
+//! Files that a file names, and columns of numbers in a CSV file, with the place of each.
 
+use std::ops::Range;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use toml::Spanned;
-use toml::de::DeValue;
-
-use super::key::Key;
-use super::key::Kind;
-use super::key::quoted;
-use super::log::Log;
-use super::problem::{Source, read_source};
-use super::reason::missing_file;
-use super::section::Section;
-use super::setting::Setting;
-use super::setting::wrong_type;
 use condyle_mesh::files::Files;
 #[cfg(feature = "file-system")]
 use condyle_mesh::files::path_from;
+use toml::Spanned;
+use toml::de::DeValue;
+
+use super::fault::{Fault, missing_file};
+use super::key::{Key, Kind, quoted};
+use super::problem::{Log, Placed, Source, read_source};
+use super::section::Section;
+use super::setting::{Setting, wrong_type};
 
 /// A file that another file names, and that existed when the other was read.
 ///
@@ -102,7 +99,7 @@ impl Setting for DataFile {
             wrong_type(value, key, log);
             return None;
         };
-        let base = log.base();
+        let base = log.base;
         match Self::find(base.files, written, base.folder) {
             Ok(file) => Some(file),
             Err(path) => {
@@ -114,5 +111,181 @@ impl Setting for DataFile {
 
     fn text(&self) -> Option<String> {
         Some(quoted(&self.written.display().to_string()))
+    }
+}
+
+/// A CSV file: names of its columns, and rows of unparsed cells.
+pub(crate) struct Columns<'a> {
+    text: &'a str,
+    header: Vec<Range<usize>>,
+    rows: Vec<Vec<Range<usize>>>,
+}
+
+/// A number and its place.
+pub(crate) struct Cell {
+    pub value: f64,
+    pub span: Range<usize>,
+}
+
+impl<'a> Columns<'a> {
+    /// Splits `text` into a header and rows; `example` shows a header where there is none.
+    ///
+    /// The header is the last line above the numbers with as many names as they have columns, and
+    /// may be a comment; a name ends at a blank, so that a remark may follow the last.
+    pub(crate) fn split(text: &'a str, file: &str, example: &str) -> Result<Self, Vec<Placed>> {
+        let is_data = |line: &Range<usize>| {
+            let first = text[line.clone()].split(',').next().unwrap_or_default();
+            first.trim().parse::<f64>().is_ok()
+        };
+        let lines: Vec<Range<usize>> = lines(text).collect();
+        let start = lines.iter().position(is_data).unwrap_or(lines.len());
+        let columns = lines.get(start).map_or(2, |line| cells(text, line).len());
+        if columns < 2 {
+            let fault = Fault::new(
+                format!("{file} has one column where two or more are needed"),
+                format!("put commas between the columns, as in `{example}`"),
+            );
+            return Err(vec![(lines[start].clone(), fault)]);
+        }
+        let named = |line: &&Range<usize>| cells(text, line).len() == columns;
+        let Some(header) = lines[..start].iter().rev().find(named) else {
+            let first = lines.first().cloned().unwrap_or(0..0);
+            let advice = format!(
+                "write one above the numbers, with the unit in the name, such as `{example}`"
+            );
+            let fault = Fault::new(
+                format!("{file} has no header that names its columns"),
+                advice,
+            );
+            return Err(vec![(first, fault)]);
+        };
+        let is_row = |line: &&Range<usize>| !text[(*line).clone()].trim_start().starts_with('#');
+        let rows = lines[start..].iter().filter(is_row);
+        Ok(Self {
+            text,
+            header: names_in(text, header),
+            rows: rows.map(|line| cells(text, line)).collect(),
+        })
+    }
+
+    pub(crate) fn names(&self) -> Vec<&'a str> {
+        let name = |span: &Range<usize>| &self.text[span.clone()];
+        self.header.iter().map(name).collect()
+    }
+
+    pub(crate) fn name_span(&self, column: usize) -> Range<usize> {
+        self.header[column].clone()
+    }
+
+    /// Returns the numbers of a column, or a problem for every other cell.
+    pub(crate) fn numbers(&self, column: usize) -> Result<Vec<Cell>, Vec<Placed>> {
+        let read = self.collected(self.rows.iter().enumerate(), column)?;
+        Ok(read.into_iter().map(|(_, cell)| cell).collect())
+    }
+
+    /// Returns the numbers of a column with their rows, without empty cells, or a problem for every other cell.
+    pub(crate) fn numbers_given(&self, column: usize) -> Result<Vec<(usize, Cell)>, Vec<Placed>> {
+        let is_given = |row: &[Range<usize>]| row.get(column).is_none_or(|span| !span.is_empty());
+        let rows = self.rows.iter().enumerate();
+        self.collected(rows.filter(|(_, row)| is_given(row)), column)
+    }
+
+    fn collected<'r>(
+        &self,
+        rows: impl Iterator<Item = (usize, &'r Vec<Range<usize>>)>,
+        column: usize,
+    ) -> Result<Vec<(usize, Cell)>, Vec<Placed>> {
+        let (mut good, mut bad) = (Vec::new(), Vec::new());
+        for (index, row) in rows {
+            match self.number(row, column) {
+                Ok(cell) => good.push((index, cell)),
+                Err(problem) => bad.push(problem),
+            }
+        }
+        if bad.is_empty() { Ok(good) } else { Err(bad) }
+    }
+
+    fn number(&self, row: &[Range<usize>], column: usize) -> Result<Cell, Placed> {
+        let end = row.last().map_or(0, |last| last.end);
+        let span = row.get(column).cloned().unwrap_or(end..end);
+        let text = &self.text[span.clone()];
+        match text.parse::<f64>() {
+            Ok(value) if value.is_finite() => Ok(Cell { value, span }),
+            Ok(_) | Err(_) => {
+                let column = self.names()[column];
+                let message = format!("`{text}` in column `{column}` is not a finite number");
+                let fault = Fault::new(message, "write a number there, or remove the row");
+                Err((span, fault))
+            }
+        }
+    }
+}
+
+fn lines(text: &str) -> impl Iterator<Item = Range<usize>> + '_ {
+    let mut start = 0;
+    let span = move |line: &str| {
+        let span = start..start + line.trim_end().len();
+        start += line.len();
+        span
+    };
+    text.split_inclusive('\n')
+        .map(span)
+        .filter(|line| !line.is_empty())
+}
+
+fn cells(text: &str, line: &Range<usize>) -> Vec<Range<usize>> {
+    let mut start = line.start;
+    let cell = |cell: &str| {
+        let before = cell.len() - cell.trim_start().len();
+        let span = start + before..start + before + cell.trim().len();
+        start += cell.len() + 1;
+        span
+    };
+    text[line.clone()].split(',').map(cell).collect()
+}
+
+/// Returns the names in a header: its cells without the `#` of a comment, each up to a blank.
+fn names_in(text: &str, line: &Range<usize>) -> Vec<Range<usize>> {
+    let after_hash = |span: Range<usize>| {
+        let name = text[span.clone()].trim_start_matches(['#', ' ', '\t']);
+        let start = span.end - name.len();
+        let length = name.find(char::is_whitespace).unwrap_or(name.len());
+        start..start + length
+    };
+    cells(text, line).into_iter().map(after_hash).collect()
+}
+
+/// Returns the fault of a column that the `file` does not have among `columns`.
+pub(crate) fn no_column(column: &str, file: &str, columns: &[&str]) -> Fault {
+    Fault::new(
+        format!("there is no column `{column}` in {file}"),
+        format!("it has {}", columns.join(", ")),
+    )
+}
+
+/// Returns the fault of a column in another unit.
+pub(crate) fn other_unit(column: &str, unit: &str, suffix: &str) -> Fault {
+    Fault::new(
+        format!("column `{column}` is in another unit than {unit}, which is needed here"),
+        format!("let its name end in `{suffix}`, with values in {unit}"),
+    )
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn header_may_be_a_comment_with_a_remark() {
+        let text = "# measured, in May\n# pct_cycle,ant_mm(xtrans),flex_deg  source: a, thesis\n\
+                    0,1.0,2.0\n50, 3.0 ,4.0\n";
+        let text = text.replace("a, thesis", "thesis");
+        let columns = Columns::split(&text, "x.csv", "percent,y_mm").unwrap();
+        assert_eq!(columns.names(), ["pct_cycle", "ant_mm(xtrans)", "flex_deg"]);
+        let Ok(cells) = columns.numbers(1) else {
+            panic!("all are numbers");
+        };
+        assert_eq!(cells.iter().map(|cell| cell.value).sum::<f64>(), 4.0);
+        assert_eq!(&text[cells[1].span.clone()], "3.0");
     }
 }

@@ -1,8 +1,8 @@
 //! Entries of declared tables: they define a table for the reader, the schema and the book.
 
+use super::fault::other_choice;
 use super::key::{Key, Kind, WhereSilent};
-use super::log::Log;
-use super::reason::other_choice;
+use super::problem::Log;
 use super::section::Section;
 use super::setting::read_word;
 

@@ -10,14 +10,38 @@ use toml::de::DeValue;
 pub(crate) struct Key {
     /// Name in the file, which ends in the unit of a quantity.
     pub name: &'static str,
-    /// Meaning.
     pub doc: Cow<'static, str>,
-    /// Type of the value.
     pub kind: Kind,
-    /// Default.
     pub silent: WhereSilent,
-    /// Range of a number.
     pub limits: Option<Limits>,
+}
+
+impl Key {
+    pub fn number(
+        name: &'static str,
+        doc: impl Into<Cow<'static, str>>,
+        default: f64,
+        limits: Limits,
+    ) -> Self {
+        Self {
+            name,
+            doc: doc.into(),
+            kind: Kind::Number,
+            silent: WhereSilent::Takes(format!("{default:?}")),
+            limits: Some(limits),
+        }
+    }
+
+    /// Declares a key that may be left out.
+    pub fn optional(name: &'static str, doc: impl Into<Cow<'static, str>>, kind: Kind) -> Self {
+        Self {
+            name,
+            doc: doc.into(),
+            kind,
+            silent: WhereSilent::LeftOut,
+            limits: None,
+        }
+    }
 }
 
 /// The default of a key.
@@ -38,23 +62,17 @@ pub(crate) fn names(keys: &[Key]) -> impl Iterator<Item = &'static str> + '_ {
 /// The type of a value; `Display` describes it in words.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(crate) enum Kind {
-    /// A number.
     Number,
     /// A number without a fraction.
     WholeNumber,
     /// 1 or -1.
     Sign,
-    /// True or false.
     Truth,
-    /// Any text.
     Text,
-    /// Path of a file.
     Path,
-    /// One of a few words.
     Word(Vec<&'static str>),
     /// Three words, each one of a few.
     ThreeWords(&'static [&'static str]),
-    /// Any names.
     Names,
     /// Numbers or words, one or more.
     Levels,

@@ -1,17 +1,21 @@
-//! Problems of a file, each at its place.
+//! Problems of a file, each at its place, collected while the file is read.
 
-use std::fmt;
 use std::ops::Range;
 use std::path::Path;
 use std::sync::Arc;
 
-use miette::NamedSource;
-
-use super::reason::{Fault, Reason};
+use condyle::wear::{WEAR_LAWS, WearLawKind};
 use condyle_mesh::files::Files;
+use miette::NamedSource;
+use thiserror::Error;
+
+use super::fault::Fault;
 
 /// A named text that problems point into.
 pub(crate) type Source = Arc<NamedSource<String>>;
+
+/// A fault and its place in a text that the context defines.
+pub(crate) type Placed = (Range<usize>, Fault);
 
 /// Reads a file; the name under which problems show it is its path.
 pub(crate) fn read_source(files: &dyn Files, path: &Path) -> Result<Source, Fault> {
@@ -26,70 +30,37 @@ pub(crate) fn read_source(files: &dyn Files, path: &Path) -> Result<Source, Faul
     }
 }
 
-/// A reason and its place in a text that the context defines.
-#[derive(Clone, Debug)]
-pub(crate) struct Placed {
-    pub span: Range<usize>,
-    pub reason: Arc<dyn Reason>,
-}
-
-impl Placed {
-    pub(crate) fn new(span: Range<usize>, reason: impl Reason) -> Self {
-        let reason = Arc::new(reason);
-        Self { span, reason }
-    }
-}
-
-/// One problem, at its place.
-#[derive(Clone, Debug)]
+/// One problem, at its place; `Display` describes it.
+#[derive(Clone, Debug, Error)]
+#[error("{}", fault.message)]
 pub struct Problem {
-    /// Description of the problem as data.
-    pub reason: Arc<dyn Reason>,
-    pub(super) source: Option<Source>,
+    fault: Fault,
+    pub(super) text: Option<Source>,
     pub(super) span: Option<Range<usize>>,
-    pub(super) key: Option<String>,
+    key: Option<String>,
 }
 
 impl Problem {
     /// Returns a problem of `source` at the dotted path `key`.
-    pub(crate) fn at(
-        source: &Source,
-        span: Range<usize>,
-        key: Option<&str>,
-        reason: impl Reason,
-    ) -> Self {
-        let key = key.map(str::to_owned);
+    pub(crate) fn at(source: &Source, (span, fault): Placed, key: Option<String>) -> Self {
+        let (text, span) = (Some(Arc::clone(source)), Some(span));
         Self {
+            fault,
+            text,
+            span,
             key,
-            ..Self::placed(source, Placed::new(span, reason))
         }
     }
 
-    pub(super) fn placed(source: &Source, placed: Placed) -> Self {
-        Self {
-            reason: placed.reason,
-            source: Some(Arc::clone(source)),
-            span: Some(placed.span),
-            key: None,
-        }
-    }
-
-    pub(super) fn nowhere(reason: impl Reason) -> Self {
-        Self {
-            reason: Arc::new(reason),
-            source: None,
-            span: None,
-            key: None,
-        }
+    /// Returns the remedy, if it does not follow from the description.
+    pub fn advice(&self) -> Option<&str> {
+        Some(self.fault.advice.as_str()).filter(|advice| !advice.is_empty())
     }
 
     /// Returns line and column, both from 1; none for a file that could not be opened.
     pub fn line_and_column(&self) -> Option<(usize, usize)> {
-        let before = self
-            .source
-            .as_ref()?
-            .inner()
-            .get(..self.span.as_ref()?.start)?;
+        let text = self.text.as_ref()?.inner();
+        let before = text.get(..self.span.as_ref()?.start)?;
         let line_start = before.rfind('\n').map_or(0, |newline| newline + 1);
         let column = before[line_start..].chars().count() + 1;
         Some((before.matches('\n').count() + 1, column))
@@ -102,17 +73,9 @@ impl Problem {
 
     /// Returns the name of the file that has the problem.
     pub fn file(&self) -> Option<&str> {
-        self.source.as_ref().map(|source| source.name())
+        self.text.as_ref().map(|text| text.name())
     }
 }
-
-impl fmt::Display for Problem {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        self.reason.fmt(f)
-    }
-}
-
-impl std::error::Error for Problem {}
 
 /// All problems of a file and of the files that it names, in the order of the file.
 #[derive(Clone, Debug)]
@@ -123,8 +86,8 @@ pub struct Problems {
 impl Problems {
     /// Problems of the file `main` come first, in its order; then those of files it names.
     pub(crate) fn new(mut problems: Vec<Problem>, main: &Source) -> Self {
-        let elsewhere = |problem: &Problem| match &problem.source {
-            Some(source) => !Arc::ptr_eq(source, main),
+        let elsewhere = |problem: &Problem| match &problem.text {
+            Some(text) => !Arc::ptr_eq(text, main),
             None => false,
         };
         problems.sort_by_key(|problem| {
@@ -135,14 +98,78 @@ impl Problems {
     }
 
     /// Creates the problem of a file that cannot be opened.
-    pub(crate) fn unreadable(reason: impl Reason) -> Self {
-        Self {
-            problems: vec![Problem::nowhere(reason)],
-        }
+    pub(crate) fn unreadable(fault: Fault) -> Self {
+        let (text, span, key) = (None, None, None);
+        let problems = vec![Problem {
+            fault,
+            text,
+            span,
+            key,
+        }];
+        Self { problems }
     }
 
     /// Returns the problems, one or more.
     pub fn problems(&self) -> &[Problem] {
         &self.problems
+    }
+}
+
+/// The files and the folder from which the paths in a file are resolved.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Base<'a> {
+    pub(crate) files: &'a Arc<dyn Files>,
+    pub(crate) folder: &'a Path,
+}
+
+impl<'a> Base<'a> {
+    /// Returns the folder of the file at `path`.
+    pub(crate) fn of(files: &'a Arc<dyn Files>, path: &'a Path) -> Self {
+        let folder = path.parent().unwrap_or(Path::new(""));
+        Self { files, folder }
+    }
+}
+
+/// Problems found so far in one file and the files it names.
+pub(crate) struct Log<'a> {
+    pub(crate) source: Source,
+    pub(crate) base: Base<'a>,
+    pub(crate) problems: Vec<Problem>,
+    /// Places of the file's keys, with their dotted paths: problems name the key that they are at.
+    pub(crate) places: Vec<(Range<usize>, String)>,
+    /// Wear laws to choose from; a program may add its own.
+    pub(crate) wear_laws: &'static [&'static WearLawKind],
+}
+
+impl<'a> Log<'a> {
+    pub(crate) fn new(source: &Source, base: Base<'a>) -> Self {
+        Self {
+            source: Arc::clone(source),
+            base,
+            problems: Vec::new(),
+            places: Vec::new(),
+            wear_laws: WEAR_LAWS,
+        }
+    }
+
+    /// Adds a problem of the file.
+    pub(crate) fn problem(&mut self, span: Range<usize>, fault: Fault) {
+        // Tables precede the keys inside them, so the last place that holds the span is the innermost.
+        let mut places = self.places.iter();
+        let key = places.rfind(|(place, _)| place.contains(&span.start));
+        let key = key.map(|(_, path)| path.clone());
+        self.problems
+            .push(Problem::at(&self.source, (span, fault), key));
+    }
+
+    /// Returns what was read from `source`, a file that this one names, or adds its problems.
+    pub(crate) fn noted<T>(&mut self, source: &Source, read: Result<T, Vec<Placed>>) -> Option<T> {
+        read.map_err(|all| {
+            let problems = all
+                .into_iter()
+                .map(|placed| Problem::at(source, placed, None));
+            self.problems.extend(problems);
+        })
+        .ok()
     }
 }

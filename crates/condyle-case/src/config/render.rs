@@ -75,7 +75,7 @@ pub(super) struct Shown<'a> {
 
 impl<'a> Shown<'a> {
     pub(super) fn new(problem: &'a Problem) -> Self {
-        let Some(source) = problem.source.as_deref() else {
+        let Some(source) = problem.text.as_deref() else {
             let (source, span) = (None, problem.span.clone());
             return Self {
                 problem,
@@ -104,7 +104,7 @@ impl std::error::Error for Shown<'_> {}
 
 impl Diagnostic for Shown<'_> {
     fn help<'a>(&'a self) -> Option<Box<dyn fmt::Display + 'a>> {
-        let advice = with_short_words(&self.problem.reason.advice()?);
+        let advice = with_short_words(&self.problem.advice()?);
         Some(Box::new(visible(&advice)))
     }
 

@@ -1,13 +1,12 @@
-//! Types of values: what a file may have behind a key, read and written.
+//! Types of values that a file may have behind a key, read and written.
 
 use condyle::parameter::unit_of;
 use toml::Spanned;
 use toml::de::DeValue;
 
+use super::fault::{self, out_of_range, unknown_word};
 use super::key::{Key, Kind, number, quoted, type_name};
-use super::log::Log;
-use super::reason::{self, out_of_range, unknown_word};
-use super::writer::Writer;
+use super::problem::Log;
 
 /// A type of value.
 pub(crate) trait Setting: Sized {
@@ -175,7 +174,7 @@ impl<T: Setting> Setting for Option<T> {
 /// Reports that `value` has another type than `key` takes.
 pub(crate) fn wrong_type(value: &Spanned<DeValue<'_>>, key: &Key, log: &mut Log<'_>) {
     let found = type_name(value.get_ref());
-    let fault = reason::wrong_type(key.name, &key.kind.to_string(), found);
+    let fault = fault::wrong_type(key.name, &key.kind.to_string(), found);
     log.problem(value.span(), fault);
 }
 
@@ -239,7 +238,7 @@ impl Setting for Points {
 
     fn read(value: &Spanned<DeValue<'_>>, key: &Key, log: &mut Log<'_>) -> Option<Self> {
         let mut wrong = |value: &Spanned<DeValue<'_>>, wanted: &str| {
-            let fault = reason::wrong_type(key.name, wanted, type_name(value.get_ref()));
+            let fault = fault::wrong_type(key.name, wanted, type_name(value.get_ref()));
             log.problem(value.span(), fault);
         };
         let Some(list) = value.get_ref().as_array() else {
@@ -305,9 +304,16 @@ macro_rules! choice {
             }
         }
 
+        $crate::config::words! { $name { $($variant = $word,)+ } }
+    )+ };
+}
+
+/// Declares the words of files for the variants of an enum.
+macro_rules! words {
+    ($( $name:ident { $($variant:ident = $word:literal,)+ } )+) => { $(
         impl $crate::config::Setting for $name {
             fn kind() -> $crate::config::Kind {
-                $crate::config::Kind::Word(Self::WORDS.to_vec())
+                $crate::config::Kind::Word(vec![$($word),+])
             }
 
             fn read(
@@ -315,15 +321,86 @@ macro_rules! choice {
                 key: &$crate::config::Key,
                 log: &mut $crate::config::Log<'_>,
             ) -> Option<Self> {
-                let word = $crate::config::read_word(value, key, Self::WORDS, log)?;
-                Self::from_word(word)
+                match $crate::config::read_word(value, key, &[$($word),+], log)? {
+                    $( $word => Some(Self::$variant), )+
+                    _ => None,
+                }
             }
 
             fn text(&self) -> Option<String> {
-                Some(format!("{:?}", self.word()))
+                Some(format!("{:?}", match self { $( Self::$variant => $word, )+ }))
             }
         }
     )+ };
 }
 
-pub(crate) use choice;
+pub(crate) use {choice, words};
+
+/// Writes a file key by key, with the meaning of each key as a comment.
+#[derive(Default)]
+pub(crate) struct Writer {
+    text: String,
+    path: Vec<String>,
+    /// Waveforms are written by their names rather than by their points.
+    pub(crate) names_waveforms: bool,
+}
+
+/// Column at which comments start, if the value is short enough.
+const COMMENT_COLUMN: usize = 40;
+
+impl Writer {
+    /// Returns a writer of waveforms by their names or by their points.
+    pub(crate) fn new(names_waveforms: bool) -> Self {
+        Self {
+            names_waveforms,
+            ..Self::default()
+        }
+    }
+
+    /// Writes the table `name` inside the one being written.
+    pub(crate) fn table(&mut self, name: &str, write: impl FnOnce(&mut Self)) {
+        self.headed(name, ["[", "]"], write);
+    }
+
+    /// Writes the next table of the list `name`.
+    pub(crate) fn table_of_list(&mut self, name: &str, write: impl FnOnce(&mut Self)) {
+        self.headed(name, ["[[", "]]"], write);
+    }
+
+    fn headed(&mut self, name: &str, [open, close]: [&str; 2], write: impl FnOnce(&mut Self)) {
+        self.path.push(name.to_owned());
+        let path = self.path.join(".");
+        self.text.push_str(&format!("\n{open}{path}{close}\n"));
+        write(self);
+        self.path.pop();
+    }
+
+    pub(crate) fn comment(&mut self, text: &str) {
+        self.text.push_str(&format!("# {text}\n"));
+    }
+
+    /// Writes an assignment followed by its meaning.
+    pub(crate) fn line(&mut self, assignment: &str, doc: &str) {
+        let doc = doc.trim();
+        let line = format!("{assignment:<COMMENT_COLUMN$} # {doc}\n");
+        self.text.push_str(&line);
+    }
+
+    /// Writes pairs of numbers, a few on each line.
+    pub(crate) fn pairs(&mut self, key: &str, pairs: &[(f64, f64)]) {
+        const PAIRS_ON_A_LINE: usize = 4;
+        self.text.push_str(&format!("{key} = [\n"));
+        for some in pairs.chunks(PAIRS_ON_A_LINE) {
+            let some: Vec<String> = some
+                .iter()
+                .map(|(a, b)| format!("[{a:?}, {b:?}]"))
+                .collect();
+            self.text.push_str(&format!("    {},\n", some.join(", ")));
+        }
+        self.text.push_str("]\n");
+    }
+
+    pub(crate) fn into_text(self) -> String {
+        self.text
+    }
+}

@@ -2,9 +2,9 @@
 
 use super::items::{Item, TableItem, check, keys};
 use super::key::Key;
-use super::log::Log;
+use super::problem::Log;
 use super::section::Section;
-use super::writer::Writer;
+use super::setting::Writer;
 
 /// A part of a file that is declared once.
 pub(crate) trait Settings: Sized {

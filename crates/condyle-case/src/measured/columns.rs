@@ -18,7 +18,7 @@ pub(super) fn repeated(columns: &Columns<'_>) -> Vec<Placed> {
     let problem = |index: usize| {
         let message = format!("the column `{}` is in its file twice", names[index]);
         let fault = Fault::new(message, "give each column its own name");
-        Placed::new(columns.name_span(index), fault)
+        (columns.name_span(index), fault)
     };
     (0..names.len()).filter(again).map(problem).collect()
 }
@@ -32,7 +32,7 @@ pub(super) fn misnamed_first(columns: &Columns<'_>, wanted: &'static str) -> Opt
             format!("put `{wanted}` first, and name it so"),
         )
     };
-    (found != wanted).then(|| Placed::new(columns.name_span(0), fault()))
+    (found != wanted).then(|| (columns.name_span(0), fault()))
 }
 
 /// Reads the first column, whose numbers grow within `limits`, `range` in words.
@@ -48,7 +48,7 @@ pub(super) fn growing(
         let message =
             format!("`{column}` is {value}, after {before} in the row above: it must grow");
         let fault = Fault::new(message, "sort the rows, and keep one of each");
-        Placed::new(pair[1].span.clone(), fault)
+        (pair[1].span.clone(), fault)
     };
     let mut problems: Vec<Placed> = cells.windows(2).filter(falls).map(problem).collect();
     problems.extend(outside(column, &cells, limits, range));
@@ -66,7 +66,7 @@ pub(super) fn outside(
     let problem = |cell: &Cell| {
         let message = format!("`{column}` is {}: it must be {range}", cell.value);
         let fault = Fault::new(message, "correct the number, or remove the row");
-        Placed::new(cell.span.clone(), fault)
+        (cell.span.clone(), fault)
     };
     wrong.map(problem).collect()
 }

@@ -67,7 +67,7 @@ impl Gravimetric {
         let keys = GravimetricKeys::read_checked(&section, log)?;
         let source = keys.file.source(&section, "file", log)?;
         let split = Columns::split(source.inner(), &keys.file.name(), EXAMPLE);
-        let columns = log.noted(&source, split.map_err(|placed| vec![placed]))?;
+        let columns = log.noted(&source, split)?;
         let controls = soak_columns(&columns, &keys, &section, log)?;
         let (cycles, all) = log.noted(&source, weighed(&columns))?;
         let is_counted = |cycles: &&f64| **cycles >= keys.fit_from_cycles;
@@ -160,7 +160,7 @@ fn specimen(columns: &Columns<'_>, index: usize) -> Result<Specimen, Vec<Placed>
     let Some(name) = column.strip_suffix("_mg") else {
         let message = format!("the name `{column}` does not end in the unit of a mass, _mg");
         let fault = Fault::new(message, "let its name end in `_mg`, with masses in mg");
-        return Err(vec![Placed::new(columns.name_span(index), fault)]);
+        return Err(vec![(columns.name_span(index), fault)]);
     };
     let cells = columns.numbers(index)?;
     let limits = within(1.0, f64::INFINITY);

@@ -93,7 +93,7 @@ impl Kinematics {
 }
 
 fn curves(text: &str, file: &str) -> Result<Vec<MeasuredCurve>, Vec<Placed>> {
-    let columns = Columns::split(text, file, EXAMPLE).map_err(|placed| vec![placed])?;
+    let columns = Columns::split(text, file, EXAMPLE)?;
     let mut problems = repeated(&columns);
     problems.extend(misnamed_first(&columns, "percent"));
     let mut known = Vec::new();
@@ -108,7 +108,7 @@ fn curves(text: &str, file: &str) -> Result<Vec<MeasuredCurve>, Vec<Placed>> {
                 };
                 let message = format!("a run has no column `{name}` to compare with");
                 let fault = Fault::new(message, advice);
-                problems.push(Placed::new(columns.name_span(index), fault));
+                problems.push((columns.name_span(index), fault));
             }
         }
     }
@@ -135,7 +135,7 @@ fn curve(
     if cells.len() < MIN_SAMPLES {
         let span = columns.name_span(index);
         let fault = too_few(column, cells.len(), MIN_SAMPLES);
-        return Err(vec![Placed::new(span, fault)]);
+        return Err(vec![(span, fault)]);
     }
     let sample = |(row, cell): &(usize, Cell)| Sample {
         percent: percents[*row],

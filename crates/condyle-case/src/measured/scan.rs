@@ -113,14 +113,13 @@ fn surface(
 }
 
 fn rows(text: &str, file: &str) -> Result<Vec<Vec3>, Vec<Placed>> {
-    let columns =
-        Columns::split(text, file, &COORDINATES.join(",")).map_err(|placed| vec![placed])?;
+    let columns = Columns::split(text, file, &COORDINATES.join(","))?;
     let names = columns.names();
     let mut found: Vec<Vec<Cell>> = Vec::new();
     for name in COORDINATES {
         let Some(index) = names.iter().position(|column| *column == name) else {
             let fault = no_column(name, file, &names);
-            return Err(vec![Placed::new(columns.name_span(0), fault)]);
+            return Err(vec![(columns.name_span(0), fault)]);
         };
         found.push(columns.numbers(index)?);
     }
@@ -128,7 +127,7 @@ fn rows(text: &str, file: &str) -> Result<Vec<Vec3>, Vec<Placed>> {
     if count < MIN_POINTS {
         let span = columns.name_span(0);
         let fault = too_few(COORDINATES[0], count, MIN_POINTS);
-        return Err(vec![Placed::new(span, fault)]);
+        return Err(vec![(span, fault)]);
     }
     let point = |row: usize| Vec3::from_fn(|axis, _| found[axis][row].value);
     Ok((0..count).map(point).collect())

@@ -3,8 +3,7 @@
 use condyle_results::catalogue::{self, Scalar};
 
 use super::declared::{AnswersKeys, BoundKeys};
-use super::reason::StudyReason;
-use crate::config::{Log, Section, Settings, likeliest, names};
+use crate::config::{Fault, Log, Section, Settings, likeliest, names};
 
 /// The questions that a study answers.
 #[derive(Clone, Debug)]
@@ -46,7 +45,9 @@ impl Answers {
             .map(|two| two.0.iter().map(|name| output("pareto", name)).collect());
         let outputs = outputs?;
         let Some(&first) = outputs.first() else {
-            log.problem(section.value_span("outputs"), StudyReason::NoOutput);
+            let advice = "name one, such as `mass_loss_mg`, or leave the key out";
+            let fault = Fault::new("the study asks for no output", advice);
+            log.problem(section.value_span("outputs"), fault);
             return None;
         };
         let two = pareto.map_or(Some(outputs.clone()), |two| two)?;
@@ -67,8 +68,9 @@ impl Bound {
         let keys = BoundKeys::read(section, log)?;
         let output = output(&keys.output, "output", section, log)?;
         let (least, most) = (keys.least, keys.most);
-        if least.is_none() && most.is_none() {
-            log.problem(section.span(), StudyReason::NoBound);
+        if least.or(most).is_none() {
+            let fault = Fault::new("a limit needs `least`, `most` or both", "add `most = 40.0`");
+            log.problem(section.span(), fault);
             return None;
         }
         Some(Self {
@@ -96,12 +98,13 @@ pub(super) fn output(
     let found = catalogue::output(name);
     if found.is_none() {
         let all: Vec<&str> = catalogue::outputs().map(|output| output.key).collect();
-        let reason = StudyReason::UnknownOutput {
-            name: name.to_owned(),
-            near: likeliest(name, &all),
-            outputs: all.join(", "),
+        let outputs = all.join(", ");
+        let advice = match likeliest(name, &all) {
+            Some(near) => format!("did you mean `{near}`? It can be {outputs}"),
+            None => format!("it can be {outputs}"),
         };
-        log.problem(section.value_span(key), reason);
+        let fault = Fault::new(format!("a run has no output `{name}`"), advice);
+        log.problem(section.value_span(key), fault);
     }
     found
 }

@@ -5,9 +5,8 @@ use std::ops::Range;
 use std::path::Path;
 
 use super::declared::{InputKeys, LevelKeys, Variation};
-use super::reason::StudyReason;
 use crate::case::{Assignment, Case};
-use crate::config::{DataFile, Level, Levels, Log, Placed, Section, Settings, check};
+use crate::config::{DataFile, Fault, Level, Levels, Log, Placed, Section, Settings, check};
 
 /// Deviation from the mean, in standard deviations, up to which a case must accept a normal input: of a million
 /// values 63 lie beyond.
@@ -193,8 +192,11 @@ fn with_middle(
     };
     *middle = middle.or_else(|| case.number_at_or_written(key));
     if middle.is_none() {
-        let key = key.to_owned();
-        log.problem(span.clone(), StudyReason::NoMiddle { key });
+        let fault = Fault::new(
+            format!("the case has no number at `{key}` to start from"),
+            "give `mean` or `mode`, or write the key in the case",
+        );
+        log.problem(span.clone(), fault);
         return None;
     }
     Some(variation)
@@ -212,11 +214,17 @@ fn check_order(variation: &Variation, section: &Section<'_>, log: &mut Log<'_>) 
     if low < high && is_inside {
         return Some(());
     }
-    let reason = match mode.filter(|_| !is_inside) {
-        Some(mode) => StudyReason::ModeOutside { mode, low, high },
-        None => StudyReason::EmptyRange { low, high },
+    let fault = match mode.filter(|_| !is_inside) {
+        Some(mode) => Fault::new(
+            format!("the likeliest value {mode} is not between {low} and {high}"),
+            "give `mode` between `low` and `high`",
+        ),
+        None => Fault::new(
+            format!("the range from {low} to {high} is empty"),
+            "write the smaller one as `low`",
+        ),
     };
-    log.problem(section.value_span("high"), reason);
+    log.problem(section.value_span("high"), fault);
     None
 }
 
@@ -230,8 +238,8 @@ pub(super) fn check_count(
     if count <= MAX_LISTED {
         return Some(());
     }
-    let most = MAX_LISTED;
-    log.problem(span, StudyReason::TooMany { what, count, most });
+    let message = format!("the study has {count} {what}, and {MAX_LISTED} are the most");
+    log.problem(span, Fault::new(message, "divide it into several studies"));
     None
 }
 
@@ -264,9 +272,13 @@ type Table = (Vec<String>, Vec<Vec<Level>>);
 
 /// Reads a CSV text, or reports every row that does not fit.
 fn split(text: &str) -> Result<Table, Vec<Placed>> {
+    let no_rows = || {
+        let advice = "write keys of the case in its first line, such as `contact.friction,insert.thickness_mm`, and values below";
+        Fault::new("the file has no rows", advice)
+    };
     let mut lines = lines(text);
     let Some(head) = lines.next() else {
-        return Err(vec![Placed::new(0..0, StudyReason::NoRows)]);
+        return Err(vec![(0..0, no_rows())]);
     };
     let cells = |line: &Range<usize>| -> Vec<String> {
         let cells = text[line.clone()].split(',');
@@ -285,12 +297,19 @@ fn split(text: &str) -> Result<Table, Vec<Placed>> {
         if row.len() == keys.len() && row.iter().all(|cell| !cell.is_empty()) {
             rows.push(row.into_iter().map(level).collect());
         } else {
-            let (found, wanted) = (row.len(), keys.len());
-            wrong.push(Placed::new(line, StudyReason::WrongShape { found, wanted }));
+            let message = format!(
+                "this row has {} cells where the first line has {}, or an empty one",
+                row.len(),
+                keys.len()
+            );
+            wrong.push((
+                line,
+                Fault::new(message, "give every row one value a column"),
+            ));
         }
     }
     if rows.is_empty() && wrong.is_empty() {
-        wrong.push(Placed::new(head, StudyReason::NoRows));
+        wrong.push((head, no_rows()));
     }
     if wrong.is_empty() {
         Ok((keys, rows))

@@ -8,7 +8,6 @@ mod contents;
 mod declared;
 mod input;
 mod read;
-mod reason;
 
 pub use answers::{Answers, Bound};
 pub use contents::{Alternative, Correlation, Study};

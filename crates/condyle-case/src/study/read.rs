@@ -7,10 +7,9 @@ use super::answers::{Answers, output};
 use super::contents::{Alternative, Correlation, Study};
 use super::declared::{AlternativeKeys, CorrelationKeys, Design, HeadingKeys, Variation};
 use super::input::{Input, check_count, read_rows};
-use super::reason::StudyReason;
 use crate::case::{Assignment, Case, CaseReader, ChangeError};
 use crate::config::{
-    Base, Level, Log, Problems, Section, Settings, names, read_document, read_source,
+    Base, Fault, Level, Log, Problems, Section, Settings, names, read_document, read_source,
 };
 use condyle_mesh::files::{Disk, Files};
 
@@ -69,7 +68,9 @@ fn read_study(
     let (heading, design) = (heading?, design?);
     let case_path = heading.case.path().to_path_buf();
     let case = cases.read(&case_path);
-    let case = case.map_err(|problems| log.of_other_file(&problems)).ok()?;
+    let case = case
+        .map_err(|problems| log.problems.extend_from_slice(problems.problems()))
+        .ok()?;
     let (inputs, rows) = inputs(root, &design, &case, log)?;
     let alternatives = listed(root, "alternative", log, alternative)?;
     check_count(
@@ -100,16 +101,19 @@ fn read_study(
     for (place, input) in study.inputs.iter().enumerate() {
         let before = &study.inputs[..place];
         if before.iter().any(|one| one.key == input.key) {
-            let key = input.key.clone();
-            log.problem(input.span.clone(), StudyReason::Twice { key });
+            let fault = Fault::new(
+                format!("`{}` varies twice", input.key),
+                "keep one of the two, or give both values as columns of rows",
+            );
+            log.problem(input.span.clone(), fault);
         }
         study.check_input(input, &mut left, log);
     }
     for alternative in &study.alternatives {
         if let Some((why, advice)) = study.refusal(&alternative.set) {
-            let name = alternative.name.clone();
-            let reason = StudyReason::AlternativeRefused { name, why, advice };
-            log.problem(alternative.span.clone(), reason);
+            let message = format!("the case rejects the design `{}`: {why}", alternative.name);
+            let fault = Fault::new(message, advice.unwrap_or_default());
+            log.problem(alternative.span.clone(), fault);
         }
     }
     study.check_design(&section, log);
@@ -138,14 +142,19 @@ fn inputs(
     let count = root.list("vary", log)?.len();
     if let Design::Rows(keys) = design {
         if count > 0 {
-            log.problem(root.key_span("vary"), StudyReason::RowsAndVary);
+            let fault = Fault::new(
+                "a study of given rows has its inputs in the file",
+                "remove `[[vary]]`, or choose another kind of design",
+            );
+            log.problem(root.key_span("vary"), fault);
         }
         return read_rows(&root.table("design", log), &keys.file, case, log);
     }
     check_count("inputs", count, root.key_span("vary"), log)?;
     let inputs = listed(root, "vary", log, |one, log| Input::read(one, case, log));
     if count == 0 && root.value("alternative").is_none() {
-        log.problem(0..0, StudyReason::NothingVaries);
+        let advice = "add `[[vary]]` with `key = \"contact.friction\"`, `low` and `high`";
+        log.problem(0..0, Fault::new("the study varies nothing", advice));
         return None;
     }
     Some((inputs?, Vec::new()))
@@ -161,8 +170,9 @@ fn alternative(section: &Section<'_>, log: &mut Log<'_>) -> Option<Alternative> 
         match Assignment::parse(written) {
             Ok(one) => set.push(one),
             Err(error) => {
-                let why = error.to_string();
-                log.problem(section.value_span("set"), StudyReason::NotSet { why });
+                let advice = "write each as `\"insert.thickness_mm=8\"`";
+                let fault = Fault::new(error.to_string(), advice);
+                log.problem(section.value_span("set"), fault);
             }
         }
     }
@@ -180,15 +190,22 @@ fn correlation(section: &Section<'_>, inputs: &[Input], log: &mut Log<'_>) -> Op
     let keys = CorrelationKeys::read(section, log)?;
     let span = section.value_span("keys");
     let [one, other] = &keys.keys.0[..] else {
-        log.problem(span, StudyReason::NotTwoKeys);
+        let advice = "write `keys = [\"contact.friction\", \"wear.wear_factor_mm3_per_nm\"]`";
+        log.problem(
+            span,
+            Fault::new("a correlation is between two keys", advice),
+        );
         return None;
     };
     let mut place = |key: &String| {
         let is_input = |input: &Input| input.key == *key && input.is_continuous();
         let found = inputs.iter().position(is_input);
         if found.is_none() {
-            let key = key.clone();
-            log.problem(span.clone(), StudyReason::NotVaried { key });
+            let fault = Fault::new(
+                format!("`{key}` is no input with a distribution"),
+                "give it a `[[vary]]` with a distribution, or leave the correlation out",
+            );
+            log.problem(span.clone(), fault);
         }
         found
     };
@@ -220,13 +237,18 @@ impl Study {
             }
             all.push(own);
             if self.refusal(&all.concat()).is_some() {
-                let reason = StudyReason::Refused {
-                    key: input.key.clone(),
-                    value: level,
-                    why,
-                    advice,
+                let key = &input.key;
+                let value = match level {
+                    Level::Number(number) => number.to_string(),
+                    Level::Word(word) => format!("{word:?}"),
                 };
-                log.problem(input.span.clone(), reason);
+                let other = "choose values that the case accepts; a normal distribution is tried at four standard \
+                    deviations, and a truncated-normal one at its given ends";
+                let fault = Fault::new(
+                    format!("the case rejects `{key} = {value}`: {why}"),
+                    advice.as_deref().unwrap_or(other),
+                );
+                log.problem(input.span.clone(), fault);
                 break;
             }
         }
@@ -239,7 +261,7 @@ impl Study {
             Err(ChangeError::Assignment(error)) => Some((error.to_string(), None)),
             Err(ChangeError::Case(problems)) => {
                 let first = problems.problems().first()?;
-                Some((first.to_string(), first.reason.advice()))
+                Some((first.to_string(), first.advice().map(str::to_owned)))
             }
         }
     }
@@ -250,7 +272,11 @@ impl Study {
         let design = self.design.word();
         let is_sample = matches!(self.design, Design::LatinHypercube(_) | Design::Sobol(_));
         if !self.correlations.is_empty() && !is_sample {
-            log.problem(span.clone(), StudyReason::CannotCorrelate { design });
+            let fault = Fault::new(
+                format!("inputs of a {design} design cannot be correlated"),
+                "use `kind = \"latin-hypercube\"` or `\"sobol\"`, or leave the correlation out",
+            );
+            log.problem(span.clone(), fault);
         }
         if !self.alternatives.is_empty()
             && matches!(
@@ -258,7 +284,11 @@ impl Study {
                 Design::Optimise(_) | Design::Saltelli(_) | Design::Morris(_)
             )
         {
-            log.problem(span, StudyReason::CannotRank { design });
+            let fault = Fault::new(
+                format!("designs cannot be compared by a {design} design"),
+                "use `kind = \"latin-hypercube\"`, or leave the alternatives out",
+            );
+            log.problem(span, fault);
         }
         match &self.design {
             Design::Optimise(keys) => {
@@ -267,15 +297,21 @@ impl Study {
                     matches!(input.variation, Variation::Uniform(_)) && !input.is_whole
                 };
                 if let Some(input) = self.inputs.iter().find(|input| !is_range(input)) {
-                    let key = input.key.clone();
-                    log.problem(input.span.clone(), StudyReason::NoRange { key });
+                    let fault = Fault::new(
+                        format!("a search needs a range, and `{}` has none", input.key),
+                        "give `low` and `high` of a number that does not count",
+                    );
+                    log.problem(input.span.clone(), fault);
                 }
             }
             Design::Morris(keys) if keys.levels % 2 == 1 => {
-                let levels = keys.levels;
+                let message = format!(
+                    "a Morris design has an even number of levels, not {}",
+                    keys.levels
+                );
                 log.problem(
                     section.value_span("levels"),
-                    StudyReason::OddLevels { levels },
+                    Fault::new(message, "use 4, 6 or 8"),
                 );
             }
             _ => {}

@@ -2,13 +2,15 @@
 
 use std::sync::Arc;
 
-use condyle::contact::{ContactLaw, Deformable, Foundation, PressureLaw, confined_modulus};
+use condyle::contact::{
+    ContactLaw, Deformable, Foundation, FrictionModel, PressureLaw, confined_modulus,
+};
 use condyle::evolve::{Activity, Schedule, Updates, WearTest};
 use condyle::geometry::Insert;
 use condyle::machine::{Integration, TimeSettings};
 
 use super::super::contact::{
-    ContactModelChoice, DeformableContact, FrictionModelWord, PlasticityChoice, PressureLawChoice,
+    ContactModelChoice, DeformableContact, PlasticityChoice, PressureLawChoice,
 };
 use super::super::contents::{Case, CaseNote};
 use super::super::schedule::{IntegratorWord, Update};
@@ -152,7 +154,7 @@ impl Case {
         keep: &dyn Keep,
         bodies: &SharedBodies,
     ) -> Result<Deformable, BuildError> {
-        if model.friction_model == FrictionModelWord::StickSlip
+        if model.friction_model == FrictionModel::StickSlip
             && self.time.integrator == IntegratorWord::Explicit
         {
             return Err(BuildError::Conflict {
@@ -170,9 +172,9 @@ impl Case {
             Deformable::new(elastic, coefficient, slip, backside, insert)
         })?;
         (law.friction, law.slip_tolerance_mm_per_s) = (coefficient, slip);
-        law.search = contact.search.search();
+        law.search = contact.search;
         law.sample_reuse_mm = contact.sample_reuse_mm;
-        law.friction_model = model.friction_model.model();
+        law.friction_model = model.friction_model;
         let law = model.plasticity.with_material(law, elastic);
         let law = law.with_backside(backside, insert)?;
         self.tell_compliance(&law, insert, keep)?;
@@ -197,7 +199,7 @@ impl Case {
         }
         let other = if contact.plasticity != PlasticityChoice::None {
             Some("plasticity = \"j2\"")
-        } else if contact.friction_model == FrictionModelWord::StickSlip {
+        } else if contact.friction_model == FrictionModel::StickSlip {
             Some("friction_model = \"stick-slip\"")
         } else {
             None
@@ -243,7 +245,7 @@ impl Case {
             pressure,
             friction: contact.friction,
             slip_tolerance_mm_per_s: contact.slip_tolerance_mm_per_s,
-            search: contact.search.search(),
+            search: contact.search,
             sample_reuse_mm: contact.sample_reuse_mm,
         }
     }

@@ -3,11 +3,12 @@
 use condyle::Vec3;
 use condyle::evolve::Activity;
 use condyle::machine::knee::{self, KNEE};
-use condyle::machine::{Drive, JointDescription, JointIndex, JointKind, Machine, Spring, Waveform};
+use condyle::machine::{
+    Channel, Drive, JointDescription, JointIndex, JointKind, Machine, Spring, Waveform,
+};
 
 use super::super::contents::Case;
 use super::super::machine::{DriveWord, Freedom, Springs, StiffnessOf};
-use super::super::waveform::CaseChannel;
 use super::super::{activity, machine as case};
 
 const TONNE_PER_KG: f64 = 1e-3;
@@ -54,25 +55,20 @@ impl case::Machine {
     }
 
     /// Returns the waveform of a channel in mm, rad, N or N mm with the sign of its joint; zero without a channel.
-    fn inside(&self, channel: Option<&'static condyle::machine::Channel>) -> Waveform {
-        let channel = channel.map(CaseChannel::of);
+    fn inside(&self, channel: Option<&'static Channel>) -> Waveform {
         let given = channel.and_then(|channel| Some((channel, self.waveforms.get(channel)?)));
         let Some((channel, waveform)) = given else {
             return Waveform::constant(0.0);
         };
-        let waveform = self.adjusted(channel, waveform.clone());
-        waveform.scaled(channel.of_machine().factor())
-    }
-
-    /// Applies offset and signs of the machine, in the unit of files.
-    fn adjusted(&self, channel: CaseChannel, waveform: Waveform) -> Waveform {
-        let settings = &self.settings;
-        match channel.name() {
+        let (settings, waveform) = (&self.settings, waveform.clone());
+        // Offset and signs of the machine are in the unit of files.
+        let adjusted = match channel.name {
             "flexion" => waveform.shifted(settings.flexion_offset_deg),
             "ap_force" => waveform.scaled(settings.ap_force_sign.factor()),
             "ie_torque" => waveform.scaled(settings.ie_torque_sign.factor()),
             _ => waveform,
-        }
+        };
+        adjusted.scaled(channel.factor())
     }
 }
 

@@ -4,7 +4,7 @@ use condyle::machine::knee;
 use std::path::Path;
 
 use super::{assert_shows, parsed, refusal};
-use crate::case::{Assignment, Case, CaseChannel, CaseReader, Creep};
+use crate::case::{Assignment, Case, CaseReader, Creep};
 use condyle_mesh::files::MemoryFiles;
 
 /// The waveforms that an activity of force control needs, all by the same name.
@@ -84,7 +84,7 @@ fn keys_of_an_activity_are_set_by_its_name() {
         .expect("it is a case");
     assert_eq!(case.number_at("activity.stairs.frequency_hz"), Some(0.7));
     assert_eq!(case.number_at("activity.walking.share"), Some(0.85));
-    let load = CaseChannel::of(&knee::AXIAL_FORCE);
+    let load = &knee::AXIAL_FORCE;
     let has_load = |one: &crate::case::Activity| one.waveforms.get(load).is_some();
     assert!(case.activities.iter().all(has_load));
 }

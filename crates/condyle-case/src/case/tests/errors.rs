@@ -3,8 +3,9 @@
 use condyle::geometry::{Insert, Meshing, flat_insert};
 
 use super::{assert_shows, parsed, refusal};
-use crate::case::{Case, FrictionModelWord};
+use crate::case::Case;
 use crate::config::{Problem, RenderStyle};
+use condyle::contact::FrictionModel;
 
 #[test]
 fn syntax_errors_are_all_shown() {
@@ -209,7 +210,7 @@ fn friction_that_sticks_is_that_of_a_deformable_insert_and_of_solved_increments(
     let again = parsed(&case.to_toml()).expect("what is written is a good case");
     assert_eq!(again.contact, case.contact);
     let model = again.contact.deformable().expect("it is deformable");
-    assert_eq!(model.friction_model, FrictionModelWord::StickSlip);
+    assert_eq!(model.friction_model, FrictionModel::StickSlip);
     let explicit = format!("{sticking}[time]\nintegrator = \"explicit\"\n");
     let case = parsed(&explicit).expect("its keys are good");
     let refused = case.contact_law(&flat()).expect_err("it is refused");

@@ -5,7 +5,7 @@ use std::path::Path;
 use condyle::machine::knee;
 
 use super::assert_shows;
-use crate::case::{Case, CaseChannel, PressureLawChoice};
+use crate::case::{Case, PressureLawChoice};
 
 /// A folder with `wave.csv` of this text, and a case that takes its flexion from it.
 fn with_csv(csv: &str, extra: &str) -> Result<Case, String> {
@@ -189,11 +189,7 @@ fn verify_scale_offset_and_low_pass_of_samples() {
     let extra = "scale = -10.0\noffset = 3.0\nlow_pass_harmonics = 2\ninterpolation = \"spline\"\n";
     let csv = csv.replace("100,-0.00000000000000024492935982947064", "100,0");
     let case = with_csv(&csv, extra).unwrap();
-    let flexion = case
-        .machine
-        .waveforms
-        .get(CaseChannel::of(&knee::FLEXION_MOTION))
-        .unwrap();
+    let flexion = case.machine.waveforms.get(&knee::FLEXION_MOTION).unwrap();
     for percent in [0.0, 15.0, 40.0, 77.0] {
         let error = flexion.at(percent / 100.0).0 - (3.0 - 10.0 * wave(percent));
         assert!(error.abs() < 0.02, "{percent} %: {error}");

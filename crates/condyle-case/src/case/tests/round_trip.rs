@@ -2,13 +2,13 @@
 
 use std::path::Path;
 
-use condyle::machine::{self, knee};
+use condyle::machine::{self, knee, knee::KNEE};
 use condyle::wear::WEAR_LAWS;
 
+use super::super::waveform::words_of;
 use super::{cases, has_dm_data, parsed};
 use crate::case::{
-    Case, CaseChannel, DriveWord, FemurShape, InsertShape, Preset, Side, json_schema,
-    schema_markdown, template,
+    Case, DriveWord, FemurShape, InsertShape, Preset, Side, json_schema, schema_markdown, template,
 };
 
 fn shipped(name: &str) -> Case {
@@ -69,7 +69,7 @@ fn force_case_is_the_default_but_for_its_title_and_axial_force() {
     let peak = |case: &Case| {
         case.machine
             .waveforms
-            .get(CaseChannel::of(&knee::AXIAL_FORCE))
+            .get(&knee::AXIAL_FORCE)
             .map(|w| w.at(0.13).0)
     };
     assert_eq!((peak(&case), peak(&default)), (Some(3200.0), Some(2600.3)));
@@ -80,13 +80,13 @@ fn force_case_is_the_default_but_for_its_title_and_axial_force() {
 
 #[test]
 fn every_shipped_waveform_is_read_and_stays_near_its_points() {
-    for channel in CaseChannel::all() {
-        for named in channel.named() {
-            let drive = match channel.name() {
+    for &channel in KNEE.channels {
+        for word in words_of(channel) {
+            let drive = match channel.name {
                 "ap_motion" | "ie_motion" => "stanmore-displacement",
                 _ => "stanmore-force",
             };
-            let (table, word) = (channel.name(), named.word);
+            let table = channel.name;
             let text = format!(
                 "[machine]\npreset = \"{drive}\"\n[machine.{table}]\nwaveform = \"{word}\"\n"
             );
@@ -116,7 +116,6 @@ fn validate_signs_of_the_measured_gait() {
     }
     let case = shipped("dm-knee-displacement.toml");
     let at = |channel: &'static machine::Channel, percent: f64| {
-        let channel = CaseChannel::of(channel);
         let waveform = case.machine.waveforms.get(channel).unwrap();
         waveform.at(percent / 100.0).0
     };
