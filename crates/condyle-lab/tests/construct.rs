@@ -7,7 +7,7 @@ use condyle::{
     evolve::March,
     geometry::{GenericInsertShape, Meshing, TriangleMesh},
 };
-use condyle_case::case::{BuildError, BuildWarning, Built, Case, MeshFault, MeshRemark};
+use condyle_case::case::{BuildError, BuildWarning, Built, Case};
 use condyle_mesh::files::Disk;
 use condyle_mesh::formats::read_surface;
 use condyle_mesh::repair::{Checks, Parts, Touching};
@@ -177,14 +177,10 @@ fn assert_wears_as_alone_in_one_surface(text: &str, insert: &TriangleMesh, heigh
     let construct = grown_together(insert.clone(), height_mm, PLATE.0);
     let fused = unwrapped(built(text, &construct));
     let is_told = |warning: &BuildWarning| {
-        let BuildWarning::Mesh {
-            remark: MeshRemark::CutOffTray { height_mm: cut, .. },
-            ..
-        } = warning
-        else {
-            return false;
-        };
-        (cut - height_mm).abs() < 0.011
+        let text = warning.to_string();
+        let cut = text.split_once("cut at the ledge at y = ");
+        let cut = cut.and_then(|(_, after)| after.split(' ').next()?.parse::<f64>().ok());
+        cut.is_some_and(|cut| (cut - height_mm).abs() < 0.011)
     };
     assert!(fused.warnings.iter().any(is_told), "{:?}", fused.warnings);
     assert_equal(worn(fused), alone);
@@ -194,7 +190,11 @@ fn assert_wears_as_alone_in_one_surface(text: &str, insert: &TriangleMesh, heigh
 fn assert_wears_as_alone_among_shells(text: &str, insert: &TriangleMesh) {
     let alone = worn(unwrapped(built(text, insert)));
     let shells = unwrapped(built(text, &with_shells_below(insert)));
-    let is_told = |warning: &BuildWarning| matches!(warning, BuildWarning::Mesh { remark: MeshRemark::LeftOut(parts), .. } if parts.len() == 2);
+    let is_told = |warning: &BuildWarning| {
+        let text = warning.to_string();
+        text.contains("left out, since they are no part")
+            && text.matches(" triangles ").count() == 2
+    };
     assert!(shells.warnings.iter().any(is_told), "{:?}", shells.warnings);
     assert_equal(worn(shells), alone);
 }
@@ -209,17 +209,11 @@ fn the_generic_insert_on_its_tray() {
 fn a_tray_that_shows_no_ledge_is_an_error_with_the_heights_to_write() {
     let fused = grown_together(generic(), -9.0, 1.0);
     let error = built(GENERIC, &fused).err().unwrap();
-    assert!(
-        matches!(
-            error,
-            BuildError::Mesh {
-                fault: MeshFault::UnclearUnderside { .. },
-                ..
-            }
-        ),
-        "{error}"
-    );
     let said = error.to_string();
+    assert!(
+        said.contains("does not show for certain where the polyethylene ends"),
+        "{said}"
+    );
     assert!(
         said.contains("clip_below_mm = -9.00 where it stands on a plate"),
         "{said}"

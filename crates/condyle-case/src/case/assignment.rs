@@ -5,10 +5,10 @@ use std::ops::Range;
 
 use condyle::parameter::split_unit;
 use thiserror::Error;
-use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
-use super::contents::{Case, CaseNote};
+use super::build::BuildWarning;
+use super::contents::Case;
 use super::renamed::current_path;
 use crate::config::{
     Choices, Item, Problems, Source, likeliest, nearest, number, quoted, set_value, take, value_at,
@@ -101,7 +101,7 @@ impl Assignment {
 
     /// Sets `key` to a value written as in a case, but a word needs no quotes.
     pub fn new(key: &str, text: impl Into<String>) -> Self {
-        let (key, text) = (current_path(key).to_owned(), text.into());
+        let (key, text) = (current_path(key), text.into());
         Self { key, text }
     }
 
@@ -207,7 +207,7 @@ impl<'c> Lines<'c> {
     }
 
     /// Removes the keys that do not apply to a choice that was set, unless they were set too.
-    pub fn leave_out(&self, document: &mut DeTable<'_>, items: &[Item]) -> Vec<CaseNote> {
+    pub fn leave_out(&self, document: &mut DeTable<'_>, items: &[Item]) -> Vec<BuildWarning> {
         let mut notes = Vec::new();
         for change in self.changes {
             let above = change.key.rsplit_once('.').map_or("", |(above, _)| above);
@@ -232,20 +232,17 @@ impl<'c> Lines<'c> {
                 let Some((_, value)) = take(document, &path) else {
                     continue;
                 };
-                notes.push(CaseNote::LeftOut {
-                    written: self.written(&path, &value),
-                    chosen: format!("{} = \"{word}\"", change.key),
-                });
+                let written = match value.get_ref() {
+                    DeValue::Table(_) => format!("[{path}]"),
+                    _ => format!("{path} = {}", &self.shown[value.span()]),
+                };
+                notes.push(BuildWarning::new(format!(
+                    "{written}: left out, since it does not go with {} = \"{word}\", which is set",
+                    change.key
+                )));
             }
         }
         notes
-    }
-
-    fn written(&self, path: &str, value: &Spanned<DeValue<'_>>) -> String {
-        match value.get_ref() {
-            DeValue::Table(_) => format!("[{path}]"),
-            _ => format!("{path} = {}", &self.shown[value.span()]),
-        }
     }
 }
 
@@ -329,7 +326,7 @@ impl Case {
     pub fn has(&self, path: &str) -> bool {
         let path = current_path(path);
         let is_below = |(key, _): &(String, _)| {
-            let rest = key.strip_prefix(path);
+            let rest = key.strip_prefix(&path);
             rest.is_some_and(|rest| rest.is_empty() || rest.starts_with('.'))
         };
         self.keys().iter().any(is_below)
@@ -405,7 +402,7 @@ fn path_called(
     near: impl FnOnce(&[&str]) -> Option<String>,
 ) -> Result<String, AssignmentError> {
     if written.contains('.') {
-        return Ok(current_path(written).to_owned());
+        return Ok(current_path(written));
     }
     let paths = paths();
     let is_meant = |path: &&String| leaf(path) == written || split_unit(leaf(path)).0 == written;

@@ -7,6 +7,7 @@ use std::sync::Arc;
 use condyle::wear::WEAR_LAWS;
 
 use super::activity::Activities;
+use super::build::BuildWarning;
 use super::contact::Contact;
 use super::femur::{Femur, FemurShape};
 use super::frame::{Heading, check_axes};
@@ -132,7 +133,7 @@ pub struct Origin {
     pub(super) source: Source,
     /// Places of values and table names by dotted path: problems of a build point to them.
     pub(super) places: BTreeMap<String, Range<usize>>,
-    pub(super) notes: Vec<CaseNote>,
+    pub(super) notes: Vec<BuildWarning>,
 }
 
 impl PartialEq for Origin {
@@ -158,16 +159,4 @@ impl Settings for Origin {
     }
 
     fn write(&self, _: &mut Writer) {}
-}
-
-/// A remark on the reading of a case, to be shown to the user.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub(super) enum CaseNote {
-    /// A key that does not apply to a choice set from outside, and was left out.
-    LeftOut { written: String, chosen: String },
-    /// A key under the name that it had in the previous version.
-    Renamed {
-        old: &'static str,
-        new: &'static str,
-    },
 }

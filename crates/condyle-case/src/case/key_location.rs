@@ -7,7 +7,7 @@ use std::ops::Range;
 use condyle::evolve::PlacementError;
 use condyle::machine::knee;
 
-use super::build::{Body, BuildError, BuildWarning, MeshRemark};
+use super::build::{BuildError, BuildWarning, Finding};
 use super::contents::Case;
 use super::machine::DriveWord;
 use super::run_options::Limits;
@@ -36,7 +36,9 @@ const SOFT_MPA: f64 = 100.0;
 impl Case {
     /// Returns a failed build as a problem at the key of this case at fault.
     pub fn at_its_key(&self, error: &BuildError) -> Problems {
-        self.errors_at(&[(self.location_of_build(error), error.to_string())])
+        let table = error.table(self.femur.file().map(DataFile::path));
+        let keys = error.keys;
+        self.errors_at(&[(KeyLocation { table, keys }, error.to_string())])
     }
 
     /// Returns a failed placement of this case's bodies as a problem at the key at fault, after axes that `warnings` find
@@ -53,11 +55,9 @@ impl Case {
         };
         let mut errors = Vec::new();
         for warning in warnings {
-            let BuildWarning::Mesh { remark, .. } = warning else {
-                continue;
-            };
-            if let MeshRemark::WrongAxes { wrong } = remark {
-                errors.push((axes_of(wrong.body), warning.to_string()));
+            if let Finding::WrongAxes(body) = warning.finding {
+                let (table, keys) = (body.table(), &["axes", "file"]);
+                errors.push((KeyLocation { table, keys }, warning.to_string()));
             }
         }
         errors.push((location, error.to_string()));
@@ -76,17 +76,6 @@ impl Case {
         };
         let is_given = self.limits.memory_gb != Limits::DEFAULT_GB;
         self.errors_at(&[(if is_given { limits } else { insert }, message)])
-    }
-
-    fn location_of_build(&self, error: &BuildError) -> KeyLocation {
-        let keys = error.keys();
-        if let BuildError::Conflict { table, .. } = error {
-            return KeyLocation { table, keys };
-        }
-        let file = error.file();
-        let is_of_femur = file.is_some() && file == self.femur.file().map(DataFile::path);
-        let table = if is_of_femur { "femur" } else { "insert" };
-        KeyLocation { table, keys }
     }
 
     fn location_of_overlap(&self) -> KeyLocation {
@@ -124,13 +113,4 @@ impl KeyLocation {
         let place = names.find_map(|name| Some((places.get(&name)?.clone(), name)));
         place.map_or((None, 0..0), |(place, name)| (Some(name), place))
     }
-}
-
-fn axes_of(body: Body) -> KeyLocation {
-    let table = match body {
-        Body::Femur => "femur",
-        Body::Insert => "insert",
-    };
-    let keys = &["axes", "file"];
-    KeyLocation { table, keys }
 }

@@ -28,10 +28,7 @@ mod wear;
 
 pub use activity::{Activities, Activity, ActivityKeys};
 pub use assignment::{Assignment, AssignmentError, ChangeError, NumberKey};
-pub use build::{
-    Body, BuildError, BuildWarning, Built, FEMUR_TRIANGLES, MeshFault, MeshRemark, SharedBodies,
-    StrayPiece, WrongAxes,
-};
+pub use build::{Body, BuildError, BuildWarning, Built, FEMUR_TRIANGLES, SharedBodies};
 pub use contact::{
     BacksideChoice, Contact, ContactModelChoice, DeformableContact, FoundationContact,
     J2Plasticity, PlasticityChoice, PressureLawChoice, RestingBackside, SofteningCurve,

@@ -2,67 +2,58 @@
 
 use toml::de::DeTable;
 
-use super::contents::CaseNote;
+use super::build::BuildWarning;
 use crate::config::rename;
 
-/// Old and new dotted paths.
-const RENAMED: &[(&str, &str)] = &[
-    ("contact.law", "contact.foundation.law"),
+/// Keys of `[contact]` that are in a table of its model.
+const MOVED: &[(&str, &[&str])] = &[
     (
-        "contact.softening_strain",
-        "contact.foundation.softening_strain",
+        "foundation",
+        &[
+            "law",
+            "softening_strain",
+            "softening_stress_mpa",
+            "table",
+            "table_file",
+            "strain_table",
+            "strain_table_file",
+            "peak_error_percent",
+        ],
     ),
     (
-        "contact.softening_stress_mpa",
-        "contact.foundation.softening_stress_mpa",
-    ),
-    ("contact.table", "contact.foundation.table"),
-    ("contact.table_file", "contact.foundation.table_file"),
-    ("contact.strain_table", "contact.foundation.strain_table"),
-    (
-        "contact.strain_table_file",
-        "contact.foundation.strain_table_file",
-    ),
-    (
-        "contact.peak_error_percent",
-        "contact.foundation.peak_error_percent",
-    ),
-    ("contact.plasticity", "contact.deformable.plasticity"),
-    (
-        "contact.yield_stress_mpa",
-        "contact.deformable.yield_stress_mpa",
-    ),
-    (
-        "contact.kinematic_modulus_mpa",
-        "contact.deformable.kinematic_modulus_mpa",
-    ),
-    ("contact.hardening", "contact.deformable.hardening"),
-    (
-        "contact.friction_model",
-        "contact.deformable.friction_model",
-    ),
-    ("contact.backside", "contact.deformable.backside"),
-    (
-        "contact.backside_friction",
-        "contact.deformable.backside_friction",
-    ),
-    (
-        "contact.backside_spacing_mm",
-        "contact.deformable.backside_spacing_mm",
+        "deformable",
+        &[
+            "plasticity",
+            "yield_stress_mpa",
+            "kinematic_modulus_mpa",
+            "hardening",
+            "friction_model",
+            "backside",
+            "backside_friction",
+            "backside_spacing_mm",
+        ],
     ),
 ];
 
-pub(super) fn current_path(path: &str) -> &str {
-    let renamed = RENAMED.iter().find(|(old, _)| *old == path);
-    renamed.map_or(path, |(_, new)| new)
+/// Returns old and new dotted paths.
+fn renamed() -> impl Iterator<Item = (String, String)> {
+    MOVED.iter().flat_map(|(table, keys)| {
+        let paths = move |key| (format!("contact.{key}"), format!("contact.{table}.{key}"));
+        keys.iter().map(paths)
+    })
+}
+
+pub(super) fn current_path(path: &str) -> String {
+    let new = renamed().find_map(|(old, new)| (old == path).then_some(new));
+    new.unwrap_or_else(|| path.to_owned())
 }
 
 /// Moves every key of a case to its current path.
-pub(super) fn rename_keys(document: &mut DeTable<'_>) -> Vec<CaseNote> {
-    let moved = RENAMED
-        .iter()
-        .filter(|(old, new)| rename(document, old, new));
-    moved
-        .map(|&(old, new)| CaseNote::Renamed { old, new })
-        .collect()
+pub(super) fn rename_keys(document: &mut DeTable<'_>) -> Vec<BuildWarning> {
+    let moved = renamed().filter(|(old, new)| rename(document, old, new));
+    let note = |(old, new)| {
+        let next = "the next version does not read the old name";
+        BuildWarning::new(format!("`{old}` is called `{new}`; {next}"))
+    };
+    moved.map(note).collect()
 }

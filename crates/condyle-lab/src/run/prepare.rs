@@ -9,7 +9,7 @@ use condyle::{
 };
 use condyle_case::{
     cache::Cache,
-    case::{BuildError, BuildWarning, Built, Case, Limits, MeshFault, MeshRemark, SharedBodies},
+    case::{BuildError, BuildWarning, Built, Case, Limits, SharedBodies},
     config::DataFile,
 };
 
@@ -56,13 +56,13 @@ pub(crate) fn start(
 /// Rejects a march whose settled femur presses on a hole.
 ///
 /// # Errors
-/// [`MeshFault::PressedHole`].
+/// [`BuildError::pressed_hole`].
 pub(crate) fn check_at_rest(
     case: &Case,
     march: &March,
     warnings: &[BuildWarning],
 ) -> Result<(), RunError> {
-    if !warnings.iter().any(is_bridge) {
+    if !warnings.iter().any(BuildWarning::is_bridge) {
         return Ok(());
     }
     let at_rest = AtRest::of(march);
@@ -73,13 +73,13 @@ pub(crate) fn check_at_rest(
 /// Rejects a march in which the femur has pressed on a hole so far.
 ///
 /// # Errors
-/// [`MeshFault::PressedHole`].
+/// [`BuildError::pressed_hole`].
 pub(crate) fn check_so_far(
     case: &Case,
     march: &March,
     warnings: &[BuildWarning],
 ) -> Result<(), RunError> {
-    if !warnings.iter().any(is_bridge) {
+    if !warnings.iter().any(BuildWarning::is_bridge) {
         return Ok(());
     }
     let pressures = &march.state().first_pressure_mpa;
@@ -90,19 +90,12 @@ pub(crate) fn check_so_far(
     check_holes(case, march, warnings, pressed, "on its way")
 }
 
-fn is_bridge(warning: &BuildWarning) -> bool {
-    let BuildWarning::Mesh { remark, .. } = warning else {
-        return false;
-    };
-    matches!(remark, MeshRemark::Bridged { .. })
-}
-
 fn check_holes(
     case: &Case,
     march: &March,
     warnings: &[BuildWarning],
     mut pressed: impl Iterator<Item = usize>,
-    when: &'static str,
+    when: &str,
 ) -> Result<(), RunError> {
     let places = march.insert().surface().positions;
     let hole_at = |node: usize| {
@@ -113,13 +106,7 @@ fn check_holes(
         return Ok(());
     };
     let file = case.insert.file().map(DataFile::path);
-    let source = BuildError::Mesh {
-        file: file.map(Path::to_path_buf).unwrap_or_default(),
-        fault: MeshFault::PressedHole {
-            hole: hole.clone(),
-            when,
-        },
-    };
+    let source = BuildError::pressed_hole(file.unwrap_or(Path::new("")), hole, when);
     Err(RunError::of_build(case, source))
 }
 

@@ -5,28 +5,22 @@ use std::sync::Arc;
 use condyle::contact::{
     ContactLaw, Deformable, Foundation, FrictionModel, PressureLaw, confined_modulus,
 };
-use condyle::evolve::{Activity, Schedule, Updates, WearTest};
+use condyle::evolve::{Schedule, Updates, WearTest};
 use condyle::geometry::Insert;
 use condyle::machine::{Integration, TimeSettings};
 
-use super::super::contact::{
-    ContactModelChoice, DeformableContact, PlasticityChoice, PressureLawChoice,
-};
-use super::super::contents::{Case, CaseNote};
-use super::super::schedule::{IntegratorWord, Update};
 use super::error::{BuildError, BuildWarning};
-use super::femur::{BuiltFemur, Preparing};
 use super::machine::start_flexion_rad;
 use super::shared::SharedBodies;
 use crate::cache::{Keep, KeepNothing};
+use crate::case::contact::{
+    ContactModelChoice, DeformableContact, PlasticityChoice, PressureLawChoice,
+};
+use crate::case::contents::Case;
+use crate::case::schedule::{IntegratorWord, Update};
 
 /// Smallest flat part of a backside that can rest on a flat tray.
 const MIN_FLAT_PART: f64 = 0.5;
-
-const STICK_SLIP_EXPLICIT: &str = "[contact.deformable] friction_model = \"stick-slip\" goes from one solved increment to the \
-     next, and [time] integrator = \"explicit\" solves none; take integrator = \"implicit\", or friction_model = \"regularised\"";
-const RESTING_EXPLICIT: &str = "[contact.deformable] backside = \"resting\" goes from one solved increment to the next, and \
-     [time] integrator = \"explicit\" solves none; take integrator = \"implicit\", or backside = \"bonded\"";
 
 /// A wear test ready to run, and the remarks of its construction.
 pub struct Built {
@@ -65,38 +59,22 @@ impl Case {
         keep: &dyn Keep,
         bodies: &SharedBodies,
     ) -> Result<Built, BuildError> {
-        let make = |warnings: &mut _| self.built_insert(&self.insert, warnings);
-        let (insert, of_insert) = bodies.insert(self, make)?;
+        let (insert, of_insert) = bodies
+            .inserts
+            .found_or_made(self.insert_inputs(), |warnings| {
+                self.built_insert(&self.insert, warnings)
+            })?;
         let activities = self.built_activities(insert.dish_low_point_mm());
         let flexion_rad = start_flexion_rad(&activities[0].machine);
-        let (femur, of_femur) = bodies.femur(self, flexion_rad, |warnings| {
-            let limits = &self.limits;
-            let preparing = Preparing {
-                threads,
-                keep,
-                limits,
-            };
-            let side = self.heading.side;
-            self.femur.build(side, flexion_rad, preparing, warnings)
+        let (_, side, limits) = self.insert_inputs();
+        let inputs = (self.femur.clone(), side, limits, flexion_rad);
+        let (femur, of_femur) = bodies.femurs.found_or_made(inputs, |warnings| {
+            self.built_femur(flexion_rad, threads, keep, warnings)
         })?;
-        let notes = self.origin.notes.iter().map(|note| match note.clone() {
-            CaseNote::LeftOut { written, chosen } => BuildWarning::LeftOutKey { written, chosen },
-            CaseNote::Renamed { old, new } => BuildWarning::RenamedKey { old, new },
-        });
-        let warnings = [notes.collect(), of_insert, of_femur].concat();
-        let test = self.assembled(insert, &femur, activities, (keep, bodies))?;
-        Ok(Built { test, warnings })
-    }
-
-    fn assembled(
-        &self,
-        insert: Arc<Insert>,
-        femur: &BuiltFemur,
-        activities: Vec<Activity>,
-        (keep, bodies): (&dyn Keep, &SharedBodies),
-    ) -> Result<WearTest, BuildError> {
+        let warnings = [self.origin.notes.clone(), of_insert, of_femur].concat();
         let as_linked = |law| self.material.cross_linking.under(law);
-        Ok(WearTest {
+        let comparison_laws = self.wear.comparison_laws().into_iter().map(as_linked);
+        let test = WearTest {
             contact: self.contact_law_sharing(&insert, keep, bodies)?,
             femur: Arc::clone(&femur.surface),
             flexion_axis_mm: femur.flexion_axis_mm,
@@ -104,12 +82,7 @@ impl Case {
             insert,
             activities,
             wear: as_linked(self.wear.law()).law,
-            comparison_laws: self
-                .wear
-                .comparison_laws()
-                .into_iter()
-                .map(as_linked)
-                .collect(),
+            comparison_laws: comparison_laws.collect(),
             creep: self.creep.law(),
             density_mg_per_mm3: self.material.density_mg_per_mm3,
             time: self.time_settings(),
@@ -122,7 +95,8 @@ impl Case {
                     },
                 },
             },
-        })
+        };
+        Ok(Built { test, warnings })
     }
 
     /// Returns the law of contact of this case with its insert.
@@ -154,30 +128,30 @@ impl Case {
         keep: &dyn Keep,
         bodies: &SharedBodies,
     ) -> Result<Deformable, BuildError> {
-        if model.friction_model == FrictionModel::StickSlip
-            && self.time.integrator == IntegratorWord::Explicit
-        {
-            return Err(BuildError::Conflict {
-                table: "time",
-                keys: &["integrator"],
-                message: STICK_SLIP_EXPLICIT.to_owned(),
-            });
+        let is_explicit = self.time.integrator == IntegratorWord::Explicit;
+        if model.friction_model == FrictionModel::StickSlip && is_explicit {
+            let message = "[contact.deformable] friction_model = \"stick-slip\" carries loads from one solved increment to the \
+                 next, and [time] integrator = \"explicit\" solves none; take integrator = \"implicit\", or \
+                 friction_model = \"regularised\"";
+            return Err(BuildError::conflict("time", &["integrator"], message));
         }
         self.check_backside(model, insert)?;
         let elastic = self.material.elastic();
         let contact = &self.contact;
         let (coefficient, slip) = (contact.friction, contact.slip_tolerance_mm_per_s);
         let backside = model.backside.backside();
-        let mut law = bodies.elastic(self, elastic, || {
+        let inputs = (self.insert_inputs(), elastic);
+        let (shared, _) = bodies.elastic.found_or_made(inputs, |_| {
             Deformable::new(elastic, coefficient, slip, backside, insert)
         })?;
+        let mut law = Deformable::clone(&shared);
         (law.friction, law.slip_tolerance_mm_per_s) = (coefficient, slip);
         law.search = contact.search;
         law.sample_reuse_mm = contact.sample_reuse_mm;
         law.friction_model = model.friction_model;
         let law = model.plasticity.with_material(law, elastic);
         let law = law.with_backside(backside, insert)?;
-        self.tell_compliance(&law, insert, keep)?;
+        self.load_compliance(&law, insert, keep)?;
         Ok(law)
     }
 
@@ -191,11 +165,9 @@ impl Case {
             return Ok(());
         }
         if self.time.integrator == IntegratorWord::Explicit {
-            return Err(BuildError::Conflict {
-                table: "time",
-                keys: &["integrator"],
-                message: RESTING_EXPLICIT.to_owned(),
-            });
+            let message = "[contact.deformable] backside = \"resting\" carries loads from one solved increment to the next, \
+                 and [time] integrator = \"explicit\" solves none; take integrator = \"implicit\", or backside = \"bonded\"";
+            return Err(BuildError::conflict("time", &["integrator"], message));
         }
         let other = if contact.plasticity != PlasticityChoice::None {
             Some("plasticity = \"j2\"")
@@ -207,8 +179,8 @@ impl Case {
         let part = Deformable::flat_part_of_backside(insert);
         let message = match other {
             Some(other) => format!(
-                "[contact.deformable] backside = \"resting\" does not go with {other}: what that is computed from belongs to \
-                 an insert that is bonded to its tray; take one of them alone"
+                "[contact.deformable] backside = \"resting\" cannot be combined with {other}, which is computed with the \
+                 compliance of an insert that is bonded to its tray; take one of them alone"
             ),
             None if part < MIN_FLAT_PART => format!(
                 "[contact.deformable] backside = \"resting\" needs a flat backside, and {:.0} % of this insert's lies in a \
@@ -217,11 +189,8 @@ impl Case {
             ),
             None => return Ok(()),
         };
-        Err(BuildError::Conflict {
-            table: "contact.deformable",
-            keys: &["backside"],
-            message,
-        })
+        let keys = &["backside"];
+        Err(BuildError::conflict("contact.deformable", keys, message))
     }
 
     /// Returns the elastic foundation of this case.

@@ -1,6 +1,6 @@
 //! The femur of a case, and its triangles for pictures and other programs.
 
-use std::path::Path;
+use std::f64::consts::TAU;
 use std::sync::Arc;
 
 use condyle::Vec3;
@@ -9,19 +9,18 @@ use condyle::geometry::{
     Cylinder, FemoralSurface, GenericFemur, GenericFemurShape, PlacedFemur, SmoothField,
     TriangleMesh, posterior_arc_centre_mm,
 };
+use condyle_mesh::formats::surface_bytes;
 use condyle_mesh::repair::CheckedMesh;
 use serde::{Deserialize, Serialize};
 
-use super::super::contents::Case;
-use super::super::femur::{Femur, FemurPlacement, FemurShape, MeshFemur};
-use super::super::frame::Side;
-use super::super::run_options::Limits;
-use super::error::{Body, BuildError, BuildWarning, MeshFault};
-use super::meshes::{Placing, ShellOf, parsed_shell, shell, warn};
-use super::orientation_check::{check_orientation, check_side};
-use super::rigid_motion::RigidMotion;
+use super::checks::{check_orientation, check_side};
+use super::error::{Body, BuildError, BuildWarning};
+use super::placing::{Placing, ShellOf, parsed_shell, shell, warn};
 use crate::cache::{Keep, kept};
-use condyle_mesh::formats::surface_bytes;
+use crate::case::contents::Case;
+use crate::case::femur::{FemurPlacement, FemurShape, MeshFemur};
+use crate::case::frame::Side;
+use crate::case::run_options::Limits;
 
 /// A femoral surface with its flexion axis and the start of that axis over the insert.
 pub(super) struct BuiltFemur {
@@ -32,26 +31,29 @@ pub(super) struct BuiltFemur {
     pub start_mm: (f64, f64),
 }
 
-/// Options of the one-time work on a mesh.
-#[derive(Clone, Copy)]
-pub(super) struct Preparing<'a> {
-    pub threads: usize,
-    pub keep: &'a dyn Keep,
-    pub limits: &'a Limits,
+/// The one-time work on a mesh femur.
+#[derive(Serialize, Deserialize)]
+struct PreparedFemur {
+    shell: CheckedMesh,
+    field: SmoothField,
 }
 
-impl Femur {
-    /// Builds the femur, which starts the cycle flexed by `flexion_rad`.
-    pub(super) fn build(
+impl Case {
+    /// Builds the femur, which starts the cycle flexed by `flexion_rad`; `threads` share the work on a mesh.
+    pub(super) fn built_femur(
         &self,
-        side: Side,
         flexion_rad: f64,
-        preparing: Preparing<'_>,
+        threads: usize,
+        keep: &dyn Keep,
         warnings: &mut Vec<BuildWarning>,
     ) -> Result<BuiltFemur, BuildError> {
-        let placement = &self.placement;
-        let start = |start: Option<[f64; 2]>| start.map(|start| on_the_right(start, side));
-        Ok(match &self.shape {
+        let (side, placement) = (self.heading.side, &self.femur.placement);
+        let at_origin = |surface, start_mm: Option<[f64; 2]>, default_mm| BuiltFemur {
+            surface: Arc::new(surface),
+            flexion_axis_mm: (0.0, 0.0),
+            start_mm: start_mm.map_or(default_mm, |start| on_the_right(start, side)),
+        };
+        Ok(match &self.femur.shape {
             FemurShape::Generic(femur) => {
                 let shape = GenericFemurShape {
                     distal_radius_mm: femur.distal_radius_mm,
@@ -60,32 +62,41 @@ impl Femur {
                     coronal_radius_mm: femur.coronal_radius_mm,
                     spacing_mm: femur.spacing_mm,
                 };
-                BuiltFemur {
-                    surface: Arc::new(placed(
-                        GenericFemur::new(shape),
-                        placement.motion((0.0, 0.0)),
+                let generic = GenericFemur::new(shape);
+                let surface = match placement.motion((0.0, 0.0)) {
+                    Some(motion) => FemoralSurface::Placed(PlacedFemur::new(
+                        generic,
+                        motion.rotation,
+                        motion.shift_mm,
                     )),
-                    flexion_axis_mm: (0.0, 0.0),
-                    start_mm: start(femur.start_mm).unwrap_or(over_the_dish(&shape, flexion_rad)),
-                }
+                    None => FemoralSurface::Generic(generic),
+                };
+                at_origin(surface, femur.start_mm, over_the_dish(&shape, flexion_rad))
             }
-            FemurShape::Sphere(femur) => BuiltFemur {
-                surface: Arc::new(FemoralSurface::sphere(femur.radius_mm)),
-                flexion_axis_mm: (0.0, 0.0),
-                start_mm: start(femur.start_mm).unwrap_or((0.0, 0.0)),
-            },
-            FemurShape::Cylinder(femur) => BuiltFemur {
-                surface: Arc::new(FemoralSurface::Cylinder(Cylinder {
-                    radius_mm: femur.radius_mm,
-                })),
-                flexion_axis_mm: (0.0, 0.0),
-                start_mm: start(femur.start_mm).unwrap_or((0.0, 0.0)),
-            },
+            FemurShape::Sphere(femur) => {
+                let surface = FemoralSurface::sphere(femur.radius_mm);
+                at_origin(surface, femur.start_mm, (0.0, 0.0))
+            }
+            FemurShape::Cylinder(femur) => {
+                let radius_mm = femur.radius_mm;
+                let surface = FemoralSurface::Cylinder(Cylinder { radius_mm });
+                at_origin(surface, femur.start_mm, (0.0, 0.0))
+            }
             FemurShape::Mesh(femur) => {
-                let prepared = femur.prepared(placement, side, preparing)?;
-                warn(&femur.file, &prepared.shell, warnings);
-                femur.check_orientation(&prepared.shell.mesh, side, warnings)?;
-                femur.over_the_insert(prepared, side, flexion_rad)
+                let placing = Placing::new(femur.length_unit, &femur.axes, side)?;
+                let PreparedFemur { shell, field } =
+                    femur.prepared(placement, &placing, &self.limits, threads, keep)?;
+                warn(&femur.file, &shell, warnings);
+                if check_orientation(Body::Femur, &femur.file, &shell.mesh, &placing, warnings)? {
+                    check_side(&femur.file, &shell.mesh, side, warnings);
+                }
+                let flexion_axis_mm = femur.axis_mm(&shell.mesh);
+                let (x, z) = on_the_right(femur.start_mm.unwrap_or_default(), side);
+                BuiltFemur {
+                    surface: Arc::new(FemoralSurface::Mesh(field)),
+                    flexion_axis_mm,
+                    start_mm: (x + axis_ahead_mm(flexion_axis_mm, flexion_rad), z),
+                }
             }
         })
     }
@@ -93,7 +104,7 @@ impl Femur {
 
 impl MeshFemur {
     /// Returns its triangles as a checked shell in the femoral frame of a right knee, mm.
-    pub(crate) fn triangles(
+    fn triangles(
         &self,
         placement: &FemurPlacement,
         side: Side,
@@ -101,20 +112,6 @@ impl MeshFemur {
         let placing = Placing::new(self.length_unit, &self.axes, side)?;
         let mesh = shell(&self.file, &placing, ShellOf::FEMUR, &mut Vec::new())?.mesh;
         Ok(self.moved(mesh, placement))
-    }
-
-    /// Checks the orientation of the component by its shape; `mesh` is in the frame of its file.
-    fn check_orientation(
-        &self,
-        mesh: &TriangleMesh,
-        side: Side,
-        warnings: &mut Vec<BuildWarning>,
-    ) -> Result<(), BuildError> {
-        let placing = Placing::new(self.length_unit, &self.axes, side)?;
-        if check_orientation(Body::Femur, &self.file, mesh, &placing, warnings)? {
-            check_side(&self.file, mesh, side, warnings);
-        }
-        Ok(())
     }
 
     /// Returns the flexion axis (x, y) of the unplaced component.
@@ -132,54 +129,40 @@ impl MeshFemur {
         }
     }
 
-    /// Returns bytes that identify a placement; `None` if it moves nothing.
-    fn placement_bytes(&self, placement: &FemurPlacement) -> Option<Vec<u8>> {
-        let axis = self.flexion_axis_mm.into_iter().flatten();
-        let numbers = placement.numbers().into_iter().chain(axis);
-        let bytes = || numbers.flat_map(f64::to_le_bytes).collect();
-        placement.is_moved().then(bytes)
-    }
-
     /// Returns the unplaced shell and the field of the placed one, computed or kept from an earlier run.
     fn prepared(
         &self,
         placement: &FemurPlacement,
-        side: Side,
-        preparing: Preparing<'_>,
+        placing: &Placing,
+        limits: &Limits,
+        threads: usize,
+        keep: &dyn Keep,
     ) -> Result<PreparedFemur, BuildError> {
-        let placing = Placing::new(self.length_unit, &self.axes, side)?;
         let path = self.file.path();
         let bytes = surface_bytes(self.file.files(), path)?;
         let ending = path.extension().unwrap_or_default().to_ascii_lowercase();
-        let (placing_bytes, placed) = (placing.bytes(), self.placement_bytes(placement));
+        let placing_bytes = placing.bytes();
+        let axis = self.flexion_axis_mm.into_iter().flatten();
+        let placed = placement.numbers().into_iter().chain(axis);
+        let placed: Vec<u8> = placed.flat_map(f64::to_le_bytes).collect();
         let mut inputs = vec![ending.as_encoded_bytes(), &placing_bytes, &bytes];
-        inputs.extend(placed.as_deref());
-        kept(preparing.keep, "femur", &inputs, || {
-            let shell = parsed_shell(path, &bytes, &placing, ShellOf::FEMUR)?;
+        // A placement that moves nothing does not change the key under which fields are kept.
+        inputs.extend(placement.is_moved().then_some(placed.as_slice()));
+        kept(keep, "femur", &inputs, || {
+            let shell = parsed_shell(path, &bytes, placing, ShellOf::FEMUR)?;
             let mesh = self.moved(shell.mesh.clone(), placement);
-            check_node_count(path, &mesh, preparing.limits)?;
-            let field = SmoothField::new(&mesh, preparing.threads);
+            let nodes = SmoothField::node_count(&mesh);
+            let (most, memory_gb) = (limits.most(Limits::BYTES_OF_FIELD_NODE), limits.memory_gb);
+            if nodes > most {
+                let message = format!(
+                    "the distance field would have {nodes} nodes, and more than {most} take more than the {memory_gb} GB that \
+                     [limits] memory_gb allows; cut away what never touches the insert, check length_unit, or allow more"
+                );
+                return Err(BuildError::mesh(path, &["length_unit", "file"], message));
+            }
+            let field = SmoothField::new(&mesh, threads);
             Ok(PreparedFemur { shell, field })
         })
-    }
-
-    fn over_the_insert(&self, prepared: PreparedFemur, side: Side, flexion_rad: f64) -> BuiltFemur {
-        let flexion_axis_mm = self.axis_mm(&prepared.shell.mesh);
-        let (x, z) = on_the_right(self.start_mm.unwrap_or_default(), side);
-        BuiltFemur {
-            surface: Arc::new(FemoralSurface::Mesh(prepared.field)),
-            flexion_axis_mm,
-            start_mm: (x + axis_ahead_mm(flexion_axis_mm, flexion_rad), z),
-        }
-    }
-}
-
-fn placed(femur: GenericFemur, motion: Option<RigidMotion>) -> FemoralSurface {
-    match motion {
-        Some(motion) => {
-            FemoralSurface::Placed(PlacedFemur::new(femur, motion.rotation, motion.shift_mm))
-        }
-        None => FemoralSurface::Generic(femur),
     }
 }
 
@@ -200,28 +183,6 @@ fn over_the_dish(shape: &GenericFemurShape, flexion_rad: f64) -> (f64, f64) {
     (-to_centre_mm * anterior_rad.sin(), 0.0)
 }
 
-/// The one-time work on a mesh femur.
-#[derive(Serialize, Deserialize)]
-struct PreparedFemur {
-    shell: CheckedMesh,
-    field: SmoothField,
-}
-
-fn check_node_count(file: &Path, mesh: &TriangleMesh, limits: &Limits) -> Result<(), BuildError> {
-    let nodes = SmoothField::node_count(mesh);
-    let most = limits.most(Limits::BYTES_OF_FIELD_NODE);
-    if nodes <= most {
-        return Ok(());
-    }
-    let memory_gb = limits.memory_gb;
-    let fault = MeshFault::TooManyNodes {
-        nodes,
-        most,
-        memory_gb,
-    };
-    Err(BuildError::mesh(file, fault))
-}
-
 /// Returns the distance of the flexion axis anterior of the frame's origin, in the insert frame.
 fn axis_ahead_mm(flexion_axis_mm: (f64, f64), flexion_rad: f64) -> f64 {
     let axis = Vec3::new(flexion_axis_mm.0, flexion_axis_mm.1, 0.0);
@@ -232,7 +193,6 @@ fn axis_ahead_mm(flexion_axis_mm: (f64, f64), flexion_rad: f64) -> f64 {
 /// Number of triangles for a femur that is not a mesh, as in Knight 2007: they lie within a hundredth of a millimetre
 /// of its surface.
 pub const FEMUR_TRIANGLES: f64 = 25_000.0;
-const ICOSAHEDRON: f64 = 20.0;
 
 impl Case {
     /// Returns the surface of the femur of `test`, which this case built, in the femoral frame of a right knee, mm;
@@ -268,14 +228,13 @@ fn generic(femur: &GenericFemur, about: f64) -> TriangleMesh {
 fn tube(radius_mm: f64) -> TriangleMesh {
     const HALF_LENGTH_MM: f64 = 60.0;
     const EDGE_MM: f64 = 1.5;
-    let around = (std::f64::consts::TAU * radius_mm / EDGE_MM).ceil() as u32;
+    let around = (TAU * radius_mm / EDGE_MM).ceil() as u32;
     let along = (2.0 * HALF_LENGTH_MM / EDGE_MM).ceil() as u32;
     let mut mesh = TriangleMesh::default();
     for ring in 0..=along {
         let z = HALF_LENGTH_MM * (2.0 * f64::from(ring) / f64::from(along) - 1.0);
         for i in 0..around {
-            let (sine, cosine) =
-                (std::f64::consts::TAU * f64::from(i) / f64::from(around)).sin_cos();
+            let (sine, cosine) = (TAU * f64::from(i) / f64::from(around)).sin_cos();
             let place = Vec3::new(radius_mm * cosine, radius_mm * sine, z);
             mesh.vertices.push(place);
         }
@@ -292,7 +251,8 @@ fn tube(radius_mm: f64) -> TriangleMesh {
 
 /// Returns a ball about the origin by repeated subdivision of an icosahedron.
 fn sphere(radius_mm: f64, about: f64) -> TriangleMesh {
-    let halvings = (about / ICOSAHEDRON).log(4.0).round() as usize;
+    const ICOSAHEDRON_FACES: f64 = 20.0;
+    let halvings = (about / ICOSAHEDRON_FACES).log(4.0).round() as usize;
     let mut ball = icosahedron();
     for _ in 0..halvings {
         ball = in_four(&ball, |a, b| (a + b).normalize());
@@ -319,9 +279,11 @@ fn icosahedron() -> TriangleMesh {
     for i in 0..12u32 {
         for j in i + 1..12 {
             for k in j + 1..12 {
-                let corners = [i, j, k].map(|n| vertices[n as usize]);
-                if is_face(&corners) {
-                    let [a, b, c] = corners;
+                let [a, b, c]: [Vec3; 3] = [i, j, k].map(|n| vertices[n as usize]);
+                // Neighbours are 2 apart.
+                let is_edge =
+                    |(one, other): (Vec3, Vec3)| ((one - other).norm() - 2.0).abs() < 1e-9;
+                if [(a, b), (b, c), (c, a)].into_iter().all(is_edge) {
                     let outward = (b - a).cross(&(c - a)).dot(&a) > 0.0;
                     triangles.push(if outward { [i, j, k] } else { [i, k, j] });
                 }
@@ -332,13 +294,6 @@ fn icosahedron() -> TriangleMesh {
         vertices,
         triangles,
     }
-}
-
-/// Returns true if three corners of the icosahedron, whose edges are 2 long, are neighbours.
-fn is_face([a, b, c]: &[Vec3; 3]) -> bool {
-    [(a, b), (b, c), (c, a)]
-        .iter()
-        .all(|(one, other)| ((*one - *other).norm() - 2.0).abs() < 1e-9)
 }
 
 /// Divides every triangle in four at its midpoints, which `middle_of` places between two corners.

@@ -1,29 +1,29 @@
-//! The insert in hexahedra.
+//! The insert in hexahedra, cut off the tray and stem that its file may also contain.
 
 use std::collections::BTreeSet;
+use std::path::Path;
 
 use condyle::Vec3;
-use condyle::geometry::{self, GenericInsertShape, Meshing, flat_insert};
+use condyle::geometry::{self, GenericInsertShape, Meshing, Underside, flat_insert};
 use condyle_fem::HexMesh;
-use condyle_mesh::repair::CheckedMesh;
-
-use super::super::contents::Case;
-use super::super::frame::Side;
-use super::super::insert::{
-    FlatInsert, GenericInsert, HexahedralInsert, Insert, InsertPlacement, InsertShape, MeshInsert,
-};
-use super::super::run_options::Limits;
-use super::error::{Body, BuildError, BuildWarning, MeshFault, MeshRemark};
-use super::meshes::{Placing, ShellOf, shell};
-use super::orientation_check::off_centre;
-use super::orientation_check::{check_orientation, check_orientation_of_hexahedra};
-use super::rigid_motion::{middle_of_mesh, middle_of_points};
-use super::size::check_points;
-use super::tray::without_tray;
+use condyle_mesh::columns::listed_holes;
 use condyle_mesh::formats::{HexFile, parse_surface, read_hexahedra, surface_bytes};
+use condyle_mesh::repair::{CheckedMesh, RepairError};
+
+use super::checks::{check_orientation, check_orientation_of_hexahedra, check_points, off_centre};
+use super::error::{Body, BuildError, BuildWarning, Finding};
+use super::placing::{Placing, ShellOf, middle_of_mesh, middle_of_points, shell};
+use crate::case::contents::Case;
+use crate::case::insert::{HexahedralInsert, Insert, InsertShape, MeshInsert};
+use crate::case::run_options::Limits;
+use crate::config::DataFile;
 
 /// Length and width of the flat block, mm, about those of the generic insert.
 const FLAT_SIZE_MM: (f64, f64) = (46.0, 72.0);
+/// Resolution of reported heights: a copied height then cuts where the program did.
+const PER_MM: f64 = 100.0;
+/// Share of a hundredth of a millimetre that is rounding error, so that a height is not rounded up for it.
+const ROUNDING: f64 = 1e-6;
 
 impl Case {
     /// Returns the insert of this case in a mesh with twice the edge length.
@@ -60,47 +60,117 @@ impl Case {
         insert: &Insert,
         warnings: &mut Vec<BuildWarning>,
     ) -> Result<geometry::Insert, BuildError> {
-        let placement = &insert.placement;
-        let around = Surroundings {
-            placement,
-            side: self.heading.side,
-            limits: &self.limits,
+        let (placement, limits) = (&insert.placement, &self.limits);
+        let built = match &insert.shape {
+            InsertShape::Generic(insert) => {
+                let shape = GenericInsertShape {
+                    sagittal_radius_mm: insert.sagittal_radius_mm,
+                    coronal_radius_mm: insert.coronal_radius_mm,
+                    spacing_mm: insert.spacing_mm,
+                    thickness_mm: insert.thickness_mm,
+                };
+                let meshing = meshing(insert.edge_mm, insert.layers);
+                check_node_count(GenericInsertShape::SIZE_MM, meshing, limits)?;
+                // Its dishes have their middle at its origin.
+                match placement.motion(Vec3::zeros) {
+                    Some(motion) => shape.insert_moved(meshing, |point| motion.point(point))?,
+                    None => shape.insert(meshing)?,
+                }
+            }
+            InsertShape::Flat(insert) => {
+                let meshing = meshing(insert.edge_mm, insert.layers);
+                check_node_count(FLAT_SIZE_MM, meshing, limits)?;
+                flat_insert(FLAT_SIZE_MM, insert.thickness_mm, meshing)?
+            }
+            InsertShape::Mesh(mesh) => self.insert_from_mesh(mesh, insert, warnings)?,
+            InsertShape::Hexahedra(mesh) => self.insert_from_hexahedra(mesh, insert, warnings)?,
         };
-        let built = insert.build(around, warnings)?;
         // With a stray piece the positions of the dishes are unreliable.
-        let is_whole = !warnings.iter().any(|warning| {
-            let BuildWarning::Mesh { remark, .. } = warning else {
-                return false;
-            };
-            matches!(remark, MeshRemark::StrayPiece(_))
-        });
+        let is_stray = |warning: &BuildWarning| warning.finding == Finding::StrayPiece;
+        let is_whole = !warnings.iter().any(is_stray);
         if let Some(file) = insert.file().filter(|_| is_whole) {
             warnings.extend(off_centre(file, placement, &built));
         }
         Ok(built)
     }
-}
 
-/// Settings of the case that an insert is built with.
-#[derive(Clone, Copy)]
-struct Surroundings<'a> {
-    placement: &'a InsertPlacement,
-    side: Side,
-    limits: &'a Limits,
-}
-
-impl Insert {
-    fn build(
+    fn insert_from_mesh(
         &self,
-        around: Surroundings<'_>,
+        insert: &MeshInsert,
+        of: &Insert,
         warnings: &mut Vec<BuildWarning>,
     ) -> Result<geometry::Insert, BuildError> {
-        match &self.shape {
-            InsertShape::Generic(insert) => generic(insert, around),
-            InsertShape::Flat(insert) => flat(insert, around.limits),
-            InsertShape::Mesh(insert) => from_mesh(insert, around, warnings),
-            InsertShape::Hexahedra(insert) => from_hexahedra(insert, around, warnings),
+        let file = &insert.file;
+        let placing = Placing::new(insert.length_unit, &insert.axes, self.heading.side)?;
+        let as_insert = ShellOf::insert(insert.clip_below_mm);
+        let mut shell = shell(file, &placing, as_insert, warnings)?;
+        if shell.closed && insert.thickness_mm.is_some() {
+            let message = "the mesh is closed, so it determines the thickness; remove [insert] `thickness_mm`";
+            return Err(BuildError::mesh(file.path(), &["thickness_mm"], message));
         }
+        check_orientation(Body::Insert, file, &shell.mesh, &placing, warnings)?;
+        if shell.closed && insert.clip_below_mm.is_none() {
+            let count = shell.mesh.triangles.len();
+            shell = without_tray(file, shell, warnings)?;
+            // The body that remains may lie another way than the construct seemed to.
+            if shell.mesh.triangles.len() != count {
+                check_orientation(Body::Insert, file, &shell.mesh, &placing, warnings)?;
+            }
+        }
+        let mesh = match of.placement.motion(|| middle_of_mesh(&shell.mesh)) {
+            Some(motion) => motion.mesh(shell.mesh),
+            None => shell.mesh,
+        };
+        let meshing = meshing(insert.edge_mm, insert.layers);
+        let (low, high) = mesh.bounds();
+        check_node_count((high.x - low.x, high.z - low.z), meshing, &self.limits)?;
+        let built = geometry::Insert::over_holes(&mesh, shell.closed, insert.thickness_mm, meshing);
+        let (built, holes) =
+            built.map_err(|error| BuildError::shell_insert(file.path(), &error))?;
+        if !holes.is_empty() {
+            let edge_mm = meshing.edge_mm;
+            let remark = format!(
+                "the surface is interpolated smoothly over a {}; nothing may press there or within {edge_mm} mm, which a \
+                 run verifies",
+                listed_holes(&holes)
+            );
+            let warning = BuildWarning::mesh(file, remark);
+            warnings.push(warning.with(Finding::Bridged(holes, edge_mm)));
+        }
+        Ok(built)
+    }
+
+    fn insert_from_hexahedra(
+        &self,
+        insert: &HexahedralInsert,
+        of: &Insert,
+        warnings: &mut Vec<BuildWarning>,
+    ) -> Result<geometry::Insert, BuildError> {
+        let placing = Placing::new(insert.length_unit, &insert.axes, self.heading.side)?;
+        let path = insert.file.path();
+        let mut file = read_hexahedra(insert.file.files(), path)?;
+        place(&mut file, &placing);
+        check_points(path, &file.mesh.nodes, insert.length_unit)?;
+        check_nodes(file.mesh.nodes.len() as f64, &self.limits)?;
+        check_orientation_of_hexahedra(&insert.file, &file.mesh, &placing, warnings)?;
+        let articulating = match &insert.articulating_surface {
+            Some(name) => named(&file, path, &["articulating_surface"], name)?,
+            None => facing(&file.mesh, 1.0),
+        };
+        let backside = match &insert.backside {
+            Some(name) => named(&file, path, &["backside"], name)?,
+            None => facing(&file.mesh, -1.0),
+        };
+        let middle = || {
+            let nodes: BTreeSet<u32> = articulating.iter().flatten().copied().collect();
+            let nodes = nodes.into_iter().map(|node| file.mesh.nodes[node as usize]);
+            middle_of_points(&nodes.collect::<Vec<Vec3>>())
+        };
+        if let Some(motion) = of.placement.motion(middle) {
+            let nodes = file.mesh.nodes.iter_mut();
+            nodes.for_each(|node| *node = motion.point(node));
+        }
+        Ok(geometry::Insert::new(file.mesh, &articulating, &backside)?)
     }
 }
 
@@ -126,126 +196,12 @@ fn check_nodes(nodes: f64, limits: &Limits) -> Result<(), BuildError> {
     if nodes <= most as f64 {
         return Ok(());
     }
-    Err(BuildError::Conflict {
-        table: "insert",
-        keys: &["edge_mm", "layers", "file", "length_unit"],
-        message: format!(
-            "the insert would have {nodes:.0} nodes, and more than {most} take more than the {memory_gb} GB that [limits] \
-             memory_gb allows; use a larger edge_mm or fewer layers, check length_unit, or allow more"
-        ),
-    })
-}
-
-fn flat(insert: &FlatInsert, limits: &Limits) -> Result<geometry::Insert, BuildError> {
-    let meshing = meshing(insert.edge_mm, insert.layers);
-    check_node_count(FLAT_SIZE_MM, meshing, limits)?;
-    Ok(flat_insert(FLAT_SIZE_MM, insert.thickness_mm, meshing)?)
-}
-
-fn generic(
-    insert: &GenericInsert,
-    around: Surroundings<'_>,
-) -> Result<geometry::Insert, BuildError> {
-    let shape = GenericInsertShape {
-        sagittal_radius_mm: insert.sagittal_radius_mm,
-        coronal_radius_mm: insert.coronal_radius_mm,
-        spacing_mm: insert.spacing_mm,
-        thickness_mm: insert.thickness_mm,
-    };
-    let meshing = meshing(insert.edge_mm, insert.layers);
-    check_node_count(GenericInsertShape::SIZE_MM, meshing, around.limits)?;
-    // Its dishes have their middle at its origin.
-    Ok(match around.placement.motion(Vec3::zeros) {
-        Some(motion) => shape.insert_moved(meshing, |point| motion.point(point))?,
-        None => shape.insert(meshing)?,
-    })
-}
-
-fn from_mesh(
-    insert: &MeshInsert,
-    around: Surroundings<'_>,
-    warnings: &mut Vec<BuildWarning>,
-) -> Result<geometry::Insert, BuildError> {
-    let placing = Placing::new(insert.length_unit, &insert.axes, around.side)?;
-    let path = insert.file.path();
-    let mut shell = shell(
-        &insert.file,
-        &placing,
-        ShellOf::insert(insert.clip_below_mm),
-        warnings,
-    )?;
-    if shell.closed && insert.thickness_mm.is_some() {
-        return Err(BuildError::mesh(path, MeshFault::ThicknessOfClosed));
-    }
-    check_orientation(Body::Insert, &insert.file, &shell.mesh, &placing, warnings)?;
-    if shell.closed && insert.clip_below_mm.is_none() {
-        shell = insert_alone(insert, shell, &placing, warnings)?;
-    }
-    let mesh = match around.placement.motion(|| middle_of_mesh(&shell.mesh)) {
-        Some(motion) => motion.mesh(shell.mesh),
-        None => shell.mesh,
-    };
-    let meshing = meshing(insert.edge_mm, insert.layers);
-    let (low, high) = mesh.bounds();
-    check_node_count((high.x - low.x, high.z - low.z), meshing, around.limits)?;
-    let built = geometry::Insert::over_holes(&mesh, shell.closed, insert.thickness_mm, meshing);
-    let (built, holes) =
-        built.map_err(|error| BuildError::mesh(path, MeshFault::ShellInsert(error)))?;
-    if !holes.is_empty() {
-        let remark = MeshRemark::Bridged {
-            holes,
-            beside_mm: meshing.edge_mm,
-        };
-        warnings.push(BuildWarning::mesh(&insert.file, remark));
-    }
-    Ok(built)
-}
-
-/// Removes a tray that is in the same file; the orientation of the remaining insert is checked again.
-fn insert_alone(
-    insert: &MeshInsert,
-    shell: CheckedMesh,
-    placing: &Placing,
-    warnings: &mut Vec<BuildWarning>,
-) -> Result<CheckedMesh, BuildError> {
-    let count = shell.mesh.triangles.len();
-    let alone = without_tray(&insert.file, shell, warnings)?;
-    if alone.mesh.triangles.len() != count {
-        check_orientation(Body::Insert, &insert.file, &alone.mesh, placing, warnings)?;
-    }
-    Ok(alone)
-}
-
-fn from_hexahedra(
-    insert: &HexahedralInsert,
-    around: Surroundings<'_>,
-    warnings: &mut Vec<BuildWarning>,
-) -> Result<geometry::Insert, BuildError> {
-    let placing = Placing::new(insert.length_unit, &insert.axes, around.side)?;
-    let path = insert.file.path();
-    let mut file = read_hexahedra(insert.file.files(), path)?;
-    place(&mut file, &placing);
-    check_points(path, &file.mesh.nodes, insert.length_unit)?;
-    check_nodes(file.mesh.nodes.len() as f64, around.limits)?;
-    check_orientation_of_hexahedra(&insert.file, &file.mesh, &placing, warnings)?;
-    let surface = |key, name: &Option<String>, up: f64| match name {
-        Some(name) => named(&file, key, name, insert),
-        None => Ok(facing(&file.mesh, up)),
-    };
-    let articulating = surface("articulating_surface", &insert.articulating_surface, 1.0)?;
-    let backside = surface("backside", &insert.backside, -1.0)?;
-    let middle = || middle_of_points(&corners(&file.mesh, &articulating));
-    if let Some(motion) = around.placement.motion(middle) {
-        let nodes = file.mesh.nodes.iter_mut();
-        nodes.for_each(|node| *node = motion.point(node));
-    }
-    Ok(geometry::Insert::new(file.mesh, &articulating, &backside)?)
-}
-
-fn corners(mesh: &HexMesh, quads: &[[u32; 4]]) -> Vec<Vec3> {
-    let nodes: BTreeSet<u32> = quads.iter().flatten().copied().collect();
-    let nodes = nodes.into_iter();
-    nodes.map(|node| mesh.nodes[node as usize]).collect()
+    let message = format!(
+        "the insert would have {nodes:.0} nodes, and more than {most} take more than the {memory_gb} GB that [limits] \
+         memory_gb allows; use a larger edge_mm or fewer layers, check length_unit, or allow more"
+    );
+    let keys = &["edge_mm", "layers", "file", "length_unit"];
+    Err(BuildError::conflict("insert", keys, message))
 }
 
 /// Moves nodes into the frame, and restores the orientation of hexahedra and faces if that mirrors.
@@ -267,22 +223,25 @@ fn place(file: &mut HexFile, placing: &Placing) {
 
 fn named(
     file: &HexFile,
-    key: &'static str,
+    path: &Path,
+    key: &'static [&'static str],
     name: &str,
-    insert: &HexahedralInsert,
 ) -> Result<Vec<[u32; 4]>, BuildError> {
-    match file.surface(name) {
-        Some(surface) => Ok(surface.quads.clone()),
-        None => {
-            let names = file.surfaces.iter().map(|surface| surface.name.clone());
-            let fault = MeshFault::NoSurface {
-                key,
-                name: name.to_owned(),
-                names: names.collect(),
-            };
-            Err(BuildError::mesh(insert.file.path(), fault))
-        }
+    if let Some(surface) = file.surface(name) {
+        return Ok(surface.quads.clone());
     }
+    let names: Vec<&str> = file
+        .surfaces
+        .iter()
+        .map(|surface| surface.name.as_str())
+        .collect();
+    let listed = if names.is_empty() {
+        "none".to_owned()
+    } else {
+        names.join(", ")
+    };
+    let message = format!("there is no surface \"{name}\"; it has {listed}");
+    Err(BuildError::mesh(path, key, message))
 }
 
 /// A face counts as seen from above or below if it leans by less than 60 degrees.
@@ -296,4 +255,102 @@ fn facing(mesh: &HexMesh, up: f64) -> Vec<[u32; 4]> {
         up * normal.y > MIN_COSINE * normal.norm()
     };
     mesh.boundary_quads().into_iter().filter(upward).collect()
+}
+
+/// Returns the insert of a file, cut off its tray if the shape shows the boundary.
+///
+/// # Errors
+/// The shape does not show it, or what remains is no shell.
+pub(super) fn without_tray(
+    file: &DataFile,
+    shell: CheckedMesh,
+    warnings: &mut Vec<BuildWarning>,
+) -> Result<CheckedMesh, BuildError> {
+    match Underside::find(&shell.mesh) {
+        Underside::Whole => Ok(shell),
+        Underside::Ledge {
+            height_mm,
+            below_dishes_mm,
+            reach_mm,
+        } => {
+            let height_mm = rounded_up(height_mm);
+            let remark = format!(
+                "this body reaches {reach_mm:.1} mm below its dishes, as an insert does that is one with its tray or stem; it \
+                 is cut at the ledge at y = {height_mm:.2} mm, which leaves {below_dishes_mm:.2} mm of polyethylene below the \
+                 dishes; write clip_below_mm = {height_mm:.2} in [insert] if that is right, or the right height"
+            );
+            warnings.push(BuildWarning::mesh(file, remark));
+            cut_at(shell, height_mm).map_err(|error| BuildError::shell(file.path(), &error))
+        }
+        Underside::Unclear {
+            reach_mm,
+            plate_mm,
+            ledges_mm,
+        } => {
+            let heights = heights_to_write(plate_mm, &ledges_mm);
+            let message = format!(
+                "this body reaches {reach_mm:.1} mm below its dishes, as an insert does that is one with its tray or stem, \
+                 and its shape does not show for certain where the polyethylene ends; write [insert] {heights}"
+            );
+            let keys = &["clip_below_mm", "file"];
+            Err(BuildError::mesh(file.path(), keys, message))
+        }
+    }
+}
+
+/// Returns the insert of a construct above a height, mm, with the parts of the file that were left out before.
+pub(in crate::case) fn cut_at(
+    whole: CheckedMesh,
+    height_mm: f64,
+) -> Result<CheckedMesh, RepairError> {
+    let CheckedMesh { mesh, left_out, .. } = whole;
+    let cut = ShellOf::insert(Some(height_mm)).checks.check(mesh)?;
+    Ok(CheckedMesh { left_out, ..cut })
+}
+
+/// Rounds a height to the next hundredth of a millimetre, so that nothing of the plate is left.
+pub(in crate::case) fn rounded_up(height_mm: f64) -> f64 {
+    // Adding zero turns -0 into 0.
+    (height_mm * PER_MM - ROUNDING).ceil() / PER_MM + 0.0
+}
+
+/// Lists the heights to choose from; without a ledge, that of a usual plate.
+pub(in crate::case) fn heights_to_write(plate_mm: f64, ledges_mm: &[f64]) -> String {
+    /// Usual thickness of a tray's plate, mm, as a hint.
+    const USUAL_PLATE_MM: f64 = 4.0;
+    let key = |height_mm: f64| format!("clip_below_mm = {:.2}", rounded_up(height_mm));
+    let on_plate = if ledges_mm.is_empty() {
+        let usual = key(plate_mm + USUAL_PLATE_MM);
+        format!("{usual} where it stands on a plate of {USUAL_PLATE_MM:.0} mm")
+    } else {
+        let ledges: Vec<String> = ledges_mm.iter().map(|&height| key(height)).collect();
+        format!("{}, where its sides have a ledge", ledges.join(" or "))
+    };
+    let whole = key(plate_mm);
+    format!("{on_plate}; or {whole}, where all above its underside is polyethylene")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn heights_are_rounded_up_to_the_reported_digits() {
+        assert_eq!(rounded_up(-9.0), -9.0);
+        assert_eq!(rounded_up(-8.999_999_999_9), -9.0);
+        assert_eq!(rounded_up(-8.9987), -8.99);
+        assert_eq!(rounded_up(0.5), 0.5);
+    }
+
+    #[test]
+    fn heights_to_write_are_lines_of_the_case() {
+        let said = heights_to_write(-13.0, &[]);
+        assert!(said.starts_with("clip_below_mm = -9.00 where"), "{said}");
+        assert!(said.contains("or clip_below_mm = -13.00,"), "{said}");
+        let said = heights_to_write(-13.0, &[-6.5, -9.0]);
+        assert!(
+            said.starts_with("clip_below_mm = -6.50 or clip_below_mm = -9.00, where"),
+            "{said}"
+        );
+    }
 }

@@ -7,9 +7,9 @@ use condyle::machine::{
     Channel, Drive, JointDescription, JointIndex, JointKind, Machine, Spring, Waveform,
 };
 
-use super::super::contents::Case;
-use super::super::machine::{DriveWord, Freedom, Springs, StiffnessOf};
-use super::super::{activity, machine as case};
+use crate::case::contents::Case;
+use crate::case::machine::{DriveWord, Freedom, StiffnessOf};
+use crate::case::{activity, machine as case};
 
 const TONNE_PER_KG: f64 = 1e-3;
 const TONNE_MM2_PER_KG_M2: f64 = 1e3;
@@ -38,7 +38,20 @@ impl case::Machine {
         );
         machine.joint_mut(knee::IE).axis_point_mm =
             Vec3::new(settings.ie_axis_anterior_mm, 0.0, 0.0);
-        machine.springs = springs(&self.springs);
+        let springs = &self.springs;
+        let share = match springs.stiffness_of {
+            StiffnessOf::Pair => 0.5,
+            StiffnessOf::Each => 1.0,
+        };
+        let spring = |side: f64| Spring {
+            along: knee::AP,
+            about: knee::IE,
+            offset_mm: side * springs.lateral_offset_mm,
+            positive_n_per_mm: share * springs.anterior_n_per_mm,
+            negative_n_per_mm: share * springs.posterior_n_per_mm,
+            free_play_mm: springs.free_play_mm,
+        };
+        machine.springs = vec![spring(1.0), spring(-1.0)];
         machine.frequency_hz = settings.frequency_hz;
         machine
     }
@@ -72,29 +85,6 @@ impl case::Machine {
     }
 }
 
-fn springs(springs: &Springs) -> Vec<Spring> {
-    let share = match springs.stiffness_of {
-        StiffnessOf::Pair => 0.5,
-        StiffnessOf::Each => 1.0,
-    };
-    let spring = |side: f64| Spring {
-        along: knee::AP,
-        about: knee::IE,
-        offset_mm: side * springs.lateral_offset_mm,
-        positive_n_per_mm: share * springs.anterior_n_per_mm,
-        negative_n_per_mm: share * springs.posterior_n_per_mm,
-        free_play_mm: springs.free_play_mm,
-    };
-    vec![spring(1.0), spring(-1.0)]
-}
-
-#[cfg(feature = "file-system")]
-impl Case {
-    pub(in crate::case) fn start_flexion_rad(&self) -> f64 {
-        start_flexion_rad(&self.first_machine().build(Vec3::zeros()))
-    }
-}
-
 pub(super) fn start_flexion_rad(machine: &Machine) -> f64 {
     match &machine.joint(knee::FLEXION).drive {
         Drive::Prescribed(flexion) => flexion.at(0.0).0,
@@ -103,14 +93,11 @@ pub(super) fn start_flexion_rad(machine: &Machine) -> f64 {
     }
 }
 
-/// Name of the only activity of a case without activities.
-const ONLY: &str = "gait";
-
 impl Case {
     /// Builds every activity around an insert whose dishes are lowest at `low_point_mm`.
     pub(super) fn built_activities(&self, low_point_mm: Vec3) -> Vec<Activity> {
         if self.activities.is_empty() {
-            return vec![Activity::only(ONLY, self.machine.build(low_point_mm))];
+            return vec![Activity::only("gait", self.machine.build(low_point_mm))];
         }
         let activities = self.activities.iter().zip(self.activities.shares());
         let built = activities.map(|(activity, share)| Activity {
@@ -121,10 +108,10 @@ impl Case {
         built.collect()
     }
 
+    /// Returns the flexion at the start of the first activity.
     #[cfg(feature = "file-system")]
-    pub(super) fn first_machine(&self) -> case::Machine {
-        let first = self.activities.iter().next();
-        first.map_or_else(|| self.machine.clone(), |first| self.machine.doing(first))
+    pub(in crate::case) fn start_flexion_rad(&self) -> f64 {
+        start_flexion_rad(&self.built_activities(Vec3::zeros())[0].machine)
     }
 }
 

@@ -7,14 +7,14 @@ use condyle::evolve::WearTest;
 use condyle::geometry;
 use condyle_fem::{Elastic, SolidError};
 
-use super::super::contents::Case;
-use super::super::femur::Femur;
-use super::super::frame::Side;
-use super::super::insert::Insert;
-use super::super::run_options::Limits;
 use super::error::BuildWarning;
 use super::femur::BuiltFemur;
 use crate::cache::Keep;
+use crate::case::contents::Case;
+use crate::case::femur::Femur;
+use crate::case::frame::Side;
+use crate::case::insert::Insert;
+use crate::case::run_options::Limits;
 
 /// Number of bodies of each kind that are kept, the newest: enough for a few levels or designs, whatever the number
 /// of cases.
@@ -22,13 +22,18 @@ const MAX_KEPT: usize = 8;
 /// Number of elastic inserts that are kept, the newest: each takes some hundred megabytes.
 const MAX_ELASTIC: usize = 2;
 
+/// Everything that determines an insert.
+type InsertInputs = (Insert, Side, Limits);
+
 /// Built bodies, shared by cases with equal bodies; sharing does not change any result.
 ///
 /// Mesh files must not change while they are shared.
 pub struct SharedBodies {
-    inserts: Kept<InsertInputs, geometry::Insert>,
-    femurs: Kept<FemurInputs, BuiltFemur>,
-    elastic: Kept<(InsertInputs, Elastic), Deformable>,
+    pub(super) inserts: Kept<InsertInputs, geometry::Insert>,
+    /// By everything that determines a femur, last its flexion at the start, rad.
+    pub(super) femurs: Kept<(Femur, Side, Limits, f64), BuiltFemur>,
+    /// Laws of deformable inserts; their known compliance is shared among cases.
+    pub(super) elastic: Kept<(InsertInputs, Elastic), Deformable>,
 }
 
 impl Default for SharedBodies {
@@ -42,61 +47,10 @@ impl Default for SharedBodies {
 }
 
 /// A body, with the warnings of its build.
-pub(super) type WithWarnings<T> = (Arc<T>, Vec<BuildWarning>);
-
-/// Everything that determines an insert.
-#[derive(PartialEq)]
-pub(super) struct InsertInputs(Insert, Side, Limits);
-
-/// Everything that determines a femur; the last field is its flexion at the start, rad.
-#[derive(PartialEq)]
-pub(super) struct FemurInputs(Femur, Side, Limits, f64);
-
-impl InsertInputs {
-    fn of(case: &Case) -> Self {
-        Self(case.insert.clone(), case.heading.side, case.limits.clone())
-    }
-}
-
-impl SharedBodies {
-    pub(super) fn insert<E>(
-        &self,
-        case: &Case,
-        make: impl FnOnce(&mut Vec<BuildWarning>) -> Result<geometry::Insert, E>,
-    ) -> Result<WithWarnings<geometry::Insert>, E> {
-        self.inserts.found_or_made(InsertInputs::of(case), make)
-    }
-
-    /// Returns the law of a deformable insert; its known compliance is shared among cases.
-    pub(super) fn elastic<E>(
-        &self,
-        case: &Case,
-        elastic: Elastic,
-        make: impl FnOnce() -> Result<Deformable, E>,
-    ) -> Result<Deformable, E> {
-        let inputs = (InsertInputs::of(case), elastic);
-        let (law, _) = self.elastic.found_or_made(inputs, |_| make())?;
-        Ok(Deformable::clone(&law))
-    }
-
-    pub(super) fn femur<E>(
-        &self,
-        case: &Case,
-        flexion_rad: f64,
-        make: impl FnOnce(&mut Vec<BuildWarning>) -> Result<BuiltFemur, E>,
-    ) -> Result<WithWarnings<BuiltFemur>, E> {
-        let inputs = FemurInputs(
-            case.femur.clone(),
-            case.heading.side,
-            case.limits.clone(),
-            flexion_rad,
-        );
-        self.femurs.found_or_made(inputs, make)
-    }
-}
+type WithWarnings<T> = (Arc<T>, Vec<BuildWarning>);
 
 /// The newest results by their inputs.
-struct Kept<I, T> {
+pub(super) struct Kept<I, T> {
     most: usize,
     made: Mutex<Vec<(I, WithWarnings<T>)>>,
 }
@@ -108,32 +62,24 @@ impl<I: PartialEq, T> Kept<I, T> {
     }
 
     /// Returns the result for the same inputs, computed if necessary; two threads may both compute it.
-    fn found_or_made<E>(
+    pub(super) fn found_or_made<E>(
         &self,
         inputs: I,
         make: impl FnOnce(&mut Vec<BuildWarning>) -> Result<T, E>,
     ) -> Result<WithWarnings<T>, E> {
-        if let Some(found) = self.find(&inputs) {
-            return Ok(found);
+        let lock = || self.made.lock().unwrap_or_else(PoisonError::into_inner);
+        if let Some((_, found)) = lock().iter().find(|(of, _)| *of == inputs) {
+            return Ok(found.clone());
         }
+        // The lock is released while the result is computed, which may take minutes.
         let mut warnings = Vec::new();
         let made = (Arc::new(make(&mut warnings)?), warnings);
-        self.keep(inputs, made.clone());
-        Ok(made)
-    }
-
-    fn find(&self, inputs: &I) -> Option<WithWarnings<T>> {
-        let kept = self.made.lock().unwrap_or_else(PoisonError::into_inner);
-        let same = kept.iter().find(|(of, _)| of == inputs);
-        same.map(|(_, found)| found.clone())
-    }
-
-    fn keep(&self, inputs: I, made: WithWarnings<T>) {
-        let mut kept = self.made.lock().unwrap_or_else(PoisonError::into_inner);
+        let mut kept = lock();
         if kept.len() == self.most {
             kept.remove(0);
         }
-        kept.push((inputs, made));
+        kept.push((inputs, made.clone()));
+        Ok(made)
     }
 }
 
@@ -141,11 +87,15 @@ impl<I: PartialEq, T> Kept<I, T> {
 const WHAT: &str = "compliance";
 
 impl Case {
+    pub(super) fn insert_inputs(&self) -> InsertInputs {
+        (self.insert.clone(), self.heading.side, self.limits.clone())
+    }
+
     /// Loads the kept compliance of an insert into a law without one.
     ///
     /// # Errors
     /// An insert that cannot be modelled as an elastic solid.
-    pub(super) fn tell_compliance(
+    pub(super) fn load_compliance(
         &self,
         law: &Deformable,
         insert: &geometry::Insert,
@@ -154,10 +104,11 @@ impl Case {
         if law.knows(insert) {
             return Ok(());
         }
-        let found = keep.find(WHAT, &self.inputs_of_compliance(insert).slices());
-        let found =
+        let inputs = self.inputs_of_compliance(insert);
+        let found = keep.find(WHAT, &inputs.each_ref().map(Vec::as_slice));
+        let known =
             found.and_then(|content| postcard::from_bytes::<KnownCompliance>(&content).ok());
-        found.map_or(Ok(()), |known| law.know(insert, known))
+        known.map_or(Ok(()), |known| law.know(insert, known))
     }
 
     /// Keeps the known compliance of a test's insert if it covers more than the given number of pairs of tiles of the
@@ -179,45 +130,32 @@ impl Case {
         let room = Vec::with_capacity(known.bytes());
         if let Ok(content) = postcard::to_extend(&known, room) {
             let inputs = self.inputs_of_compliance(&test.insert);
-            keep.keep(WHAT, &inputs.slices(), &content);
+            keep.keep(WHAT, &inputs.each_ref().map(Vec::as_slice), &content);
         }
         known.pairs()
     }
 
-    fn inputs_of_compliance(&self, insert: &geometry::Insert) -> Inputs {
+    /// Returns everything that determines the compliance of an unworn insert, as bytes.
+    fn inputs_of_compliance(&self, insert: &geometry::Insert) -> [Vec<u8>; 6] {
         let model = self.contact.deformable();
         let rests = model.is_some_and(|model| model.backside.is_resting());
-        Inputs::of(insert, self.material.elastic(), rests)
-    }
-}
-
-/// Everything that determines the compliance of an unworn insert, as bytes.
-struct Inputs([Vec<u8>; 6]);
-
-impl Inputs {
-    fn of(insert: &geometry::Insert, elastic: Elastic, rests: bool) -> Self {
-        let numbers = |numbers: &[f64]| numbers.iter().flat_map(|x| x.to_le_bytes()).collect();
-        let places = insert.unworn_nodes().iter().flatten().copied();
-        let whole = |numbers: &mut dyn Iterator<Item = u32>| {
-            numbers.flat_map(u32::to_le_bytes).collect::<Vec<u8>>()
+        let elastic = self.material.elastic();
+        let numbers = |numbers: &mut dyn Iterator<Item = f64>| -> Vec<u8> {
+            numbers.flat_map(f64::to_le_bytes).collect()
         };
-        Self([
-            numbers(&[elastic.youngs_modulus, elastic.poissons_ratio]),
-            numbers(&places.collect::<Vec<f64>>()),
+        let whole = |numbers: &mut dyn Iterator<Item = u32>| -> Vec<u8> {
+            numbers.flat_map(u32::to_le_bytes).collect()
+        };
+        let surfaces = insert.surface_nodes().iter().chain(insert.backside_nodes());
+        [
+            numbers(&mut [elastic.youngs_modulus, elastic.poissons_ratio].into_iter()),
+            numbers(&mut insert.unworn_nodes().iter().flatten().copied()),
             whole(&mut insert.mesh().hexes.iter().flatten().copied()),
             whole(&mut insert.surface_faces().iter().flatten().copied()),
             // The held part of the backside.
             vec![u8::from(rests)],
-            whole(
-                &mut [insert.surface_nodes(), insert.backside_nodes()]
-                    .concat()
-                    .into_iter(),
-            ),
-        ])
-    }
-
-    fn slices(&self) -> [&[u8]; 6] {
-        self.0.each_ref().map(Vec::as_slice)
+            whole(&mut surfaces.copied()),
+        ]
     }
 }
 
@@ -226,11 +164,11 @@ mod tests {
     use super::*;
 
     #[test]
-    fn what_was_made_of_the_same_is_shared_and_the_oldest_goes() {
+    fn equal_inputs_share_a_result_and_the_oldest_is_dropped() {
         let kept: Kept<usize, usize> = Kept::of(MAX_KEPT);
         let made = |inputs: usize| {
             let made = kept.found_or_made(inputs, |_| Ok::<_, ()>(inputs));
-            made.expect("nothing goes wrong").0
+            made.expect("it cannot fail").0
         };
         let first = made(0);
         assert!(Arc::ptr_eq(&first, &made(0)));

@@ -12,7 +12,7 @@ use tempfile::TempDir;
 
 use super::assemble::Built;
 use super::error::BuildError;
-use super::meshes::{Placing, ShellOf, shell};
+use super::placing::{Placing, ShellOf, shell};
 use crate::cache::Cache;
 use crate::case::tests::{cases, has_dm_data};
 use crate::case::{Case, FemurShape, InsertShape, Side};
@@ -517,7 +517,7 @@ fn a_cut_that_misses_the_body_points_to_its_key() {
     let said = refusal(&misses, folder.path());
     assert!(
         said.ends_with(
-            "a.stl: `clip_below_mm` = -1 cuts nothing off or all: with its axes turned, \
+            "a.stl: `clip_below_mm` = -1 removes nothing or everything: with its axes turned, \
              the body reaches from y = 0.00 mm to 8.00 mm"
         ),
         "{said}"

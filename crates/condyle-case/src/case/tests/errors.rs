@@ -245,11 +245,11 @@ fn a_backside_that_rests_is_that_of_a_deformable_insert_alone_and_of_solved_incr
     for (beside, word) in [
         (
             "plasticity = \"j2\"",
-            "does not go with plasticity = \"j2\"",
+            "cannot be combined with plasticity = \"j2\"",
         ),
         (
             "friction_model = \"stick-slip\"",
-            "does not go with friction_model",
+            "cannot be combined with friction_model",
         ),
         (
             "[time]\nintegrator = \"explicit\"",

@@ -127,7 +127,7 @@ fn csv_column_must_be_there_and_be_chosen() {
     assert_shows(
         &shown,
         &[
-            "the case does not say which",
+            "the case names none of them",
             "`column = `, one of a_deg, b_deg",
         ],
     );

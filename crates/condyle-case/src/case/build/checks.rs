@@ -1,0 +1,333 @@
+//! Checks of size, unit, orientation, side and origin of a body by its shape.
+
+use std::path::Path;
+
+use condyle::anatomy::{Orientation, Sureness, flange_lead_mm};
+use condyle::geometry::{self, TriangleMesh};
+use condyle::{Mat3, Vec3};
+use condyle_fem::HexMesh;
+
+use super::error::{Body, BuildError, BuildWarning, Finding};
+use super::placing::{Placing, middle_of_points};
+use crate::case::frame::{LengthUnit, Side};
+use crate::case::insert::{InsertOrigin, InsertPlacement};
+use crate::config::DataFile;
+
+/// Smallest and largest length of a part of a knee, mm.
+const POSSIBLE_MM: std::ops::RangeInclusive<f64> = 5.0..=500.0;
+/// Lengths of femoral components and inserts, mm. Another unit is the right one if it gives such a length; no two
+/// units do.
+const USUAL_MM: std::ops::RangeInclusive<f64> = 20.0..=200.0;
+/// Longest extent of a femoral component or an insert of a whole knee, mm: from the smallest sizes on
+/// the market, rounded down, to the largest, rounded up.
+const WHOLE_KNEE_MM: std::ops::RangeInclusive<f64> = 40.0..=120.0;
+/// Largest distance of the middle between the dishes to a side of the origin, mm: each mm moves 2 % of the load to
+/// one of them ...
+pub(in crate::case) const MAX_ACROSS_MM: f64 = 2.5;
+/// ... and to the front or back, mm: dishes are lowest behind the middle of an insert, and the lowest place of flat
+/// ones is uncertain.
+const MAX_ALONG_MM: f64 = 10.0;
+
+/// Rejects triangles whose size does not fit a part of a knee: memory grows with the size.
+pub(super) fn check_triangles(
+    file: &Path,
+    mesh: &TriangleMesh,
+    unit: LengthUnit,
+) -> Result<(), BuildError> {
+    check_points(file, &mesh.vertices, unit).map_err(|error| match stray_piece(mesh) {
+        Some(piece) if POSSIBLE_MM.contains(&piece.body_mm) => {
+            let message = format!("{}, too far for a knee; delete it", piece.text);
+            BuildError::mesh(file, &["file"], message)
+        }
+        _ => error,
+    })
+}
+
+pub(super) fn check_points(
+    file: &Path,
+    points: &[Vec3],
+    unit: LengthUnit,
+) -> Result<(), BuildError> {
+    let none = (Vec3::repeat(f64::INFINITY), Vec3::repeat(f64::NEG_INFINITY));
+    let (low, high) = points
+        .iter()
+        .fold(none, |(low, high), point| (low.inf(point), high.sup(point)));
+    let size_mm = (high - low).max();
+    // A body without points has no size; other checks reject it.
+    if points.is_empty() || POSSIBLE_MM.contains(&size_mm) {
+        return Ok(());
+    }
+    let in_unit = |other: LengthUnit| (other, size_mm / unit.in_mm() * other.in_mm());
+    let mut better = LengthUnit::ALL.iter().copied().map(in_unit);
+    let remedy = match better.find(|(_, size_mm)| USUAL_MM.contains(size_mm)) {
+        Some(better) => in_better_unit(better),
+        None => "check length_unit and the mesh".to_owned(),
+    };
+    let size = rounded(size_mm);
+    let message = format!("the body is {size} mm long, and a knee's is 5 mm to 500 mm; {remedy}");
+    Err(BuildError::mesh(file, &["length_unit", "file"], message))
+}
+
+/// Formats sizes from nanometres to kilometres with three digits.
+fn rounded(size_mm: f64) -> String {
+    if (0.1..1e5).contains(&size_mm) {
+        format!("{size_mm:.1}")
+    } else {
+        format!("{size_mm:.2e}")
+    }
+}
+
+fn in_better_unit((unit, size_mm): (LengthUnit, f64)) -> String {
+    let unit = unit.word();
+    format!("write length_unit = \"{unit}\", with which it is {size_mm:.1} mm long")
+}
+
+/// A piece of a mesh that lies far from the largest one, the body.
+pub(super) struct StrayPiece {
+    pub text: String,
+    /// Longest edge of the body's box, mm.
+    body_mm: f64,
+}
+
+/// A connected set of triangles in its box.
+struct Piece {
+    triangles: usize,
+    low: Vec3,
+    high: Vec3,
+}
+
+impl Piece {
+    fn diagonal_mm(&self) -> f64 {
+        (self.high - self.low).norm()
+    }
+
+    fn distance_mm(&self, other: &Self) -> f64 {
+        let apart = (self.low - other.high).sup(&(other.low - self.high));
+        apart.sup(&Vec3::zeros()).norm()
+    }
+}
+
+/// Returns the piece farthest from the largest one, if its distance exceeds half of the size of the largest: the two
+/// condyles or plateaus of a knee in two parts are nearer to each other.
+pub(super) fn stray_piece(mesh: &TriangleMesh) -> Option<StrayPiece> {
+    let pieces = pieces(mesh);
+    let larger = |a: &&Piece, b: &&Piece| a.diagonal_mm().total_cmp(&b.diagonal_mm());
+    let body = pieces.iter().max_by(larger)?;
+    let away_mm = |piece: &Piece| piece.distance_mm(body);
+    let farther = |a: &&Piece, b: &&Piece| away_mm(a).total_cmp(&away_mm(b));
+    let farthest = pieces.iter().max_by(farther)?;
+    let (at, away) = ((farthest.low + farthest.high) / 2.0, away_mm(farthest));
+    (away > body.diagonal_mm() / 2.0).then(|| StrayPiece {
+        text: format!(
+            "a piece of {} triangles at ({:.0}, {:.0}, {:.0}) mm lies {away:.0} mm from the body",
+            farthest.triangles, at.x, at.y, at.z
+        ),
+        body_mm: (body.high - body.low).max(),
+    })
+}
+
+fn pieces(mesh: &TriangleMesh) -> Vec<Piece> {
+    let mut parents: Vec<u32> = (0..mesh.vertices.len() as u32).collect();
+    for &[a, b, c] in &mesh.triangles {
+        for other in [b, c] {
+            let (from, to) = (root(&mut parents, a), root(&mut parents, other));
+            parents[from as usize] = to;
+        }
+    }
+    let mut of_root: Vec<Option<usize>> = vec![None; mesh.vertices.len()];
+    let mut pieces = Vec::new();
+    for (triangle, &[vertex, ..]) in mesh.triangles.iter().enumerate() {
+        let place = &mut of_root[root(&mut parents, vertex) as usize];
+        let index = *place.get_or_insert_with(|| {
+            pieces.push(Piece {
+                triangles: 0,
+                low: Vec3::repeat(f64::INFINITY),
+                high: Vec3::repeat(f64::NEG_INFINITY),
+            });
+            pieces.len() - 1
+        });
+        let piece = &mut pieces[index];
+        piece.triangles += 1;
+        for corner in mesh.corners(triangle) {
+            (piece.low, piece.high) = (piece.low.inf(&corner), piece.high.sup(&corner));
+        }
+    }
+    pieces
+}
+
+/// Returns the representative of the vertices connected with this one, and shortens the path to it.
+fn root(parents: &mut [u32], mut vertex: u32) -> u32 {
+    while parents[vertex as usize] != vertex {
+        let parent = parents[vertex as usize];
+        parents[vertex as usize] = parents[parent as usize];
+        vertex = parent;
+    }
+    vertex
+}
+
+/// Checks orientation and unit of a body by its shape: a certain mistake is an error, a likely one a warning. Returns true if
+/// the shape confirms the orientation.
+pub(super) fn check_orientation(
+    body: Body,
+    file: &DataFile,
+    mesh: &TriangleMesh,
+    placing: &Placing,
+    warnings: &mut Vec<BuildWarning>,
+) -> Result<bool, BuildError> {
+    let Some(recognition) = body.recognise(mesh) else {
+        return Ok(false);
+    };
+    let size_mm = longest_mm(mesh);
+    if !WHOLE_KNEE_MM.contains(&size_mm) {
+        let is_long = format!(
+            "this {body} is {} mm long, and that of a whole knee is 40 mm to 120 mm",
+            rounded(size_mm)
+        );
+        // A wrong size is certain if another unit corrects it.
+        if let Some(better) = usual_unit(size_mm / placing.unit.in_mm()) {
+            let message = format!("{is_long}; {}", in_better_unit(better));
+            let keys = &["length_unit", "file"];
+            return Err(BuildError::mesh(file.path(), keys, message));
+        }
+        let remark = format!("{is_long}; check length_unit");
+        warnings.push(BuildWarning::mesh(file, remark));
+    }
+    let Some(sureness) = recognition.against(&Orientation::ISB) else {
+        return Ok(true);
+    };
+    let turn = recognition.nearest().rotation();
+    let signs = match body {
+        Body::Femur => {
+            "the box open above, the trochlea in front and the notch between the condyles behind"
+        }
+        Body::Insert => {
+            "two dishes above, the flat backside below, the notch or the lower lip behind"
+        }
+    };
+    let lies = lies(&turn);
+    let [x, y, z] = placing.axes_turned(&turn).words();
+    let advice =
+        format!("write axes = [\"{x}\", \"{y}\", \"{z}\"], which its shape shows ({signs})");
+    if sureness == Sureness::Certain {
+        let message = format!("this {body} lies {lies}; {advice}");
+        return Err(BuildError::mesh(file.path(), &["axes", "file"], message));
+    }
+    let remark = format!("this {body} likely lies {lies}; {advice}");
+    warnings.push(BuildWarning::mesh(file, remark).with(Finding::WrongAxes(body)));
+    Ok(false)
+}
+
+pub(super) fn check_orientation_of_hexahedra(
+    file: &DataFile,
+    mesh: &HexMesh,
+    placing: &Placing,
+    warnings: &mut Vec<BuildWarning>,
+) -> Result<bool, BuildError> {
+    let boundary = TriangleMesh::of_quads(mesh.nodes.clone(), mesh.boundary_quads());
+    check_orientation(Body::Insert, file, &boundary, placing, warnings)
+}
+
+/// Warns of a femur, in the frame of a right knee, with the shape of the other knee's femur.
+pub(super) fn check_side(
+    file: &DataFile,
+    mesh: &TriangleMesh,
+    side: Side,
+    warnings: &mut Vec<BuildWarning>,
+) {
+    let lead_mm = -flange_lead_mm(mesh).unwrap_or(0.0);
+    if lead_mm > 0.0 {
+        let (of_case, other) = (side.word(), side.other().word());
+        let remark = format!(
+            "the flange of the trochlea that side = \"{of_case}\" makes the medial one stands out {} mm beyond the lateral \
+             one, as in a {other} knee; write side = \"{other}\", or check that the axes and the files are of one knee",
+            rounded(lead_mm)
+        );
+        warnings.push(BuildWarning::mesh(file, remark));
+    }
+}
+
+/// Returns the unit in which a body of length `size` is as long as a knee's, and that length, mm.
+pub(in crate::case) fn usual_unit(size: f64) -> Option<(LengthUnit, f64)> {
+    let in_mm = |unit: LengthUnit| (unit, size * unit.in_mm());
+    let is_usual = |(_, size_mm): &(LengthUnit, f64)| WHOLE_KNEE_MM.contains(size_mm);
+    LengthUnit::ALL.iter().copied().map(in_mm).find(is_usual)
+}
+
+pub(in crate::case) fn longest_mm(mesh: &TriangleMesh) -> f64 {
+    let (low, high) = mesh.bounds();
+    (high - low).max()
+}
+
+/// Describes the orientation of a body that `turn` corrects.
+fn lies(turn: &Mat3) -> &'static str {
+    let up = turn * Vec3::y();
+    let front = turn * Vec3::x();
+    if up.y < -0.5 {
+        "upside down"
+    } else if up.y < 0.5 {
+        "on its side"
+    } else if front.x < -0.5 {
+        "back to front"
+    } else {
+        "turned by a quarter about the vertical"
+    }
+}
+
+/// Returns a warning if the dishes lie off the origin of their file, whatever the placement.
+pub(super) fn off_centre(
+    file: &DataFile,
+    placement: &InsertPlacement,
+    insert: &geometry::Insert,
+) -> Option<BuildWarning> {
+    let rotation = placement.rotation();
+    let nodes = insert.surface().positions;
+    let unturned: Vec<Vec3> = nodes
+        .iter()
+        .map(|node| rotation.transpose() * node)
+        .collect();
+    let middle = rotation * middle_of_points(&unturned);
+    let is_off = middle.z.abs() > MAX_ACROSS_MM || middle.x.abs() > MAX_ALONG_MM;
+    (placement.origin == InsertOrigin::File && is_off).then(|| {
+        let front = if middle.x < 0.0 { "posterior" } else { "anterior" };
+        let side = if middle.z < 0.0 { "medial" } else { "lateral" };
+        let remark = format!(
+            "the dishes have their middle {:.1} mm {front} and {:.1} mm {side} of the origin, where the machine's axes are; \
+             up to {MAX_ALONG_MM} mm in front or behind and {MAX_ACROSS_MM} mm to a side would be sound; write \
+             origin = \"centre\" in [insert], or move the file's origin",
+            middle.x.abs(),
+            middle.z.abs()
+        );
+        BuildWarning::mesh(file, remark)
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_orientation_of_a_body_is_described() {
+        let of = |x, y, z| lies(&Mat3::from_diagonal(&Vec3::new(x, y, z)));
+        assert_eq!(of(1.0, -1.0, -1.0), "upside down");
+        assert_eq!(of(-1.0, 1.0, -1.0), "back to front");
+        let quarter = quarter_turn;
+        assert_eq!(lies(&quarter(Vec3::x())), "on its side");
+        assert_eq!(
+            lies(&quarter(Vec3::y())),
+            "turned by a quarter about the vertical"
+        );
+    }
+
+    fn quarter_turn(axis: Vec3) -> Mat3 {
+        let cross = axis.cross_matrix();
+        Mat3::identity() + cross + cross * cross
+    }
+
+    #[test]
+    fn the_unit_follows_from_the_size_of_a_knee() {
+        for (size, unit) in [(0.0795, "m"), (7.95, "cm"), (79.5, "mm"), (3.13, "in")] {
+            assert_eq!(usual_unit(size).unwrap().0.word(), unit);
+        }
+        assert_eq!(usual_unit(0.5), None);
+    }
+}
