@@ -104,7 +104,7 @@ impl std::error::Error for Shown<'_> {}
 
 impl Diagnostic for Shown<'_> {
     fn help<'a>(&'a self) -> Option<Box<dyn fmt::Display + 'a>> {
-        let advice = with_short_words(&self.problem.advice()?);
+        let advice = with_short_words(self.problem.advice()?);
         Some(Box::new(visible(&advice)))
     }
 

@@ -59,9 +59,9 @@ pub struct BuildError {
 }
 
 impl BuildError {
-    fn new(keys: &'static [&'static str], message: impl ToString) -> Self {
+    fn new(keys: &'static [&'static str], message: impl Into<String>) -> Self {
         Self {
-            message: message.to_string(),
+            message: message.into(),
             file: None,
             table: None,
             keys,
@@ -72,7 +72,7 @@ impl BuildError {
     pub(super) fn conflict(
         table: &'static str,
         keys: &'static [&'static str],
-        message: impl ToString,
+        message: impl Into<String>,
     ) -> Self {
         let table = Some(table);
         Self {
@@ -143,7 +143,7 @@ impl From<MeshFileError> for BuildError {
         let file = error.path().map(Path::to_path_buf);
         Self {
             file,
-            ..Self::new(&["file"], error)
+            ..Self::new(&["file"], error.to_string())
         }
     }
 }
