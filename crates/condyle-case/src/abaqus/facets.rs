@@ -27,7 +27,12 @@ pub(super) fn facets(
 ) -> TriangleMesh {
     let mut facets = near(triangles, &cells(femur, nodes, poses));
     for _ in 0..MAX_HALVINGS {
-        if longest_edge_mm(&facets) <= LONGEST_EDGE_MM {
+        let edges = |triangle| {
+            let [a, b, c] = facets.corners(triangle);
+            (b - a).norm().max((c - b).norm()).max((a - c).norm())
+        };
+        let longest_mm = (0..facets.triangles.len()).map(edges).fold(0.0, f64::max);
+        if longest_mm <= LONGEST_EDGE_MM {
             break;
         }
         facets = in_four(&facets, |a, b| (a + b) / 2.0);
@@ -92,12 +97,4 @@ fn near(mesh: &TriangleMesh, cells: &HashSet<Cell>) -> TriangleMesh {
         }));
     }
     kept
-}
-
-fn longest_edge_mm(mesh: &TriangleMesh) -> f64 {
-    let edges = |triangle| {
-        let [a, b, c] = mesh.corners(triangle);
-        (b - a).norm().max((c - b).norm()).max((a - c).norm())
-    };
-    (0..mesh.triangles.len()).map(edges).fold(0.0, f64::max)
 }

@@ -1,12 +1,10 @@
 //! Contact at a pose as an input file of CalculiX and Abaqus: a rigid femur pressed on the deformable insert.
 
-mod error;
 mod facets;
 mod pressed;
 mod pressed_case;
 #[cfg(test)]
 mod tests;
 
-pub use error::ExportError;
 pub use pressed::{Pressed, Slide};
-pub use pressed_case::PressedCase;
+pub use pressed_case::{ExportError, PressedCase};

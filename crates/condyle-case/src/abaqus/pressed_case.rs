@@ -1,18 +1,18 @@
 //! The femur of a case pressed on its deformable insert at one place of the first cycle.
 
-use std::io::Write;
+use std::io::{self, Write};
 use std::ops::ControlFlow;
 
 use condyle::contact::Bodies;
-use condyle::evolve::March;
+use condyle::evolve::{March, MarchError, PlacementError};
 use condyle::geometry::TriangleMesh;
 use condyle::machine::CycleRow;
 use condyle::spatial::Pose;
 use condyle_fem::Hardening;
+use thiserror::Error;
 
-use super::error::ExportError;
 use super::pressed::Pressed;
-use crate::case::{BuildWarning, Case, FEMUR_TRIANGLES, Side};
+use crate::case::{BuildError, BuildWarning, Case, FEMUR_TRIANGLES, Side};
 
 /// A case with a deformable insert, and its first solved cycle on the unworn insert.
 pub struct PressedCase<'a> {
@@ -57,11 +57,20 @@ impl<'a> PressedCase<'a> {
         }
         let built = case.build(threads)?;
         let unworn = March::start(built.test)?;
+        let mut march = March::resume(unworn.test().clone(), unworn.state().clone());
+        if let Err(error) = march.update(&mut |_| ControlFlow::Continue(())) {
+            return Err(ExportError::Cycle(Box::new(error)));
+        }
+        let cycle = march.last_cycle().map_or_else(Vec::new, |cycle| {
+            let rows = cycle.rows.iter().enumerate();
+            rows.map(|(increment, row)| (*row, cycle.pose(increment)))
+                .collect()
+        });
         Ok(Self {
             case,
             hardening,
             triangles: case.femur_triangles(unworn.test(), FEMUR_TRIANGLES)?,
-            cycle: first_cycle(&unworn)?,
+            cycle,
             unworn,
             warnings: built.warnings,
         })
@@ -112,20 +121,6 @@ impl<'a> PressedCase<'a> {
     }
 }
 
-fn first_cycle(unworn: &March) -> Result<Vec<(CycleRow, Pose)>, ExportError> {
-    let mut march = March::resume(unworn.test().clone(), unworn.state().clone());
-    match march.update(&mut |_| ControlFlow::Continue(())) {
-        Ok(ControlFlow::Continue(_) | ControlFlow::Break(())) => {}
-        Err(error) => return Err(ExportError::Cycle(Box::new(error))),
-    }
-    let cycle = march.last_cycle();
-    Ok(cycle.map_or_else(Vec::new, |cycle| {
-        let rows = cycle.rows.iter().enumerate();
-        rows.map(|(increment, row)| (*row, cycle.pose(increment)))
-            .collect()
-    }))
-}
-
 fn note(case: &Case, row: &CycleRow) -> String {
     let mirrored = if case.heading.side == Side::Left {
         "\nThe case is a left knee: this is its mirror image."
@@ -143,4 +138,40 @@ fn note(case: &Case, row: &CycleRow) -> String {
         row.contact_area_mm2,
         row.peak_pressure_mpa,
     )
+}
+
+/// A case that cannot be exported.
+#[derive(Debug, Error)]
+pub enum ExportError {
+    /// The case does not build.
+    #[error(transparent)]
+    Build(#[from] BuildError),
+    /// The femur cannot be placed on the insert.
+    #[error(transparent)]
+    Placement(#[from] PlacementError),
+    /// A choice of the case that the exported model does not have.
+    #[error("the exported file has {supported}, and this case has {found}; write {remedy}")]
+    Unsupported {
+        /// The model that is exported.
+        supported: &'static str,
+        /// The setting of the case.
+        found: String,
+        /// The setting that can be exported.
+        remedy: &'static str,
+    },
+    /// The bodies do not touch at this place of the cycle.
+    #[error("nothing touches at {percent} % of the cycle; choose another place")]
+    Apart {
+        /// Place in the cycle, %.
+        percent: f64,
+    },
+    /// The first cycle could not be solved.
+    #[error(transparent)]
+    Cycle(Box<MarchError>),
+    /// The file cannot be written.
+    #[error("the exported file cannot be written: {source}; check the disk and the folder")]
+    Write {
+        /// The error of the writer.
+        source: io::Error,
+    },
 }

@@ -9,7 +9,7 @@ use std::{
     time::SystemTime,
 };
 
-use super::keep::Keep;
+use super::Keep;
 
 /// Version of the layout of files.
 const FORMAT: &str = "4";

@@ -137,16 +137,6 @@ impl Assignment {
         number(value.get_ref()).filter(|number| number.is_finite())
     }
 
-    /// Returns true if the key is a dotted path, which can be set without reading the case.
-    pub(super) fn is_placed(&self) -> bool {
-        self.key.contains('.')
-    }
-
-    /// Returns the assignment with the dotted path of its key in `case`.
-    pub(super) fn placed_in(&self, case: &Case) -> Result<Self, AssignmentError> {
-        Ok(Self::new(&case.path_of_key(&self.key)?, self.text.clone()))
-    }
-
     fn value(&self) -> String {
         match DeValue::parse(&self.text) {
             Ok(_) => self.text.clone(),
@@ -269,15 +259,6 @@ fn choices_at<'i>(items: &'i [Item], path: &str) -> Option<&'i Choices> {
     }
 }
 
-/// A number of a case.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct NumberKey {
-    /// Dotted path, such as `march.updates`.
-    pub path: String,
-    /// The number is a count.
-    pub is_whole: bool,
-}
-
 impl Case {
     /// Returns the dotted path of every key with its value, including defaults, in the order in which they are
     /// written.
@@ -332,15 +313,6 @@ impl Case {
         self.keys().iter().any(is_below)
     }
 
-    /// Returns every number of the case, including defaults, in the order in which they are written.
-    pub fn number_keys(&self) -> Vec<NumberKey> {
-        let numbers = self.keys().into_iter().filter_map(|(path, value)| {
-            let is_whole = value.is_integer();
-            (is_whole || value.is_float()).then_some(NumberKey { path, is_whole })
-        });
-        numbers.collect()
-    }
-
     /// Returns true if the number at the dotted `path` is a count.
     pub fn is_whole_number(&self, path: &str) -> bool {
         self.value_at(path).is_some_and(|value| value.is_integer())
@@ -358,7 +330,13 @@ impl Case {
     /// # Errors
     /// No number has that name, or several have it.
     pub fn path_of_number(&self, written: &str) -> Result<String, AssignmentError> {
-        let paths = || self.number_keys().into_iter().map(|key| key.path).collect();
+        let paths = || {
+            let is_number = |value: &toml::Value| value.is_integer() || value.is_float();
+            let keys = self.keys().into_iter();
+            keys.filter(|(_, value)| is_number(value))
+                .map(|(path, _)| path)
+                .collect()
+        };
         let near = |names: &[&str]| nearest(written, names.iter().copied());
         path_called("number", written, paths, near).map_err(|error| match error {
             AssignmentError::Unknown { name, .. } if name == "updates" => {

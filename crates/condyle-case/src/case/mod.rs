@@ -27,7 +27,7 @@ mod waveform;
 mod wear;
 
 pub use activity::{Activities, Activity, ActivityKeys};
-pub use assignment::{Assignment, AssignmentError, ChangeError, NumberKey};
+pub use assignment::{Assignment, AssignmentError, ChangeError};
 pub use build::{Body, BuildError, BuildWarning, Built, FEMUR_TRIANGLES, SharedBodies};
 pub use contact::{
     BacksideChoice, Contact, ContactModelChoice, DeformableContact, FoundationContact,

@@ -4,7 +4,7 @@ use condyle::contact::{PressureTable, PressureTableError};
 
 use crate::config::{
     Cell, Columns, DataFile, Fault, Item, Key, Kind, Log, Placed, Points, Section, Setting,
-    Settings, WhereSilent, Writer, both, other_unit, settings, within,
+    Settings, Writer, both, other_unit, settings, within,
 };
 
 struct Form {
@@ -102,39 +102,37 @@ impl StrainTable {
 
 impl Form {
     fn items(&self) -> Vec<Item> {
-        vec![
-            Item::Key(self.points_key()),
-            Item::Key(self.file_key()),
-            Item::OneOf(self.ways.to_vec()),
+        let keys = self.keys().map(Item::Key);
+        keys.into_iter()
+            .chain([Item::OneOf(self.ways.to_vec())])
+            .collect()
+    }
+
+    fn keys(&self) -> [Key; 2] {
+        let [table, file] = self.ways;
+        let header = self.header.join(",");
+        let about_file = format!("CSV file of these points, with the header {header}.");
+        [
+            Key::optional(table, self.doc, Kind::Pairs),
+            Key::optional(file, about_file, DataFile::kind()),
         ]
     }
 
-    fn points_key(&self) -> Key {
-        Key {
-            name: self.ways[0],
-            doc: self.doc.into(),
-            kind: Kind::Pairs,
-            silent: WhereSilent::LeftOut,
-            limits: None,
-        }
-    }
-
-    fn file_key(&self) -> Key {
-        let header = self.header.join(",");
-        Key {
-            name: self.ways[1],
-            doc: format!("CSV file of these points, with the header {header}.").into(),
-            kind: DataFile::kind(),
-            silent: WhereSilent::LeftOut,
-            limits: None,
-        }
-    }
-
     fn read(&self, section: &Section<'_>, log: &mut Log<'_>) -> Option<PressureTable> {
-        let [table, file] = self.ways;
+        let ([table_key, file_key], [table, file]) = (self.keys(), self.ways);
         match (section.value(table), section.value(file)) {
-            (Some(_), None) => self.inline(section, log),
-            (None, Some(_)) => self.of_file(section, log),
+            (Some(value), None) => {
+                let Points(points) = Points::read(value, &table_key, log)?;
+                let read = PressureTable::new(points).map_err(|error| {
+                    let place = section.item_span(table, point_of(&error));
+                    log.problem(place, self.fault(table, &error));
+                });
+                read.ok()
+            }
+            (None, Some(value)) => {
+                let source = DataFile::read(value, &file_key, log)?.source(section, file, log)?;
+                log.noted(&source, self.csv_points(source.inner(), source.name()))
+            }
             (Some(_), Some(_)) => {
                 log.problem(section.key_span(file), both(&section.name(), table, file));
                 None
@@ -168,28 +166,19 @@ impl Form {
         Fault::new(format!("`{key}`: {words}"), "")
     }
 
-    fn inline(&self, section: &Section<'_>, log: &mut Log<'_>) -> Option<PressureTable> {
-        let key = self.points_key();
-        let Points(points) = Points::read(section.value(key.name)?, &key, log)?;
-        let table = PressureTable::new(points).map_err(|error| {
-            let place = section.item_span(key.name, point_of(&error));
-            log.problem(place, self.fault(key.name, &error));
-        });
-        table.ok()
-    }
-
-    fn of_file(&self, section: &Section<'_>, log: &mut Log<'_>) -> Option<PressureTable> {
-        let key = self.ways[1];
-        let value = section.value(key)?;
-        let file = DataFile::read(value, &self.file_key(), log)?;
-        let source = file.source(section, key, log)?;
-        log.noted(&source, self.csv_points(source.inner(), source.name()))
-    }
-
     fn csv_points(&self, text: &str, file: &str) -> Result<PressureTable, Vec<Placed>> {
-        let header = self.header.join(",");
-        let columns = Columns::split(text, file, &header)?;
-        self.check_header(&columns)?;
+        let columns = Columns::split(text, file, &self.header.join(","))?;
+        let names = columns.names();
+        let wrong = (0..2).filter(|&index| names[index] != self.header[index]);
+        let problems = wrong.map(|index| {
+            let (unit, suffix) = self.units[index];
+            let fault = other_unit(names[index], unit, suffix);
+            (columns.name_span(index), fault)
+        });
+        let problems: Vec<Placed> = problems.collect();
+        if !problems.is_empty() {
+            return Err(problems);
+        }
         let (overclosures, pressures) = (columns.numbers(0)?, columns.numbers(1)?);
         let point = |(d, p): (&Cell, &Cell)| (d.value, p.value);
         let points = overclosures.iter().zip(&pressures).map(point).collect();
@@ -198,24 +187,6 @@ impl Form {
             let at = cell.map_or(0..0, |cell| cell.span.clone());
             vec![(at, self.fault(self.ways[1], &error))]
         })
-    }
-
-    fn check_header(&self, columns: &Columns<'_>) -> Result<(), Vec<Placed>> {
-        let names = columns.names();
-        let problem = |index: usize| {
-            let (unit, suffix) = self.units[index];
-            (
-                columns.name_span(index),
-                other_unit(names[index], unit, suffix),
-            )
-        };
-        let wrong = |&index: &usize| names[index] != self.header[index];
-        let problems: Vec<Placed> = (0..2).filter(wrong).map(problem).collect();
-        if problems.is_empty() {
-            Ok(())
-        } else {
-            Err(problems)
-        }
     }
 }
 

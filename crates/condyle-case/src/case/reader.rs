@@ -9,14 +9,12 @@ use std::sync::Arc;
 use condyle::wear::WEAR_LAWS;
 use miette::NamedSource;
 
-use super::assignment::{Assignment, ChangeError, Lines};
+use super::assignment::{Assignment, AssignmentError, ChangeError, Lines};
 use super::contents::Case;
 use super::machine::Preset;
 use super::renamed::rename_keys;
 use super::wear::WearLaws;
-use crate::config::{
-    Base, DataFile, Problems, Section, Settings, Source, check, read_part, read_source,
-};
+use crate::config::{Base, Problems, Section, Settings, Source, check, read_part, read_source};
 #[cfg(feature = "file-system")]
 use condyle_mesh::files::Disk;
 use condyle_mesh::files::{Files, MemoryFiles};
@@ -64,8 +62,22 @@ impl CaseReader {
     /// # Errors
     /// As [`Self::read`]; a name that no key has, or several.
     pub fn read_changed(&self, path: &Path, changes: &[Assignment]) -> Result<Case, ChangeError> {
-        let file = self.source(path)?;
-        self.changed(&file, Base::of(&self.files, path), changes)
+        let (file, base) = (self.source(path)?, Base::of(&self.files, path));
+        let (mut placed, named): (Vec<_>, Vec<_>) = changes
+            .iter()
+            .cloned()
+            .partition(|change| change.key().contains('.'));
+        if named.is_empty() {
+            return Ok(self.case_of(&file, base, changes)?);
+        }
+        // A name without a path is looked up in the case with all other changes: a law that is set brings keys.
+        let case = self.case_of(&file, base, &placed)?;
+        let path_of = |change: &Assignment| case.path_of_key(change.key());
+        placed = changes
+            .iter()
+            .map(|change| Ok(Assignment::new(&path_of(change)?, change.text())))
+            .collect::<Result<_, AssignmentError>>()?;
+        Ok(self.case_of(&file, base, &placed)?)
     }
 
     /// Reads a case from `text`, called `name` in messages; paths in it are relative to `folder`.
@@ -76,30 +88,6 @@ impl CaseReader {
         let source = Arc::new(NamedSource::new(name, text.to_owned()));
         let files = &self.files;
         self.case_of(&source, Base { files, folder }, &[])
-    }
-
-    fn changed(
-        &self,
-        file: &Source,
-        base: Base<'_>,
-        changes: &[Assignment],
-    ) -> Result<Case, ChangeError> {
-        let mut changes = changes.to_vec();
-        if !changes.iter().all(Assignment::is_placed) {
-            // A name without a path is looked up in the case with all other changes: a law that is set brings keys.
-            let placed: Vec<Assignment> = changes
-                .iter()
-                .filter(|change| change.is_placed())
-                .cloned()
-                .collect();
-            let case = self.case_of(file, base, &placed)?;
-            for change in &mut changes {
-                if !change.is_placed() {
-                    *change = change.placed_in(&case)?;
-                }
-            }
-        }
-        Ok(self.case_of(file, base, &changes)?)
     }
 
     fn source(&self, path: &Path) -> Result<Source, Problems> {
@@ -221,20 +209,15 @@ impl Case {
             .into_iter()
             .flatten()
         {
-            text = without_path(&text, file);
+            // The number of blanks after a path depends on its length.
+            let path = toml::Value::String(file.path().to_string_lossy().into_owned()).to_string();
+            let (mut parts, mut rest) = (text.split(&path), String::new());
+            rest += parts.next().unwrap_or_default();
+            parts.for_each(|after| rest += &format!(" {}", after.trim_start_matches(' ')));
+            text = rest;
             hasher.update(blake3::hash(&file.files().read(file.path())?).as_bytes());
         }
         hasher.update(text.as_bytes());
         Ok(hasher.finalize().to_hex().to_string())
     }
-}
-
-/// Removes the path of a file, and the blanks after it, whose number depends on the path.
-fn without_path(text: &str, file: &DataFile) -> String {
-    let path = toml::Value::String(file.path().to_string_lossy().into_owned()).to_string();
-    let mut parts = text.split(&path);
-    let first = parts.next().unwrap_or_default().to_owned();
-    parts.fold(first, |before, after| {
-        before + " " + after.trim_start_matches(' ')
-    })
 }

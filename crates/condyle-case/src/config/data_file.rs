@@ -221,7 +221,8 @@ impl<'a> Columns<'a> {
     }
 }
 
-fn lines(text: &str) -> impl Iterator<Item = Range<usize>> + '_ {
+/// Returns the lines that are not blank.
+pub(crate) fn lines(text: &str) -> impl Iterator<Item = Range<usize>> + '_ {
     let mut start = 0;
     let span = move |line: &str| {
         let span = start..start + line.trim_end().len();
@@ -233,7 +234,8 @@ fn lines(text: &str) -> impl Iterator<Item = Range<usize>> + '_ {
         .filter(|line| !line.is_empty())
 }
 
-fn cells(text: &str, line: &Range<usize>) -> Vec<Range<usize>> {
+/// Returns the cells of a line, without blanks around them.
+pub(crate) fn cells(text: &str, line: &Range<usize>) -> Vec<Range<usize>> {
     let mut start = line.start;
     let cell = |cell: &str| {
         let before = cell.len() - cell.trim_start().len();

@@ -19,7 +19,7 @@ pub use problem::{Problem, Problems};
 pub use render::{RenderStyle, visible};
 pub use setting::{Level, Levels, Names, Points};
 
-pub(crate) use data_file::{Cell, Columns, no_column, other_unit};
+pub(crate) use data_file::{Cell, Columns, cells, lines, no_column, other_unit};
 pub(crate) use fault::{Fault, both, idle, likeliest, nearest, out_of_range, unknown_word};
 pub(crate) use items::{Choices, Item, Offered, TableItem, check, keys};
 pub(crate) use key::{Key, Kind, WhereSilent, names, number, plain, quoted, quoted_list, within};

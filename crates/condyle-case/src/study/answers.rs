@@ -3,7 +3,7 @@
 use condyle_results::catalogue::{self, Scalar};
 
 use super::declared::{AnswersKeys, BoundKeys};
-use crate::config::{Fault, Log, Section, Settings, likeliest, names};
+use crate::config::{Fault, Log, Section, Settings, likeliest};
 
 /// The questions that a study answers.
 #[derive(Clone, Debug)]
@@ -34,8 +34,8 @@ impl Answers {
     pub(super) fn read(root: &Section<'_>, log: &mut Log<'_>) -> Option<Self> {
         let bounds = root.list("limit", log);
         let bounds = bounds.map(|all| all.iter().map(|one| Bound::read(one, log)).collect());
-        let keys = AnswersKeys::read_checked(&root.table("answers", log), log)?;
         let section = root.table("answers", log);
+        let keys = AnswersKeys::read_checked(&section, log)?;
         let mut output = |key: &str, name: &String| output(name, key, &section, log);
         let outputs = keys.outputs.0.iter();
         let outputs: Option<Vec<_>> = outputs.map(|name| output("outputs", name)).collect();
@@ -63,9 +63,7 @@ impl Answers {
 
 impl Bound {
     fn read(section: &Section<'_>, log: &mut Log<'_>) -> Option<Self> {
-        let known: Vec<&str> = names(&BoundKeys::keys()).collect();
-        section.check_keys(&known, log);
-        let keys = BoundKeys::read(section, log)?;
+        let keys = BoundKeys::read_checked(section, log)?;
         let output = output(&keys.output, "output", section, log)?;
         let (least, most) = (keys.least, keys.most);
         if least.or(most).is_none() {

@@ -4,9 +4,11 @@ use std::collections::BTreeSet;
 use std::ops::Range;
 use std::path::Path;
 
-use super::declared::{InputKeys, LevelKeys, Variation};
+use super::declared::{InputKeys, LevelKeys, TriangularKeys, Variation};
 use crate::case::{Assignment, Case};
-use crate::config::{DataFile, Fault, Level, Levels, Log, Placed, Section, Settings, check};
+use crate::config::{
+    DataFile, Fault, Level, Levels, Log, Placed, Section, Settings, cells, check, lines,
+};
 
 /// Deviation from the mean, in standard deviations, up to which a case must accept a normal input: of a million
 /// values 63 lie beyond.
@@ -76,8 +78,7 @@ impl Input {
         let span = section.value_span("key");
         let keys = keys?;
         let key = case.path_of_key(&keys.key).unwrap_or(keys.key);
-        let variation = with_middle(variation?, &key, case, &span, log)?;
-        check_order(&variation, section, log)?;
+        let variation = variation?.completed(&key, case, section, log)?;
         Some(Self {
             name: if keys.name.is_empty() {
                 key.clone()
@@ -125,9 +126,6 @@ impl Input {
     /// Returns the values that the case must accept to accept all: the ends of a distribution, or levels.
     pub(super) fn ends(&self) -> Vec<Level> {
         let (low, high) = match &self.variation {
-            Variation::Uniform(keys) => (keys.low, keys.high),
-            Variation::TruncatedNormal(keys) => (keys.low, keys.high),
-            Variation::Triangular(keys) => (keys.low, keys.high),
             Variation::Normal(keys) => {
                 let reach = NORMAL_REACH * keys.standard_deviation;
                 let mean = keys.mean.unwrap_or_default();
@@ -137,6 +135,7 @@ impl Input {
                 return keys.levels.0.clone();
             }
             Variation::Levels(keys) => return decisive(keys.levels.0.iter().cloned()),
+            bounded => bounded.range().unwrap_or_default(),
         };
         [low, high].map(|end| self.level(end)).to_vec()
     }
@@ -176,56 +175,62 @@ fn decisive(levels: impl Iterator<Item = Level>) -> Vec<Level> {
     words
 }
 
-/// Adds the value of the case where the file gives no mean or mode.
-fn with_middle(
-    mut variation: Variation,
-    key: &str,
-    case: &Case,
-    span: &Range<usize>,
-    log: &mut Log<'_>,
-) -> Option<Variation> {
-    let middle = match &mut variation {
-        Variation::Normal(keys) => &mut keys.mean,
-        Variation::TruncatedNormal(keys) => &mut keys.mean,
-        Variation::Triangular(keys) => &mut keys.mode,
-        Variation::Uniform(_) | Variation::Levels(_) => return Some(variation),
-    };
-    *middle = middle.or_else(|| case.number_at_or_written(key));
-    if middle.is_none() {
-        let fault = Fault::new(
-            format!("the case has no number at `{key}` to start from"),
-            "give `mean` or `mode`, or write the key in the case",
-        );
-        log.problem(span.clone(), fault);
-        return None;
+impl Variation {
+    /// Returns the least and the most of a bounded distribution.
+    fn range(&self) -> Option<(f64, f64)> {
+        match self {
+            Self::Uniform(keys) => Some((keys.low, keys.high)),
+            Self::TruncatedNormal(keys) => Some((keys.low, keys.high)),
+            Self::Triangular(keys) => Some((keys.low, keys.high)),
+            Self::Normal(_) | Self::Levels(_) => None,
+        }
     }
-    Some(variation)
-}
 
-/// Reports reversed ends, and a mode outside of them.
-fn check_order(variation: &Variation, section: &Section<'_>, log: &mut Log<'_>) -> Option<()> {
-    let (low, high, mode) = match variation {
-        Variation::Uniform(keys) => (keys.low, keys.high, None),
-        Variation::TruncatedNormal(keys) => (keys.low, keys.high, None),
-        Variation::Triangular(keys) => (keys.low, keys.high, keys.mode),
-        Variation::Normal(_) | Variation::Levels(_) => return Some(()),
-    };
-    let is_inside = mode.is_none_or(|mode| (low..=high).contains(&mode));
-    if low < high && is_inside {
-        return Some(());
+    /// Takes the value of the case where the file gives no mean or mode; reports a case without a number, reversed ends,
+    /// and a mode outside of them.
+    fn completed(
+        mut self,
+        key: &str,
+        case: &Case,
+        section: &Section<'_>,
+        log: &mut Log<'_>,
+    ) -> Option<Self> {
+        let middle = match &mut self {
+            Self::Normal(keys) => Some(&mut keys.mean),
+            Self::TruncatedNormal(keys) => Some(&mut keys.mean),
+            Self::Triangular(keys) => Some(&mut keys.mode),
+            Self::Uniform(_) | Self::Levels(_) => None,
+        };
+        if let Some(middle) = middle {
+            *middle = middle.or_else(|| case.number_at_or_written(key));
+            if middle.is_none() {
+                let fault = Fault::new(
+                    format!("the case has no number at `{key}` to start from"),
+                    "give `mean` or `mode`, or write the key in the case",
+                );
+                log.problem(section.value_span("key"), fault);
+                return None;
+            }
+        }
+        let Some((low, high)) = self.range() else {
+            return Some(self);
+        };
+        let fault = match &self {
+            Self::Triangular(TriangularKeys {
+                mode: Some(mode), ..
+            }) if !(low..=high).contains(mode) => Fault::new(
+                format!("the likeliest value {mode} is not between {low} and {high}"),
+                "give `mode` between `low` and `high`",
+            ),
+            _ if low < high => return Some(self),
+            _ => Fault::new(
+                format!("the range from {low} to {high} is empty"),
+                "write the smaller one as `low`",
+            ),
+        };
+        log.problem(section.value_span("high"), fault);
+        None
     }
-    let fault = match mode.filter(|_| !is_inside) {
-        Some(mode) => Fault::new(
-            format!("the likeliest value {mode} is not between {low} and {high}"),
-            "give `mode` between `low` and `high`",
-        ),
-        None => Fault::new(
-            format!("the range from {low} to {high} is empty"),
-            "write the smaller one as `low`",
-        ),
-    };
-    log.problem(section.value_span("high"), fault);
-    None
 }
 
 /// Reports a list that is too long.
@@ -267,23 +272,21 @@ pub(super) fn read_rows(
     Some((inputs, rows))
 }
 
-/// The keys and the rows of values.
-type Table = (Vec<String>, Vec<Vec<Level>>);
-
-/// Reads a CSV text, or reports every row that does not fit.
-fn split(text: &str) -> Result<Table, Vec<Placed>> {
+/// Reads keys and rows of values from a CSV text, or reports every row that does not fit.
+fn split(text: &str) -> Result<(Vec<String>, Vec<Vec<Level>>), Vec<Placed>> {
     let no_rows = || {
         let advice = "write keys of the case in its first line, such as `contact.friction,insert.thickness_mm`, and values below";
         Fault::new("the file has no rows", advice)
     };
-    let mut lines = lines(text);
+    let is_comment = |line: &Range<usize>| text[line.clone()].trim_start().starts_with('#');
+    let mut lines = lines(text).filter(|line| !is_comment(line));
     let Some(head) = lines.next() else {
         return Err(vec![(0..0, no_rows())]);
     };
     let cells = |line: &Range<usize>| -> Vec<String> {
-        let cells = text[line.clone()].split(',');
+        let cells = cells(text, line).into_iter();
         cells
-            .map(|cell| cell.trim().trim_matches('"').to_owned())
+            .map(|cell| text[cell].trim_matches('"').to_owned())
             .collect()
     };
     let level = |cell: String| match cell.parse::<f64>() {
@@ -316,18 +319,4 @@ fn split(text: &str) -> Result<Table, Vec<Placed>> {
     } else {
         Err(wrong)
     }
-}
-
-/// Returns the lines that are neither blank nor comments.
-fn lines(text: &str) -> impl Iterator<Item = Range<usize>> + '_ {
-    let mut start = 0;
-    let spans = text.split_inclusive('\n').map(move |line| {
-        let span = start..start + line.trim_end().len();
-        start += line.len();
-        span
-    });
-    spans.filter(|span| {
-        let line = text[span.clone()].trim_start();
-        !line.is_empty() && !line.starts_with('#')
-    })
 }

@@ -9,7 +9,7 @@ use super::declared::{AlternativeKeys, CorrelationKeys, Design, HeadingKeys, Var
 use super::input::{Input, check_count, read_rows};
 use crate::case::{Assignment, Case, CaseReader, ChangeError};
 use crate::config::{
-    Base, Fault, Level, Log, Problems, Section, Settings, names, read_document, read_source,
+    Base, Fault, Level, Log, Problems, Section, Settings, read_document, read_source,
 };
 use condyle_mesh::files::{Disk, Files};
 
@@ -97,25 +97,7 @@ fn read_study(
         folder: absolute.unwrap_or_else(|_| folder.to_path_buf()),
         cases,
     };
-    let mut left = MAX_TRIED;
-    for (place, input) in study.inputs.iter().enumerate() {
-        let before = &study.inputs[..place];
-        if before.iter().any(|one| one.key == input.key) {
-            let fault = Fault::new(
-                format!("`{}` varies twice", input.key),
-                "keep one of the two, or give both values as columns of rows",
-            );
-            log.problem(input.span.clone(), fault);
-        }
-        study.check_input(input, &mut left, log);
-    }
-    for alternative in &study.alternatives {
-        if let Some((why, advice)) = study.refusal(&alternative.set) {
-            let message = format!("the case rejects the design `{}`: {why}", alternative.name);
-            let fault = Fault::new(message, advice.unwrap_or_default());
-            log.problem(alternative.span.clone(), fault);
-        }
-    }
+    study.check_inputs(log);
     study.check_design(&section, log);
     Some(study)
 }
@@ -162,9 +144,7 @@ fn inputs(
 
 /// Reads one `[[alternative]]`.
 fn alternative(section: &Section<'_>, log: &mut Log<'_>) -> Option<Alternative> {
-    let known: Vec<&str> = names(&AlternativeKeys::keys()).collect();
-    section.check_keys(&known, log);
-    let keys = AlternativeKeys::read(section, log)?;
+    let keys = AlternativeKeys::read_checked(section, log)?;
     let mut set = Vec::new();
     for written in &keys.set.0 {
         match Assignment::parse(written) {
@@ -185,9 +165,7 @@ fn alternative(section: &Section<'_>, log: &mut Log<'_>) -> Option<Alternative> 
 
 /// Reads one `[[correlation]]` between two of `inputs`.
 fn correlation(section: &Section<'_>, inputs: &[Input], log: &mut Log<'_>) -> Option<Correlation> {
-    let known: Vec<&str> = names(&CorrelationKeys::keys()).collect();
-    section.check_keys(&known, log);
-    let keys = CorrelationKeys::read(section, log)?;
+    let keys = CorrelationKeys::read_checked(section, log)?;
     let span = section.value_span("keys");
     let [one, other] = &keys.keys.0[..] else {
         let advice = "write `keys = [\"contact.friction\", \"wear.wear_factor_mm3_per_nm\"]`";
@@ -217,6 +195,28 @@ fn correlation(section: &Section<'_>, inputs: &[Input], log: &mut Log<'_>) -> Op
 }
 
 impl Study {
+    /// Reports inputs that are given twice, and values and designs that the case does not accept.
+    fn check_inputs(&self, log: &mut Log<'_>) {
+        let mut left = MAX_TRIED;
+        for (place, input) in self.inputs.iter().enumerate() {
+            if self.inputs[..place].iter().any(|one| one.key == input.key) {
+                let fault = Fault::new(
+                    format!("`{}` varies twice", input.key),
+                    "keep one of the two, or give both values as columns of rows",
+                );
+                log.problem(input.span.clone(), fault);
+            }
+            self.check_input(input, &mut left, log);
+        }
+        for alternative in &self.alternatives {
+            if let Some((why, advice)) = self.refusal(&alternative.set) {
+                let message = format!("the case rejects the design `{}`: {why}", alternative.name);
+                let fault = Fault::new(message, advice);
+                log.problem(alternative.span.clone(), fault);
+            }
+        }
+    }
+
     /// Reports an end of an input that the case does not accept, neither alone nor with the others at one of their ends.
     /// At most `left` values are tried.
     fn check_input(&self, input: &Input, left: &mut usize, log: &mut Log<'_>) {
@@ -242,26 +242,30 @@ impl Study {
                     Level::Number(number) => number.to_string(),
                     Level::Word(word) => format!("{word:?}"),
                 };
-                let other = "choose values that the case accepts; a normal distribution is tried at four standard \
-                    deviations, and a truncated-normal one at its given ends";
-                let fault = Fault::new(
-                    format!("the case rejects `{key} = {value}`: {why}"),
-                    advice.as_deref().unwrap_or(other),
-                );
+                let advice = if advice.is_empty() {
+                    "choose values that the case accepts; a normal distribution is tried at four standard deviations, and a \
+                     truncated-normal one at its given ends"
+                        .to_owned()
+                } else {
+                    advice
+                };
+                let message = format!("the case rejects `{key} = {value}`: {why}");
+                let fault = Fault::new(message, advice);
                 log.problem(input.span.clone(), fault);
                 break;
             }
         }
     }
 
-    /// Returns the reason why the case does not accept changes, and the remedy.
-    fn refusal(&self, set: &[Assignment]) -> Option<(String, Option<String>)> {
+    /// Returns the reason why the case does not accept changes, and the remedy, which may be empty.
+    fn refusal(&self, set: &[Assignment]) -> Option<(String, String)> {
         match self.changed_case(set) {
             Ok(_) => None,
-            Err(ChangeError::Assignment(error)) => Some((error.to_string(), None)),
+            Err(ChangeError::Assignment(error)) => Some((error.to_string(), String::new())),
             Err(ChangeError::Case(problems)) => {
                 let first = problems.problems().first()?;
-                Some((first.to_string(), first.advice().map(str::to_owned)))
+                let advice = first.advice().unwrap_or_default();
+                Some((first.to_string(), advice.to_owned()))
             }
         }
     }

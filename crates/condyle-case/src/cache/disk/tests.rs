@@ -4,7 +4,7 @@ use std::{cell::Cell, thread};
 
 use tempfile::TempDir;
 
-use super::super::keep::kept;
+use super::super::kept;
 use super::*;
 
 /// What stands for a long computation.
