@@ -2,9 +2,9 @@
 
 use condyle::machine::{Waveform, knee};
 
-use super::machine::{Freedoms, Machine, Sign, Waveforms};
+use super::machine::{Freedoms, Machine, Waveforms};
 use super::waveform::waveform_items;
-use crate::config::{Fault, Item, Log, Section, Settings, TableItem, Writer, settings, within};
+use crate::config::*;
 
 /// Largest deviation of the sum of shares from 1: thirds are written with a few digits.
 const WHOLE: f64 = 1e-3;

@@ -10,9 +10,7 @@ use toml::de::{DeTable, DeValue};
 use super::build::BuildWarning;
 use super::contents::Case;
 use super::renamed::current_path;
-use crate::config::{
-    Choices, Item, Problems, Source, likeliest, nearest, number, quoted, set_value, take, value_at,
-};
+use crate::config::*;
 
 /// A value that replaces the one that a case file gives, or its default.
 #[derive(Clone, Debug, PartialEq, Eq)]

@@ -1,12 +1,10 @@
 //! Model of contact, pressure law, friction, and the search for nodes in contact.
 
-use condyle::contact::{
-    Backside, Deformable, Foundation, FrictionModel, PressureTable, Search, softening_modulus,
-};
-use condyle_fem::{Elastic, ElasticPlastic, Hardening, HardeningError};
+use condyle::contact::{Backside, Foundation, FrictionModel, PressureTable, Search};
+use condyle_fem::{Hardening, HardeningError};
 
 use super::pressure_table::StrainTable;
-use crate::config::{Fault, Log, Points, Section, settings, variants, within, words};
+use crate::config::*;
 
 words! {
     FrictionModel {
@@ -152,16 +150,6 @@ impl DeformableContact {
     };
 }
 
-impl SofteningCurve {
-    pub(super) fn modulus_mpa(&self, poissons_ratio: f64) -> f64 {
-        softening_modulus(
-            self.softening_strain,
-            self.softening_stress_mpa,
-            poissons_ratio,
-        )
-    }
-}
-
 impl PressureLawChoice {
     /// Error of the peak pressure against the deformable insert that the law was fitted to, %, if it is known.
     pub fn peak_error_percent(&self) -> Option<f64> {
@@ -183,14 +171,6 @@ const CURVE: [(f64, f64); 4] = [
 ];
 
 impl PlasticityChoice {
-    /// Returns the law with the insert's material: each choice creates its own.
-    pub(crate) fn with_material(&self, law: Deformable, elastic: Elastic) -> Deformable {
-        match self.hardening() {
-            Some(hardening) => law.with_material(ElasticPlastic { elastic, hardening }),
-            None => law.with_material(elastic),
-        }
-    }
-
     /// Returns the yield stress and its hardening, if the insert yields.
     pub(crate) fn hardening(&self) -> Option<Hardening> {
         match self {

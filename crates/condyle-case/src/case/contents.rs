@@ -14,12 +14,9 @@ use super::frame::{Heading, check_axes};
 use super::insert::Insert;
 use super::machine::Machine;
 use super::material::{Creep, Material};
-use super::run_options::{Accuracy, Limits, Output};
-use super::schedule::{March, Time};
+use super::run_options::{Accuracy, Limits, March, Output, Time};
 use super::wear::{Wear, WearLaws};
-use crate::config::{
-    Item, Log, Section, Settings, Source, Writer, keys, rows, sections, settings, table_schema,
-};
+use crate::config::*;
 
 const OPENING: &str = "\
 # The case file

@@ -100,12 +100,12 @@ impl Draft<'_> {
 
     /// Returns the side of the knee of a femur with x anterior, y superior, z right, and the reason for it.
     fn side(&self, femur: &TriangleMesh) -> (Side, String) {
-        let said = self.side;
+        let given = self.side;
         let shown = flange_lead_mm(femur).map(|lead| {
             let side = if lead > 0.0 { Side::Right } else { Side::Left };
             (side, lead.abs())
         });
-        let side = said.or(shown.map(|(side, _)| side)).unwrap_or(Side::Right);
+        let side = given.or(shown.map(|(side, _)| side)).unwrap_or(Side::Right);
         let of_shape = match shown {
             Some((shown, lead_mm)) => format!(
                 "likely a {} knee, since one flange of the trochlea stands out by {lead_mm:.1} mm there",
@@ -113,8 +113,8 @@ impl Draft<'_> {
             ),
             None => "the shape does not show it, since both sides of it are alike".to_owned(),
         };
-        let why = match said {
-            Some(_) => "as it was said",
+        let why = match given {
+            Some(_) => "as given",
             None if shown.is_some() => "check it",
             None => "assumed: check it",
         };

@@ -3,7 +3,7 @@
 use condyle::geometry::GenericFemurShape;
 
 use super::frame::{Axes, LengthUnit};
-use crate::config::{DataFile, Log, Section, Settings, settings, variants, within};
+use crate::config::*;
 
 settings! {
     /// The femoral component.

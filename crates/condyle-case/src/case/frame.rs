@@ -5,9 +5,7 @@ use thiserror::Error;
 use toml::Spanned;
 use toml::de::DeValue;
 
-use crate::config::{
-    Fault, Key, Kind, Log, Setting, choice, read_word, settings, words, wrong_type,
-};
+use crate::config::*;
 
 pub use condyle_results::Side;
 
@@ -45,6 +43,7 @@ pub enum AxesError {
     LeftHanded,
 }
 
+/// Words for the directions x, -x, y, -y, z and -z of the frame, and two that depend on the side.
 const WORDS: &[&str] = &[
     "anterior",
     "posterior",
@@ -65,7 +64,12 @@ impl Axes {
     /// Creates the axes with the rotation `rotation` (see [`Axes::rotation`]), in words that do not depend on the
     /// side.
     pub fn of(rotation: &Mat3) -> Self {
-        let words = [0, 1, 2].map(|axis| word(rotation.column(axis).into()));
+        // Each column is the direction of an axis of the file; the nearest axis of the frame names it.
+        let words = [0, 1, 2].map(|column| {
+            let toward = rotation.column(column);
+            let axis = toward.iamax();
+            WORDS[2 * axis + usize::from(toward[axis] <= 0.0)]
+        });
         Self { words }
     }
 
@@ -95,34 +99,14 @@ impl Axes {
 
 /// Returns the direction of a word in x anterior, y superior, z right.
 fn direction(word: &str, side: Side) -> Vec3 {
-    let right = match side {
-        Side::Right => Vec3::z(),
-        Side::Left => -Vec3::z(),
+    let word = match (word, side) {
+        ("lateral", Side::Right) | ("medial", Side::Left) => "right",
+        ("lateral", Side::Left) | ("medial", Side::Right) => "left",
+        (word, _) => word,
     };
-    match word {
-        "anterior" => Vec3::x(),
-        "posterior" => -Vec3::x(),
-        "superior" => Vec3::y(),
-        "inferior" => -Vec3::y(),
-        "right" => Vec3::z(),
-        "left" => -Vec3::z(),
-        "lateral" => right,
-        _ => -right,
-    }
-}
-
-/// Returns the word of the axis nearest to a direction in x anterior, y superior, z right.
-fn word(toward: Vec3) -> &'static str {
-    let [forward, backward] = match toward.iamax() {
-        0 => ["anterior", "posterior"],
-        1 => ["superior", "inferior"],
-        _ => ["right", "left"],
-    };
-    if toward[toward.iamax()] > 0.0 {
-        forward
-    } else {
-        backward
-    }
+    let place = WORDS.iter().position(|known| *known == word).unwrap_or(0);
+    let axis = Vec3::ith(place / 2, 1.0);
+    if place % 2 == 0 { axis } else { -axis }
 }
 
 impl Setting for Axes {
@@ -131,25 +115,23 @@ impl Setting for Axes {
     }
 
     fn read(value: &Spanned<DeValue<'_>>, key: &Key, log: &mut Log<'_>) -> Option<Self> {
-        let Some([x, y, z]) = value.get_ref().as_array().and_then(three) else {
+        let Some(list) = value.get_ref().as_array().filter(|list| list.len() == 3) else {
             wrong_type(value, key, log);
             return None;
         };
-        let words = [x, y, z].map(|word| read_word(word, key, WORDS, log));
-        let [Some(x), Some(y), Some(z)] = words else {
-            return None;
-        };
-        Some(Self { words: [x, y, z] })
+        let words: Vec<Option<&str>> = list
+            .iter()
+            .map(|word| read_word(word, key, WORDS, log))
+            .collect();
+        let words: Vec<&str> = words.into_iter().collect::<Option<_>>()?;
+        Some(Self {
+            words: words.try_into().ok()?,
+        })
     }
 
     fn text(&self) -> Option<String> {
         Some(format!("{:?}", self.words))
     }
-}
-
-fn three<'a, 'i>(array: &'a toml::de::DeArray<'i>) -> Option<[&'a Spanned<DeValue<'i>>; 3]> {
-    let all: Vec<_> = array.iter().collect();
-    all.try_into().ok()
 }
 
 /// Reports axes that do not form a right-handed frame on a `side` knee.

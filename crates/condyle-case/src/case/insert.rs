@@ -3,7 +3,7 @@
 use condyle::geometry::{GenericInsertShape, Meshing};
 
 use super::frame::{Axes, LengthUnit};
-use crate::config::{DataFile, Log, Section, Settings, choice, settings, variants, within};
+use crate::config::*;
 
 settings! {
     /// The tibial insert.

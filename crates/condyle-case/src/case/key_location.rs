@@ -11,7 +11,7 @@ use super::build::{BuildError, BuildWarning, Finding};
 use super::contents::Case;
 use super::machine::DriveWord;
 use super::run_options::Limits;
-use crate::config::{DataFile, Fault, Problem, Problems};
+use crate::config::*;
 
 /// A table of a case and those of its keys that may be at fault, the likeliest first.
 struct KeyLocation {

@@ -2,14 +2,9 @@
 
 use condyle::machine::knee::{self, KNEE};
 use condyle::machine::{Channel, JointDescription, JointIndex, JointKind, Waveform};
-use toml::Spanned;
-use toml::de::DeValue;
 
 use super::waveform::{self, waveform_items};
-use crate::config::{
-    Fault, Item, Key, Kind, Log, Section, Setting, Settings, TableItem, Writer, choice, idle,
-    number, quoted_list, rows, settings, within, wrong_type,
-};
+use crate::config::*;
 
 choice! {
     /// A simulator to start from.
@@ -49,9 +44,9 @@ settings! {
         /// Added to the flexion waveform: -7 sets the femur 7 degrees towards hyperextension.
         flexion_offset_deg: f64 = -7.0, in within(-45.0, 45.0);
         /// 1 or -1 times the AP force: laboratories dispute its direction.
-        ap_force_sign: Sign = Sign::Plus;
+        ap_force_sign: Sign = Sign(1.0);
         /// 1 or -1 times the IE torque: laboratories dispute its direction.
-        ie_torque_sign: Sign = Sign::Plus;
+        ie_torque_sign: Sign = Sign(1.0);
         /// Distance of the varus-valgus axis medial of the load axis.
         vv_axis_medial_mm: f64 = 5.0, in within(-50.0, 50.0);
         /// Distance of the varus-valgus axis below the dish's lowest point.
@@ -72,46 +67,6 @@ settings! {
         free_play_mm: f64 = 2.5, in within(0.0, 50.0);
         /// Distance of each spring to the side of the IE axis.
         lateral_offset_mm: f64 = 28.0, in within(0.0, 100.0);
-    }
-}
-
-/// 1 or -1.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Sign {
-    /// 1: as given by the waveform.
-    Plus,
-    /// -1: reversed.
-    Minus,
-}
-
-impl Sign {
-    /// 1.0 or -1.0.
-    pub fn factor(self) -> f64 {
-        match self {
-            Self::Plus => 1.0,
-            Self::Minus => -1.0,
-        }
-    }
-}
-
-impl Setting for Sign {
-    fn kind() -> Kind {
-        Kind::Sign
-    }
-
-    fn read(value: &Spanned<DeValue<'_>>, key: &Key, log: &mut Log<'_>) -> Option<Self> {
-        match number(value.get_ref()) {
-            Some(1.0) => Some(Self::Plus),
-            Some(-1.0) => Some(Self::Minus),
-            _ => {
-                wrong_type(value, key, log);
-                None
-            }
-        }
-    }
-
-    fn text(&self) -> Option<String> {
-        Some(format!("{:.0}", self.factor()))
     }
 }
 

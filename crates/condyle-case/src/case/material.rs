@@ -5,7 +5,7 @@ use condyle::parameter::Parameter;
 use condyle::wear::{CrossLinked, NamedLaw};
 use condyle_fem::Elastic;
 
-use crate::config::{Limits, settings, variants, within};
+use crate::config::*;
 
 settings! {
     /// Polyethylene of the insert.

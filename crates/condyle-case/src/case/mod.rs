@@ -20,43 +20,16 @@ mod pressure_table;
 mod reader;
 mod renamed;
 mod run_options;
-mod schedule;
 #[cfg(test)]
 mod tests;
 mod waveform;
 mod wear;
 
-pub use activity::{Activities, Activity, ActivityKeys};
-pub use assignment::{Assignment, AssignmentError, ChangeError};
-pub use build::{Body, BuildError, BuildWarning, Built, FEMUR_TRIANGLES, SharedBodies};
-pub use contact::{
-    BacksideChoice, Contact, ContactModelChoice, DeformableContact, FoundationContact,
-    J2Plasticity, PlasticityChoice, PressureLawChoice, RestingBackside, SofteningCurve,
+// Only some of these items are public; the others are for the files of this module.
+pub use self::{
+    activity::*, assignment::*, build::*, contact::*, contents::*, femur::*, frame::*, insert::*,
+    machine::*, material::*, pressure_table::*, reader::*, run_options::*, wear::*,
 };
-pub use contents::{Case, Origin, json_schema, schema_markdown};
-pub use femur::{
-    CylinderFemur, Femur, FemurPlacement, FemurShape, GenericFemur, MeshFemur, SphereFemur,
-};
-pub use frame::{Axes, AxesError, Heading, LengthUnit, Side};
-pub use insert::{
-    FlatInsert, GenericInsert, HexahedralInsert, Insert, InsertOrigin, InsertPlacement,
-    InsertShape, MeshInsert,
-};
-pub use machine::{
-    DriveWord, Freedom, Freedoms, Machine, MachineSettings, Preset, Sign, Springs, StiffnessOf,
-    Waveforms,
-};
-pub use material::{
-    Creep, CrossLinking, HighlyCrossLinked, LogarithmicCreep, Material, ModeratelyCrossLinked,
-};
-pub use pressure_table::{StrainTable, TableError};
-pub use reader::{CaseReader, template};
-pub use run_options::{Accuracy, Limits, Output};
-pub use schedule::{AutoUpdates, FixedUpdates, IntegratorWord, March, Time, Update};
-pub use wear::{ConstantError, Wear, WearLaws};
 
 #[cfg(feature = "file-system")]
 pub use draft::{Draft, DraftError, Drafted};
-
-pub(crate) use build::in_four;
-pub(crate) use frame::check_axes;

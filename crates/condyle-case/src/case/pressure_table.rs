@@ -2,10 +2,7 @@
 
 use condyle::contact::{PressureTable, PressureTableError};
 
-use crate::config::{
-    Cell, Columns, DataFile, Fault, Item, Key, Kind, Log, Placed, Points, Section, Setting,
-    Settings, Writer, both, other_unit, settings, within,
-};
+use crate::config::*;
 
 struct Form {
     law: &'static str,

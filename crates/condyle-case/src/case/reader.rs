@@ -14,7 +14,7 @@ use super::contents::Case;
 use super::machine::Preset;
 use super::renamed::rename_keys;
 use super::wear::WearLaws;
-use crate::config::{Base, Problems, Section, Settings, Source, check, read_part, read_source};
+use crate::config::*;
 #[cfg(feature = "file-system")]
 use condyle_mesh::files::Disk;
 use condyle_mesh::files::{Files, MemoryFiles};

@@ -1,6 +1,74 @@
-//! Options of a run: accuracy, limits of the computer, additional output.
+//! Options of a run: cycles, updates of the worn shape, steps in time, accuracy, limits and additional output.
 
-use crate::config::{settings, within};
+use condyle::machine::TimeSettings;
+
+use crate::config::*;
+
+settings! {
+    /// The march over the life of the insert.
+    March {
+        /// Gait cycles in all.
+        cycles: u64 = 5_000_000, in within(1.0, 1e10);
+        /// Schedule of the updates of the worn shape.
+        [flat] update: Update;
+    }
+
+    /// Updates of the worn shape, evenly over the cycles.
+    FixedUpdates {
+        /// Updates of the worn shape, evenly over the cycles; if the insert creeps, the first comes after a tenth of such an interval.
+        updates: u64 = 10, in within(1.0, 10_000.0);
+    }
+
+    /// Updates of the worn shape as a tolerance on depth requires them.
+    AutoUpdates {
+        /// Error of the maximum depth that one interval may add, as a fraction of the depth expected at the end; later intervals mostly wear it away.
+        depth_tolerance_fraction: f64 = 0.05, in within(1e-5, 0.5);
+    }
+}
+
+variants! {
+    /// Schedule of the updates of the worn shape.
+    Update by
+    /// Schedule of the updates of the worn shape: evenly over the cycles, or as a tolerance on depth requires.
+    update = "fixed" {
+        /// A given number, evenly over the cycles.
+        Fixed(FixedUpdates) = "fixed",
+        /// As few as a tolerance on the maximum depth allows.
+        Auto(AutoUpdates) = "auto",
+    }
+}
+
+choice! {
+    /// Integration in time.
+    IntegratorWord {
+        /// Backward differences and Newton's method.
+        Implicit = "implicit",
+        /// Central differences, as a cross-check.
+        Explicit = "explicit",
+    }
+}
+
+settings! {
+    /// Steps and tolerances in time.
+    Time {
+        /// Increments in a gait cycle.
+        increments: u64 = TimeSettings::default().increments as u64, in within(20.0, 100_000.0);
+        /// An implicit increment is halved until its own error is estimated below this; rotations on a lever of 10 mm. 0 never halves for that.
+        increment_error_mm: f64 = TimeSettings::default().increment_error_mm, in within(0.0, 10.0);
+        /// Largest residual force of a converged increment.
+        force_tolerance_n: f64 = TimeSettings::default().force_tolerance_n, in within(1e-9, 10.0);
+        /// Largest number of cycles until one repeats the one before.
+        most_cycles_to_repeat: u64 = TimeSettings::default().most_cycles_to_repeat as u64, in within(1.0, 1000.0);
+        /// Largest difference of a translation between two cycles that repeat.
+        repeat_tolerance_mm: f64 = TimeSettings::default().repeat_tolerance_mm, in within(1e-9, 10.0);
+        /// Largest difference of a rotation between two cycles that repeat.
+        repeat_tolerance_deg: f64 = TimeSettings::default().repeat_tolerance_rad.to_degrees(), in within(1e-9, 10.0);
+        /// Integration of an increment: implicit in one step, or explicit in many short ones.
+        integrator: IntegratorWord = IntegratorWord::Implicit;
+        /// Explicit: inertia is added wherever a stable step would be shorter than this; 0 adds none.
+        explicit_step_s: f64 = 0.0, in within(0.0, 1e-3);
+    }
+}
 
 settings! {
     /// Estimates of the accuracy of a run.

@@ -10,11 +10,7 @@ use condyle::machine::{
 use condyle::parameter::unit_of;
 use miette::NamedSource;
 
-use crate::config::{
-    self, Columns, DataFile, Fault, Item, Key, Kind, Limits, Log, Placed, Points, Section, Setting,
-    Settings, Source, TableItem, Writer, both, idle, keys, no_column, other_unit, plain, rows,
-    settings, unknown_word, within, words,
-};
+use crate::config::*;
 
 /// A shipped waveform, as a CSV text.
 struct NamedWaveform {
@@ -205,7 +201,7 @@ pub(super) fn read(
         waveform = Waveform::new(low_passed(noisy, harmonics as usize), Interpolation::Spline);
     }
     let (index, fault) = match waveform {
-        Ok(waveform) => match out_of_range(channel, &knots) {
+        Ok(waveform) => match first_outside(channel, &knots) {
             Some(found) => found,
             None => return Some(waveform),
         },
@@ -401,7 +397,7 @@ fn column_points(columns: &Columns<'_>, index: usize) -> Result<PlacedKnots, Vec
 }
 
 /// Returns the first value outside the channel's range.
-fn out_of_range(channel: &Channel, knots: &[Knot]) -> Option<(usize, Fault)> {
+fn first_outside(channel: &Channel, knots: &[Knot]) -> Option<(usize, Fault)> {
     let limits = limits(channel);
     let index = knots.iter().position(|knot| !limits.allow(knot.value))?;
     let (knot, unit) = (
@@ -409,7 +405,7 @@ fn out_of_range(channel: &Channel, knots: &[Knot]) -> Option<(usize, Fault)> {
         unit_of(knots_key(channel).name).unwrap_or_default(),
     );
     let value = format!("{} {unit} at {} %", plain(knot.value), knot.percent);
-    let fault = config::out_of_range(channel.name, &value, &format!("{limits} {unit}"));
+    let fault = out_of_range(channel.name, &value, &format!("{limits} {unit}"));
     Some((index, fault))
 }
 

@@ -4,9 +4,7 @@ use condyle::parameter::{Known, Parameter};
 use condyle::wear::{NamedLaw, WEAR_LAWS, WearLawKind};
 use thiserror::Error;
 
-use crate::config::{
-    Choices, Item, Key, Limits, Log, Offered, Section, Setting, Settings, TableItem, Writer, within,
-};
+use crate::config::*;
 
 /// Kinds of wear law to choose from; the first is the default.
 pub type WearLaws = &'static [&'static WearLawKind];

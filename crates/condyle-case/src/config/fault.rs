@@ -21,7 +21,7 @@ impl Fault {
     }
 }
 
-pub(crate) fn wrong_type(key: &str, wanted: &str, found: &str) -> Fault {
+pub(crate) fn type_fault(key: &str, wanted: &str, found: &str) -> Fault {
     Fault::new(format!("`{key}` must be {wanted}, this is {found}"), "")
 }
 

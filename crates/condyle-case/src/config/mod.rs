@@ -13,21 +13,5 @@ mod section;
 mod setting;
 pub(crate) mod settings;
 
-pub use data_file::DataFile;
-pub use key::Limits;
-pub use problem::{Problem, Problems};
-pub use render::{RenderStyle, visible};
-pub use setting::{Level, Levels, Names, Points};
-
-pub(crate) use data_file::{Cell, Columns, cells, lines, no_column, other_unit};
-pub(crate) use fault::{Fault, both, idle, likeliest, nearest, out_of_range, unknown_word};
-pub(crate) use items::{Choices, Item, Offered, TableItem, check, keys};
-pub(crate) use key::{Key, Kind, WhereSilent, names, number, plain, quoted, quoted_list, within};
-pub(crate) use problem::{Base, Log, Placed, Source, read_source};
-pub(crate) use schema::{rows, sections, table_schema};
-pub(crate) use section::{Section, read_document, read_part, rename, set_value, take, value_at};
-pub(crate) use setting::{Setting, Writer, choice, read_word, words, wrong_type};
-pub(crate) use settings::{Settings, settings, variants};
-
-#[cfg(test)]
-pub(crate) use fault::SYNONYMS;
+pub use self::{data_file::*, key::*, problem::*, render::*, setting::*};
+pub(crate) use self::{fault::*, items::*, schema::*, section::*, settings::*};

@@ -6,7 +6,7 @@ use std::ops::Range;
 use toml::Spanned;
 use toml::de::{DeString, DeTable, DeValue};
 
-use super::fault::{Fault, explain, idle, missing_key, syntax, wrong_type};
+use super::fault::{Fault, explain, idle, missing_key, syntax, type_fault};
 use super::key::{Key, names, type_name};
 use super::problem::{Base, Log, Problems, Source};
 use super::setting::Setting;
@@ -35,7 +35,7 @@ impl<'a> Section<'a> {
         if let (Some(value), None) = (self.value(name), part.table) {
             let found = type_name(value.get_ref());
             let wanted = format!("a table, [{}]", part.path);
-            log.problem(value.span(), wrong_type(name, &wanted, found));
+            log.problem(value.span(), type_fault(name, &wanted, found));
         }
         part
     }
@@ -64,7 +64,7 @@ impl<'a> Section<'a> {
         let tables = self.tables(name);
         if items == 0 || tables.len() < items {
             let wanted = format!("tables, each headed [[{name}]]");
-            let fault = wrong_type(name, &wanted, type_name(value.get_ref()));
+            let fault = type_fault(name, &wanted, type_name(value.get_ref()));
             log.problem(self.key_span(name), fault);
             return None;
         }

@@ -4,7 +4,7 @@ use condyle::parameter::unit_of;
 use toml::Spanned;
 use toml::de::DeValue;
 
-use super::fault::{self, out_of_range, unknown_word};
+use super::fault::{out_of_range, type_fault, unknown_word};
 use super::key::{Key, Kind, number, quoted, type_name};
 use super::problem::Log;
 
@@ -73,6 +73,9 @@ macro_rules! plain_values {
 
 plain_values! {
     bool: Truth, |this| this.to_string(), |value| value.as_bool();
+    Sign: Sign, |this| format!("{:.0}", this.0), |value| {
+        number(value).filter(|number| number.abs() == 1.0).map(Self)
+    };
     String: Text, |this| quoted(this), |value| value.as_str().map(str::to_owned);
     Names: Names, |this| {
         let names: Vec<String> = this.0.iter().map(|name| quoted(name)).collect();
@@ -174,7 +177,7 @@ impl<T: Setting> Setting for Option<T> {
 /// Reports that `value` has another type than `key` takes.
 pub(crate) fn wrong_type(value: &Spanned<DeValue<'_>>, key: &Key, log: &mut Log<'_>) {
     let found = type_name(value.get_ref());
-    let fault = fault::wrong_type(key.name, &key.kind.to_string(), found);
+    let fault = type_fault(key.name, &key.kind.to_string(), found);
     log.problem(value.span(), fault);
 }
 
@@ -195,6 +198,10 @@ pub(crate) fn read_word<'w>(
     }
     known.copied()
 }
+
+/// A factor of 1 or -1.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Sign(pub f64);
 
 /// Names, such as those of columns.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
@@ -238,7 +245,7 @@ impl Setting for Points {
 
     fn read(value: &Spanned<DeValue<'_>>, key: &Key, log: &mut Log<'_>) -> Option<Self> {
         let mut wrong = |value: &Spanned<DeValue<'_>>, wanted: &str| {
-            let fault = fault::wrong_type(key.name, wanted, type_name(value.get_ref()));
+            let fault = type_fault(key.name, wanted, type_name(value.get_ref()));
             log.problem(value.span(), fault);
         };
         let Some(list) = value.get_ref().as_array() else {

@@ -1,6 +1,6 @@
 //! Checks of columns that all measured data share.
 
-use crate::config::{Cell, Columns, Fault, Limits, Placed};
+use crate::config::*;
 
 /// Returns `value`, or the problems if there are any.
 pub(super) fn unless<T>(problems: Vec<Placed>, value: T) -> Result<T, Vec<Placed>> {

@@ -1,10 +1,7 @@
 //! Measured masses: a CSV file of specimens and soak controls, as ISO 14243-2 weighs them.
 
 use super::columns::{growing, misnamed_first, outside, repeated, unless};
-use crate::config::{
-    Columns, DataFile, Fault, Log, Names, Placed, Section, Settings, choice, no_column, settings,
-    within,
-};
+use crate::config::*;
 
 choice! {
     /// The independent observations of a confidence interval of a wear rate.

@@ -3,10 +3,7 @@
 use condyle::machine::knee::KNEE;
 
 use super::columns::{growing, misnamed_first, repeated, too_few, unless};
-use crate::config::{
-    Cell, Columns, DataFile, Fault, Log, Placed, Section, Settings, choice, names, nearest, number,
-    settings, within,
-};
+use crate::config::*;
 
 choice! {
     /// The cycle of the run that a measured one is compared with.

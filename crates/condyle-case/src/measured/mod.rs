@@ -19,7 +19,7 @@ use std::path::Path;
 use std::sync::Arc;
 
 use crate::case::Side;
-use crate::config::{Base, Fault, Log, Problems, Section, read_document, read_source};
+use crate::config::*;
 #[cfg(feature = "file-system")]
 use condyle_mesh::files::Disk;
 use condyle_mesh::files::Files;

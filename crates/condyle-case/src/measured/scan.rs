@@ -4,10 +4,7 @@ use condyle::Vec3;
 
 use super::columns::too_few;
 use crate::case::{Axes, LengthUnit, Side, check_axes};
-use crate::config::{
-    Cell, Columns, DataFile, Fault, Log, Placed, Section, Settings, choice, idle, no_column,
-    settings, within,
-};
+use crate::config::*;
 use condyle_mesh::formats::read_surface;
 
 choice! {

@@ -3,7 +3,7 @@
 use condyle_results::catalogue::{self, Scalar};
 
 use super::declared::{AnswersKeys, BoundKeys};
-use crate::config::{Fault, Log, Section, Settings, likeliest};
+use crate::config::*;
 
 /// The questions that a study answers.
 #[derive(Clone, Debug)]

@@ -8,7 +8,7 @@ use super::answers::Answers;
 use super::declared::{Design, Variation};
 use super::input::Input;
 use crate::case::{Assignment, Case, CaseReader, ChangeError};
-use crate::config::{Level, Problems, Settings, Writer};
+use crate::config::*;
 use condyle_results::catalogue;
 
 /// A study as its file describes it, checked, with every default filled in.

@@ -1,6 +1,6 @@
 //! The keys of a study file.
 
-use crate::config::{DataFile, Levels, Names, settings, variants, within};
+use crate::config::*;
 
 /// Tests of a study, at most.
 pub(super) const MAX_TESTS: f64 = 1e9;

@@ -6,9 +6,7 @@ use std::path::Path;
 
 use super::declared::{InputKeys, LevelKeys, TriangularKeys, Variation};
 use crate::case::{Assignment, Case};
-use crate::config::{
-    DataFile, Fault, Level, Levels, Log, Placed, Section, Settings, cells, check, lines,
-};
+use crate::config::*;
 
 /// Deviation from the mean, in standard deviations, up to which a case must accept a normal input: of a million
 /// values 63 lie beyond.

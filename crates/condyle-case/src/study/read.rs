@@ -8,9 +8,7 @@ use super::contents::{Alternative, Correlation, Study};
 use super::declared::{AlternativeKeys, CorrelationKeys, Design, HeadingKeys, Variation};
 use super::input::{Input, check_count, read_rows};
 use crate::case::{Assignment, Case, CaseReader, ChangeError};
-use crate::config::{
-    Base, Fault, Level, Log, Problems, Section, Settings, read_document, read_source,
-};
+use crate::config::*;
 use condyle_mesh::files::{Disk, Files};
 
 /// Values that are tried on the case before the first test: thousands of files would take a while, and values beyond

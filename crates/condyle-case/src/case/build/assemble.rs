@@ -4,10 +4,12 @@ use std::sync::Arc;
 
 use condyle::contact::{
     ContactLaw, Deformable, Foundation, FrictionModel, PressureLaw, confined_modulus,
+    softening_modulus,
 };
 use condyle::evolve::{Schedule, Updates, WearTest};
 use condyle::geometry::Insert;
 use condyle::machine::{Integration, TimeSettings};
+use condyle_fem::ElasticPlastic;
 
 use super::error::{BuildError, BuildWarning};
 use super::machine::start_flexion_rad;
@@ -17,7 +19,7 @@ use crate::case::contact::{
     ContactModelChoice, DeformableContact, PlasticityChoice, PressureLawChoice,
 };
 use crate::case::contents::Case;
-use crate::case::schedule::{IntegratorWord, Update};
+use crate::case::run_options::{IntegratorWord, Update};
 
 /// Smallest flat part of a backside that can rest on a flat tray.
 const MIN_FLAT_PART: f64 = 0.5;
@@ -149,7 +151,10 @@ impl Case {
         law.search = contact.search;
         law.sample_reuse_mm = contact.sample_reuse_mm;
         law.friction_model = model.friction_model;
-        let law = model.plasticity.with_material(law, elastic);
+        let law = match model.plasticity.hardening() {
+            Some(hardening) => law.with_material(ElasticPlastic { elastic, hardening }),
+            None => law.with_material(elastic),
+        };
         let law = law.with_backside(backside, insert)?;
         self.load_compliance(&law, insert, keep)?;
         Ok(law)
@@ -202,7 +207,11 @@ impl Case {
             PressureLawChoice::Linear => PressureLaw::Linear { modulus_mpa },
             PressureLawChoice::Logarithmic => PressureLaw::Logarithmic { modulus_mpa },
             PressureLawChoice::Softening(curve) => PressureLaw::Softening {
-                modulus_mpa: curve.modulus_mpa(material.poissons_ratio),
+                modulus_mpa: softening_modulus(
+                    curve.softening_strain,
+                    curve.softening_stress_mpa,
+                    material.poissons_ratio,
+                ),
                 softening_stress_mpa: curve.softening_stress_mpa,
             },
             PressureLawChoice::Tabulated(table) => PressureLaw::Tabulated(table.clone()),

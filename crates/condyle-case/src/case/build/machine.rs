@@ -77,8 +77,8 @@ impl case::Machine {
         // Offset and signs of the machine are in the unit of files.
         let adjusted = match channel.name {
             "flexion" => waveform.shifted(settings.flexion_offset_deg),
-            "ap_force" => waveform.scaled(settings.ap_force_sign.factor()),
-            "ie_torque" => waveform.scaled(settings.ie_torque_sign.factor()),
+            "ap_force" => waveform.scaled(settings.ap_force_sign.0),
+            "ie_torque" => waveform.scaled(settings.ie_torque_sign.0),
             _ => waveform,
         };
         adjusted.scaled(channel.factor())

@@ -240,7 +240,7 @@ fn a_draft_takes_the_side_that_the_trochlea_shows_unless_it_is_said() {
         let cases = [
             (&pair, None, "right", "check it"),
             (&mirrored, None, "left", "check it"),
-            (&mirrored, Some(Side::Right), "right", "as it was said"),
+            (&mirrored, Some(Side::Right), "right", "as given"),
         ];
         for (pair, side, word, why) in cases {
             let (folder, femur, insert) = written(pair, &Orientation::ISB, 1.0);
