@@ -10,6 +10,7 @@ use toml::de::{DeTable, DeValue};
 use super::build::BuildWarning;
 use super::contents::Case;
 use super::renamed::current_path;
+use super::run_options::Update;
 use crate::config::*;
 
 /// A value that replaces the one that a case file gives, or its default.
@@ -19,56 +20,10 @@ pub struct Assignment {
     text: String,
 }
 
-/// A key or value that cannot be set from outside.
+/// A key or value that cannot be set from outside: cause and remedy in words.
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
-pub enum AssignmentError {
-    /// Not written as a key with a value.
-    #[error("`{written}` is no key with a value; write them as `march.updates=5`")]
-    NotKeyAndValue {
-        /// As written.
-        written: String,
-    },
-    /// A value that is not a number.
-    #[error("`{text}` is no value for `{key}`; write a number, such as 10 or 0.5")]
-    NotNumber {
-        /// The key.
-        key: String,
-        /// As written.
-        text: String,
-    },
-    /// A name that no key has.
-    #[error(
-        "the case has no {what} called `{name}`; {}",
-        match near {
-            Some(near) => format!("did you mean `{near}`?"),
-            None => "give its dotted path, such as `march.updates`".to_owned(),
-        }
-    )]
-    Unknown {
-        /// "key" or "number".
-        what: &'static str,
-        /// As written.
-        name: String,
-        /// A similar name.
-        near: Option<String>,
-    },
-    /// A name that several keys have.
-    #[error("the case has more than one {what} called `{name}`; write `{}`", paths.join("` or `"))]
-    Many {
-        /// "key" or "number".
-        what: &'static str,
-        /// As written.
-        name: String,
-        /// Their dotted paths.
-        paths: Vec<String>,
-    },
-    /// The number of updates of a march that determines it.
-    #[error(
-        "the march of this case determines its updates, since it has update = \"auto\"; refine what it goes by, such as \
-         depth_tolerance_fraction=0.1,0.03,0.01, or write update = \"fixed\""
-    )]
-    UpdatesAreFound,
-}
+#[error("{0}")]
+pub struct AssignmentError(String);
 
 /// A case that cannot be read with values set from outside.
 #[derive(Clone, Debug, Error)]
@@ -91,8 +46,9 @@ impl Assignment {
         let (key, text) = written.split_once('=').unwrap_or_default();
         let (key, text) = (key.trim(), text.trim());
         if key.is_empty() || text.is_empty() {
-            let written = written.to_owned();
-            return Err(AssignmentError::NotKeyAndValue { written });
+            return Err(AssignmentError(format!(
+                "`{written}` is no key with a value; write them as `march.updates=5`"
+            )));
         }
         Ok(Self::new(key, text))
     }
@@ -112,10 +68,10 @@ impl Assignment {
         let assignment = Self::new(key, text.trim());
         match assignment.as_number() {
             Some(_) => Ok(assignment),
-            None => Err(AssignmentError::NotNumber {
-                key: assignment.key,
-                text: assignment.text,
-            }),
+            None => Err(AssignmentError(format!(
+                "`{}` is no value for `{key}`; write a number, such as 10 or 0.5",
+                assignment.text
+            ))),
         }
     }
 
@@ -336,12 +292,15 @@ impl Case {
                 .collect()
         };
         let near = |names: &[&str]| nearest(written, names.iter().copied());
-        path_called("number", written, paths, near).map_err(|error| match error {
-            AssignmentError::Unknown { name, .. } if name == "updates" => {
-                AssignmentError::UpdatesAreFound
-            }
-            error => error,
-        })
+        let is_auto = matches!(self.march.update, Update::Auto(_));
+        if written == "updates" && is_auto {
+            return Err(AssignmentError(
+                "the march of this case determines its updates, since it has update = \"auto\"; refine what it goes by, such as \
+                 depth_tolerance_fraction=0.1,0.03,0.01, or write update = \"fixed\""
+                    .to_owned(),
+            ));
+        }
+        path_called("number", written, paths, near)
     }
 }
 
@@ -372,7 +331,7 @@ fn add_keys(table: toml::Table, above: &str, keys: &mut Vec<(String, toml::Value
 /// Returns `written` if it is a dotted path, or else the only one of `paths` whose last word it is, with or without the
 /// unit; `near` finds a similar last word for the message.
 fn path_called(
-    what: &'static str,
+    what: &str,
     written: &str,
     paths: impl FnOnce() -> Vec<String>,
     near: impl FnOnce(&[&str]) -> Option<String>,
@@ -383,15 +342,21 @@ fn path_called(
     let paths = paths();
     let is_meant = |path: &&String| leaf(path) == written || split_unit(leaf(path)).0 == written;
     let meant: Vec<String> = paths.iter().filter(is_meant).cloned().collect();
-    let name = written.to_owned();
     match <[String; 1]>::try_from(meant) {
         Ok([path]) => Ok(path),
         Err(meant) if meant.is_empty() => {
             let leaves: Vec<&str> = paths.iter().map(|path| leaf(path)).collect();
-            let near = near(&leaves);
-            Err(AssignmentError::Unknown { what, name, near })
+            let advice = match near(&leaves) {
+                Some(near) => format!("did you mean `{near}`?"),
+                None => "give its dotted path, such as `march.updates`".to_owned(),
+            };
+            let message = format!("the case has no {what} called `{written}`; {advice}");
+            Err(AssignmentError(message))
         }
-        Err(paths) => Err(AssignmentError::Many { what, name, paths }),
+        Err(paths) => Err(AssignmentError(format!(
+            "the case has more than one {what} called `{written}`; write `{}`",
+            paths.join("` or `")
+        ))),
     }
 }
 

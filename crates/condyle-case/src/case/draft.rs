@@ -7,13 +7,13 @@ use condyle::anatomy::{
 };
 use condyle::geometry::{GenericInsertShape, TriangleMesh, Underside};
 use condyle_mesh::files::Disk;
-use condyle_mesh::formats::{MeshFileError, parse_surface, surface_bytes};
+use condyle_mesh::formats::{parse_surface, surface_bytes};
 use condyle_mesh::repair::{CheckedMesh, RepairError};
 use thiserror::Error;
 
 use super::build::{
-    Body, MAX_ACROSS_MM, checks_of, cut_at, heights_to_write, longest_mm, middle_of_mesh,
-    rounded_up, usual_unit,
+    Body, BuildError, MAX_ACROSS_MM, checks_of, cut_at, heights_to_write, longest_mm,
+    middle_of_mesh, rounded_up, usual_unit,
 };
 use super::contents::Case;
 use super::frame::{Axes, LengthUnit, Side};
@@ -56,7 +56,8 @@ impl Draft<'_> {
         let femur_lies = femur.orientation(&insert.best());
         let insert_lies = insert.orientation(&[femur_lies]);
         let (femur_shell, whole) = (femur.shell(&femur_lies)?, insert.shell(&insert_lies)?);
-        let mut alone = Alone::of(whole).map_err(|source| insert.refused(source))?;
+        let mut alone =
+            Alone::of(whole).map_err(|error| BuildError::shell(&insert.file, &error))?;
         let mut of_insert = insert.remarks(&insert_lies, &alone.shell);
         let mut insert_keys = insert.keys(&insert_lies);
         of_insert.extend(alone.remarks());
@@ -134,12 +135,16 @@ struct Concluded<'a> {
 }
 
 impl<'a> Concluded<'a> {
-    fn from(body: Body, written: &'a Path) -> Result<Self, DraftError> {
+    fn from(body: Body, written: &'a Path) -> Result<Self, BuildError> {
         let file = std::path::absolute(written).unwrap_or_else(|_| written.to_path_buf());
         let mesh = parse_surface(&file, &surface_bytes(&Disk, &file)?)?;
         let size = longest_mm(&mesh);
         let Some((unit, _)) = usual_unit(size) else {
-            return Err(DraftError::NoUnit { file, body, size });
+            let message = format!(
+                "this {body} is {size:.4} long in the unit of the file, and none of mm, cm, m and in makes it 40 mm to 120 mm \
+                 long, as that of a whole knee is; scale it, or write the case by hand"
+            );
+            return Err(BuildError::mesh(&file, &["length_unit"], message));
         };
         let mesh = mesh.mapped(|vertex| vertex * unit.in_mm());
         let recognition = match (body, body.recognise(&mesh)) {
@@ -175,19 +180,12 @@ impl<'a> Concluded<'a> {
     }
 
     /// Returns the mesh, repaired and checked as in a run.
-    fn shell(&self, lies: &Orientation) -> Result<CheckedMesh, DraftError> {
+    fn shell(&self, lies: &Orientation) -> Result<CheckedMesh, BuildError> {
         let rotation = lies.rotation();
         let placed = self.mesh.clone().mapped(|vertex| rotation * vertex);
-        checks_of(self.body)
+        checks_of(self.body, None)
             .check(placed)
-            .map_err(|source| self.refused(source))
-    }
-
-    fn refused(&self, source: RepairError) -> DraftError {
-        DraftError::Shell {
-            file: self.file.clone(),
-            source,
-        }
+            .map_err(|error| BuildError::shell(&self.file, &error))
     }
 
     fn keys(&self, lies: &Orientation) -> String {
@@ -311,7 +309,7 @@ fn recognised_alone(mesh: &TriangleMesh) -> Option<Recognition> {
     Orientation::all().find_map(|lies| {
         let rotation = lies.rotation();
         let placed = mesh.clone().mapped(|vertex| rotation * vertex);
-        let alone = Alone::of(checks_of(Body::Insert).check(placed).ok()?).ok()?;
+        let alone = Alone::of(checks_of(Body::Insert, None).check(placed).ok()?).ok()?;
         let is_part = matches!(alone.underside, Underside::Ledge { .. });
         if !is_part && alone.shell.left_out.is_empty() {
             return None;
@@ -327,31 +325,9 @@ fn recognised_alone(mesh: &TriangleMesh) -> Option<Recognition> {
 /// A draft that cannot be made.
 #[derive(Debug, Error)]
 pub enum DraftError {
-    /// A file that cannot be read.
+    /// A file that cannot be read or used.
     #[error(transparent)]
-    MeshFile(#[from] MeshFileError),
-    /// Triangles that do not form a shell.
-    #[error("{}: {source}", file.display())]
-    Shell {
-        /// The file.
-        file: PathBuf,
-        /// The defect.
-        source: RepairError,
-    },
-    /// A body that no unit makes as large as a knee's.
-    #[error(
-        "{}: this {body} is {size:.4} long in the unit of the file, and none of mm, cm, m and in makes it \
-         40 mm to 120 mm long, as that of a whole knee is; scale it, or write the case by hand",
-        file.display()
-    )]
-    NoUnit {
-        /// The file.
-        file: PathBuf,
-        /// The body.
-        body: Body,
-        /// Its longest extent, in the unit of the file.
-        size: f64,
-    },
+    Mesh(#[from] BuildError),
     /// The draft is not a valid case.
     #[error(transparent)]
     Case(#[from] Problems),

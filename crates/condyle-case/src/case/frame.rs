@@ -1,7 +1,6 @@
 //! The heading of a case, and the frames and units of the files that it names.
 
 use condyle::{Mat3, Vec3};
-use thiserror::Error;
 use toml::Spanned;
 use toml::de::DeValue;
 
@@ -30,17 +29,6 @@ settings! {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Axes {
     words: [&'static str; 3],
-}
-
-/// Three words that do not form a frame.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Error)]
-pub enum AxesError {
-    /// Two axes along one line.
-    #[error("two of the axes lie along the same line, so one direction of space has none")]
-    SameLine,
-    /// A mirrored frame.
-    #[error("these axes are left-handed, which would mirror the shape")]
-    LeftHanded,
 }
 
 /// Words for the directions x, -x, y, -y, z and -z of the frame, and two that depend on the side.
@@ -82,15 +70,15 @@ impl Axes {
     /// knee is mirrored.
     ///
     /// # Errors
-    /// Two axes along one line, or a left-handed frame.
-    pub fn rotation(&self, side: Side) -> Result<Mat3, AxesError> {
+    /// In words: two axes along one line, or a left-handed frame.
+    pub fn rotation(&self, side: Side) -> Result<Mat3, &'static str> {
         let columns = self.words.map(|word| direction(word, side));
         let rotation = Mat3::from_columns(&columns);
         let determinant = rotation.determinant();
         if determinant.abs() < 0.5 {
-            Err(AxesError::SameLine)
+            Err("two of the axes lie along the same line, so one direction of space has none")
         } else if determinant < 0.0 {
-            Err(AxesError::LeftHanded)
+            Err("these axes are left-handed, which would mirror the shape")
         } else {
             Ok(rotation)
         }
@@ -199,10 +187,18 @@ mod tests {
             words: ["anterior", "superior", "lateral"],
         };
         assert!(axes.rotation(Side::Right).is_ok());
-        assert_eq!(axes.rotation(Side::Left), Err(AxesError::LeftHanded));
+        assert!(
+            axes.rotation(Side::Left)
+                .unwrap_err()
+                .contains("left-handed")
+        );
         let axes = Axes {
             words: ["left", "right", "superior"],
         };
-        assert_eq!(axes.rotation(Side::Right), Err(AxesError::SameLine));
+        assert!(
+            axes.rotation(Side::Right)
+                .unwrap_err()
+                .contains("same line")
+        );
     }
 }

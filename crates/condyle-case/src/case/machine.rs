@@ -340,7 +340,7 @@ impl Waveforms {
                     } else {
                         DriveWord::Loaded
                     };
-                    let table = format!("[{}.{}]", machine.path(), channel.name);
+                    let table = format!("[{}.{}]", machine.path, channel.name);
                     let (name, drive, wanted) = (joint.name, freedom.drive.word(), wanted.word());
                     let fault = Fault::new(
                         format!(

@@ -210,7 +210,7 @@ pub(super) fn read(
                 WaveformError::Seam { .. } => "or, for a measured cycle, set `remove_drift = true`",
                 _ => "",
             };
-            let fault = Fault::new(format!("[{}]: {error}", section.path()), advice);
+            let fault = Fault::new(format!("[{}]: {error}", section.path), advice);
             (point_of(&error, &knots), fault)
         }
     };

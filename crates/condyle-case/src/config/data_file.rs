@@ -123,6 +123,7 @@ pub(crate) struct Columns<'a> {
 
 /// A number and its place.
 pub(crate) struct Cell {
+    pub row: usize,
     pub value: f64,
     pub span: Range<usize>,
 }
@@ -159,11 +160,18 @@ impl<'a> Columns<'a> {
             );
             return Err(vec![(first, fault)]);
         };
+        // Cells of a header lose the `#` of a comment, and end at a blank.
+        let name = |span: Range<usize>| {
+            let name = text[span.clone()].trim_start_matches(['#', ' ', '\t']);
+            let start = span.end - name.len();
+            let length = name.find(char::is_whitespace).unwrap_or(name.len());
+            start..start + length
+        };
         let is_row = |line: &&Range<usize>| !text[(*line).clone()].trim_start().starts_with('#');
         let rows = lines[start..].iter().filter(is_row);
         Ok(Self {
             text,
-            header: names_in(text, header),
+            header: cells(text, header).into_iter().map(name).collect(),
             rows: rows.map(|line| cells(text, line)).collect(),
         })
     }
@@ -179,45 +187,35 @@ impl<'a> Columns<'a> {
 
     /// Returns the numbers of a column, or a problem for every other cell.
     pub(crate) fn numbers(&self, column: usize) -> Result<Vec<Cell>, Vec<Placed>> {
-        let read = self.collected(self.rows.iter().enumerate(), column)?;
-        Ok(read.into_iter().map(|(_, cell)| cell).collect())
+        self.collected(column, false)
     }
 
-    /// Returns the numbers of a column with their rows, without empty cells, or a problem for every other cell.
-    pub(crate) fn numbers_given(&self, column: usize) -> Result<Vec<(usize, Cell)>, Vec<Placed>> {
-        let is_given = |row: &[Range<usize>]| row.get(column).is_none_or(|span| !span.is_empty());
-        let rows = self.rows.iter().enumerate();
-        self.collected(rows.filter(|(_, row)| is_given(row)), column)
+    /// Returns the numbers of a column without empty cells, or a problem for every other cell.
+    pub(crate) fn numbers_given(&self, column: usize) -> Result<Vec<Cell>, Vec<Placed>> {
+        self.collected(column, true)
     }
 
-    fn collected<'r>(
-        &self,
-        rows: impl Iterator<Item = (usize, &'r Vec<Range<usize>>)>,
-        column: usize,
-    ) -> Result<Vec<(usize, Cell)>, Vec<Placed>> {
+    fn collected(&self, column: usize, skips_empty: bool) -> Result<Vec<Cell>, Vec<Placed>> {
         let (mut good, mut bad) = (Vec::new(), Vec::new());
-        for (index, row) in rows {
-            match self.number(row, column) {
-                Ok(cell) => good.push((index, cell)),
-                Err(problem) => bad.push(problem),
+        for (row, cells) in self.rows.iter().enumerate() {
+            if skips_empty && cells.get(column).is_some_and(Range::is_empty) {
+                continue;
+            }
+            // A row that is too short lacks its cell at its end.
+            let end = cells.last().map_or(0, |last| last.end);
+            let span = cells.get(column).cloned().unwrap_or(end..end);
+            let text = &self.text[span.clone()];
+            match text.parse::<f64>() {
+                Ok(value) if value.is_finite() => good.push(Cell { row, value, span }),
+                Ok(_) | Err(_) => {
+                    let column = self.names()[column];
+                    let message = format!("`{text}` in column `{column}` is not a finite number");
+                    let fault = Fault::new(message, "write a number there, or remove the row");
+                    bad.push((span, fault));
+                }
             }
         }
         if bad.is_empty() { Ok(good) } else { Err(bad) }
-    }
-
-    fn number(&self, row: &[Range<usize>], column: usize) -> Result<Cell, Placed> {
-        let end = row.last().map_or(0, |last| last.end);
-        let span = row.get(column).cloned().unwrap_or(end..end);
-        let text = &self.text[span.clone()];
-        match text.parse::<f64>() {
-            Ok(value) if value.is_finite() => Ok(Cell { value, span }),
-            Ok(_) | Err(_) => {
-                let column = self.names()[column];
-                let message = format!("`{text}` in column `{column}` is not a finite number");
-                let fault = Fault::new(message, "write a number there, or remove the row");
-                Err((span, fault))
-            }
-        }
     }
 }
 
@@ -244,17 +242,6 @@ pub(crate) fn cells(text: &str, line: &Range<usize>) -> Vec<Range<usize>> {
         span
     };
     text[line.clone()].split(',').map(cell).collect()
-}
-
-/// Returns the names in a header: its cells without the `#` of a comment, each up to a blank.
-fn names_in(text: &str, line: &Range<usize>) -> Vec<Range<usize>> {
-    let after_hash = |span: Range<usize>| {
-        let name = text[span.clone()].trim_start_matches(['#', ' ', '\t']);
-        let start = span.end - name.len();
-        let length = name.find(char::is_whitespace).unwrap_or(name.len());
-        start..start + length
-    };
-    cells(text, line).into_iter().map(after_hash).collect()
 }
 
 /// Returns the fault of a column that the `file` does not have among `columns`.

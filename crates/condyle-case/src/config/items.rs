@@ -1,6 +1,6 @@
 //! Entries of declared tables: they define a table for the reader, the schema and the book.
 
-use super::fault::other_choice;
+use super::fault::{explain, other_choice};
 use super::key::{Key, Kind, WhereSilent};
 use super::problem::Log;
 use super::section::Section;
@@ -83,27 +83,23 @@ impl Choices {
         }
     }
 
-    /// Returns the word that `section` gives, or the default.
+    /// Returns the word that `section` gives, or the default; reports a word that is not offered.
     pub fn read(&self, section: &Section<'_>, log: &mut Log<'_>) -> Option<&'static str> {
-        match section.value(self.by.name) {
-            Some(value) => read_word(value, &self.by, &self.words(), log),
-            None => Some(self.default),
-        }
+        let report = || read_word(section.value(self.by.name)?, &self.by, &self.words(), log);
+        self.word_in(section).or_else(report)
     }
 
     fn words(&self) -> Vec<&'static str> {
         self.offered.iter().map(|offer| offer.word).collect()
     }
 
-    /// Returns the word of `section` without reporting one that is not offered.
+    /// As [`Self::read`], without reports.
     fn word_in(&self, section: &Section<'_>) -> Option<&'static str> {
-        match section.value(self.by.name) {
-            Some(value) => {
-                let written = value.get_ref().as_str()?;
-                self.words().into_iter().find(|word| *word == written)
-            }
-            None => Some(self.default),
-        }
+        let Some(value) = section.value(self.by.name) else {
+            return Some(self.default);
+        };
+        let written = value.get_ref().as_str()?;
+        self.words().into_iter().find(|word| *word == written)
     }
 
     /// Returns the word that offers the entry `name`, if `chosen` does not.
@@ -178,7 +174,7 @@ pub(crate) fn check(section: &Section<'_>, items: &[Item], log: &mut Log<'_>) {
                 let shown = value.as_table().map_or(name, |_| table.as_str());
                 other_choice(shown, &owner, &chosen)
             }
-            None => section.unknown(name, value, &known),
+            None => explain(name, value, &section.name(), &known),
         };
         log.problem(key.span(), reason);
     }

@@ -163,39 +163,35 @@ fn of_kind(kind: &Kind, limits: Option<Limits>) -> Value {
 
 /// Returns the meaning of a key, its unit, its range and its default.
 fn description(key: &Key) -> String {
-    let unit = unit_of(key.name).map(|unit| format!("Unit: {unit}."));
-    let range = key.limits.map(|limits| format!("Range: {limits}."));
-    let default = match &key.silent {
-        WhereSilent::Takes(text) => Some(format!("Default: {text}.")),
-        WhereSilent::MustBeGiven => Some("Must be given.".to_owned()),
-        WhereSilent::LeftOut => None,
-    };
-    let parts = [Some(key.doc.to_string()), unit, range, default];
-    parts
-        .into_iter()
-        .flatten()
-        .collect::<Vec<String>>()
-        .join(" ")
+    let mut text = key.doc.to_string();
+    if let Some(unit) = unit_of(key.name) {
+        text += &format!(" Unit: {unit}.");
+    }
+    if let Some(range) = key.limits {
+        text += &format!(" Range: {range}.");
+    }
+    match &key.silent {
+        WhereSilent::Takes(default) => text + &format!(" Default: {default}."),
+        WhereSilent::MustBeGiven => text + " Must be given.",
+        WhereSilent::LeftOut => text,
+    }
 }
 
 /// Returns the sections of the book on the tables among `items`, `above` being the path of the table around them.
 pub(crate) fn sections(above: &str, items: &[Item]) -> String {
-    let tables = items.iter().flat_map(|item| match item {
-        Item::Table(table) => vec![table],
-        Item::Choice(choices) => {
-            let offered = choices.offered.iter().flat_map(|offer| &offer.items);
-            offered.filter_map(as_table).collect()
-        }
-        _ => Vec::new(),
+    let inside = items.iter().flat_map(|item| match item {
+        Item::Choice(choices) => choices
+            .offered
+            .iter()
+            .flat_map(|offer| &offer.items)
+            .collect(),
+        item => vec![item],
     });
-    tables.map(|table| section(above, table)).collect()
-}
-
-fn as_table(item: &Item) -> Option<&TableItem> {
-    match item {
-        Item::Table(table) => Some(table),
+    let sections = inside.filter_map(|item| match item {
+        Item::Table(table) => Some(section(above, table)),
         _ => None,
-    }
+    });
+    sections.collect()
 }
 
 fn section(above: &str, table: &TableItem) -> String {

@@ -6,14 +6,15 @@ use std::ops::Range;
 use toml::Spanned;
 use toml::de::{DeString, DeTable, DeValue};
 
-use super::fault::{Fault, explain, idle, missing_key, syntax, type_fault};
+use super::fault::{explain, idle, missing_key, syntax, type_fault};
 use super::key::{Key, names, type_name};
 use super::problem::{Base, Log, Problems, Source};
 use super::setting::Setting;
 
 /// A table of a file; an absent one has no keys.
 pub(crate) struct Section<'a> {
-    path: String,
+    /// Such as `machine.springs`.
+    pub path: String,
     is_of_list: bool,
     table: Option<&'a DeTable<'a>>,
     span: Range<usize>,
@@ -89,11 +90,6 @@ impl<'a> Section<'a> {
             })
         };
         list.iter().filter_map(table).collect()
-    }
-
-    /// Path of the table, such as `machine.springs`.
-    pub(crate) fn path(&self) -> &str {
-        &self.path
     }
 
     /// Returns the table as messages name it.
@@ -183,7 +179,8 @@ impl<'a> Section<'a> {
     /// Reports every key that is none of `known`.
     pub(crate) fn check_keys(&self, known: &[&str], log: &mut Log<'_>) {
         for (key, value) in self.other_keys(known) {
-            log.problem(key.span(), self.unknown(key.get_ref(), value, known));
+            let fault = explain(key.get_ref(), value, &self.name(), known);
+            log.problem(key.span(), fault);
         }
     }
 
@@ -196,11 +193,6 @@ impl<'a> Section<'a> {
         entries
             .filter(|(key, _)| !known.contains(&key.get_ref().as_ref()))
             .map(|(key, value)| (key, value.get_ref()))
-    }
-
-    /// Returns the likeliest reason why the table has no key `name` among those `known`.
-    pub(super) fn unknown(&self, name: &str, value: &DeValue<'_>, known: &[&str]) -> Fault {
-        explain(name, value, &self.name(), known)
     }
 }
 

@@ -311,24 +311,22 @@ macro_rules! choice {
             }
         }
 
-        $crate::config::words! { $name { $($variant = $word,)+ } }
+        words! { $name { $($variant = $word,)+ } }
     )+ };
 }
 
 /// Declares the words of files for the variants of an enum.
 macro_rules! words {
     ($( $name:ident { $($variant:ident = $word:literal,)+ } )+) => { $(
-        impl $crate::config::Setting for $name {
-            fn kind() -> $crate::config::Kind {
-                $crate::config::Kind::Word(vec![$($word),+])
+        impl Setting for $name {
+            fn kind() -> Kind {
+                Kind::Word(vec![$($word),+])
             }
 
             fn read(
-                value: &toml::Spanned<toml::de::DeValue<'_>>,
-                key: &$crate::config::Key,
-                log: &mut $crate::config::Log<'_>,
+                value: &toml::Spanned<toml::de::DeValue<'_>>, key: &Key, log: &mut Log<'_>,
             ) -> Option<Self> {
-                match $crate::config::read_word(value, key, &[$($word),+], log)? {
+                match read_word(value, key, &[$($word),+], log)? {
                     $( $word => Some(Self::$variant), )+
                     _ => None,
                 }

@@ -44,7 +44,7 @@ pub(crate) trait Settings: Sized {
     }
 }
 
-/// Declares parts of a file, each a struct with [`Settings`].
+/// Declares parts of a file, each a struct with [`Settings`], where the items of `config` are imported.
 ///
 /// `key: Type = default, in limits;` declares a key, which must be given if there is no default; `[flat] part: Type;` the
 /// entries of another part in the same table; `[table] part: Type;` a table inside, called like the field or as in
@@ -65,18 +65,15 @@ macro_rules! settings {
             $( $(#[doc = $doc])+ pub $field: $ty, )*
         }
 
-        impl $crate::config::Settings for $name {
-            fn items() -> Vec<$crate::config::Item> {
-                [$( $crate::config::settings::entry!(
+        impl Settings for $name {
+            fn items() -> Vec<Item> {
+                [$( entry!(
                     items [$($($how)+)?] $field $ty, [concat!($($doc),+)] [$($default)?] [$($limits)?]
                 ) ),*].concat()
             }
 
-            fn read(
-                section: &$crate::config::Section<'_>,
-                log: &mut $crate::config::Log<'_>,
-            ) -> Option<Self> {
-                $( let $field: Option<$ty> = $crate::config::settings::entry!(
+            fn read(section: &Section<'_>, log: &mut Log<'_>) -> Option<Self> {
+                $( let $field: Option<$ty> = entry!(
                     read section log [$($($how)+)?] $field $ty, [concat!($($doc),+)] [$($default)?] [$($limits)?]
                 ); )*
                 let read = Self { $( $field: $field?, )* };
@@ -84,8 +81,8 @@ macro_rules! settings {
                 Some(read)
             }
 
-            fn write(&self, out: &mut $crate::config::Writer) {
-                $( $crate::config::settings::entry!(
+            fn write(&self, out: &mut Writer) {
+                $( entry!(
                     write (&self.$field) out [$($($how)+)?] $field $ty, [concat!($($doc),+)] [$($default)?] [$($limits)?]
                 ); )*
             }
@@ -96,65 +93,59 @@ macro_rules! settings {
 /// Describes, reads or writes one entry of [`settings!`].
 macro_rules! entry {
     (items [] $field:ident $ty:ty, $($rest:tt)*) => {
-        vec![$crate::config::Item::Key($crate::config::settings::key!($field $ty, $($rest)*))]
+        vec![Item::Key(key!($field $ty, $($rest)*))]
     };
     (items [flat] $field:ident $ty:ty, $($rest:tt)*) => {
-        <$ty as $crate::config::Settings>::items()
+        <$ty as Settings>::items()
     };
     (items [table $($name:literal)?] $field:ident $ty:ty, [$doc:expr] $($rest:tt)*) => {
-        vec![<$ty as $crate::config::Settings>::item(
-            $crate::config::settings::name!($field $($name)?), $doc,
-        )]
+        vec![<$ty as Settings>::item(name!($field $($name)?), $doc)]
     };
     (read $section:ident $log:ident [] $field:ident $ty:ty, [$doc:expr] [$($default:expr)?] [$($limits:expr)?]) => {
         $section.setting(
-            &$crate::config::settings::key!($field $ty, [$doc] [$($default)?] [$($limits)?]),
-            $crate::config::settings::given!($($default)?),
+            &key!($field $ty, [$doc] [$($default)?] [$($limits)?]),
+            given!($($default)?),
             $log,
         )
     };
     (read $section:ident $log:ident [flat] $field:ident $ty:ty, $($rest:tt)*) => {
-        <$ty as $crate::config::Settings>::read($section, $log)
+        <$ty as Settings>::read($section, $log)
     };
     (read $section:ident $log:ident [table $($name:literal)?] $field:ident $ty:ty, $($rest:tt)*) => {
-        <$ty as $crate::config::Settings>::read_in(
-            $section, $crate::config::settings::name!($field $($name)?), $log,
-        )
+        <$ty as Settings>::read_in($section, name!($field $($name)?), $log)
     };
     (write ($value:expr) $out:ident [] $field:ident $ty:ty, $($rest:tt)*) => {
-        $crate::config::Setting::write($value, &$crate::config::settings::key!($field $ty, $($rest)*), $out)
+        Setting::write($value, &key!($field $ty, $($rest)*), $out)
     };
     (write ($value:expr) $out:ident [flat] $($rest:tt)*) => {
-        $crate::config::Settings::write($value, $out)
+        Settings::write($value, $out)
     };
     (write ($value:expr) $out:ident [table $($name:literal)?] $field:ident $($rest:tt)*) => {
-        $crate::config::Settings::write_in(
-            $value, $crate::config::settings::name!($field $($name)?), $out,
-        )
+        Settings::write_in($value, name!($field $($name)?), $out)
     };
 }
 
 /// The declared [`Key`].
 macro_rules! key {
     ($field:ident $ty:ty, [$doc:expr] [$($default:expr)?] [$($limits:expr)?]) => {
-        $crate::config::Key {
+        Key {
             name: stringify!($field),
             doc: $doc.trim().into(),
-            kind: <$ty as $crate::config::Setting>::kind(),
-            silent: $crate::config::settings::where_silent!($ty, $($default)?),
-            limits: $crate::config::settings::given!($($limits)?),
+            kind: <$ty as Setting>::kind(),
+            silent: where_silent!($ty, $($default)?),
+            limits: given!($($limits)?),
         }
     };
 }
 
 macro_rules! where_silent {
     ($ty:ty,) => {
-        $crate::config::WhereSilent::MustBeGiven
+        WhereSilent::MustBeGiven
     };
     ($ty:ty, $default:expr) => {
-        match <$ty as $crate::config::Setting>::text(&$default) {
-            Some(text) => $crate::config::WhereSilent::Takes(text),
-            None => $crate::config::WhereSilent::LeftOut,
+        match <$ty as Setting>::text(&$default) {
+            Some(text) => WhereSilent::Takes(text),
+            None => WhereSilent::LeftOut,
         }
     };
 }
@@ -197,17 +188,15 @@ macro_rules! variants {
         }
 
         impl $name {
-            pub(crate) fn choices() -> $crate::config::Choices {
-                $crate::config::Choices::new(
+            pub(crate) fn choices() -> Choices {
+                Choices::new(
                     stringify!($key),
                     concat!($($key_doc),+),
                     $default,
                     vec![$(
-                        $crate::config::Offered {
+                        Offered {
                             word: $word,
-                            items: $crate::config::settings::offer!(
-                                items $word [concat!($($doc),+)] $([$($how)?] $part)?
-                            ),
+                            items: offer!(items $word [concat!($($doc),+)] $([$($how)?] $part)?),
                         },
                     )+],
                 )
@@ -219,38 +208,31 @@ macro_rules! variants {
             }
 
             /// Reads the choice that `word` names.
-            pub(crate) fn read_as(
-                word: &str,
-                section: &$crate::config::Section<'_>,
-                log: &mut $crate::config::Log<'_>,
-            ) -> Option<Self> {
+            pub(crate) fn read_as(word: &str, section: &Section<'_>, log: &mut Log<'_>) -> Option<Self> {
                 Some(match word {
                     $( $word => Self::$variant
-                        $(($crate::config::settings::offer!(read section log [$($how)?] $word $part)?))?, )+
+                        $((offer!(read section log [$($how)?] $word $part)?))?, )+
                     _ => return None,
                 })
             }
         }
 
-        impl $crate::config::Settings for $name {
-            fn items() -> Vec<$crate::config::Item> {
-                vec![$crate::config::Item::Choice(Self::choices())]
+        impl Settings for $name {
+            fn items() -> Vec<Item> {
+                vec![Item::Choice(Self::choices())]
             }
 
-            fn read(
-                section: &$crate::config::Section<'_>,
-                log: &mut $crate::config::Log<'_>,
-            ) -> Option<Self> {
+            fn read(section: &Section<'_>, log: &mut Log<'_>) -> Option<Self> {
                 let word = Self::choices().read(section, log)?;
                 Self::read_as(word, section, log)
             }
 
-            fn write(&self, out: &mut $crate::config::Writer) {
+            fn write(&self, out: &mut Writer) {
                 let by = Self::choices().by;
                 out.line(&format!("{} = {:?}", by.name, self.word()), &by.doc);
                 match self {
-                    $( Self::$variant $(($crate::config::settings::bound!(part, $part)))? => {
-                        $( $crate::config::settings::offer!(write part out [$($how)?] $word $part); )?
+                    $( Self::$variant $((bound!(part, $part)))? => {
+                        $( offer!(write part out [$($how)?] $word $part); )?
                     } )+
                 }
             }
@@ -264,22 +246,22 @@ macro_rules! offer {
         Vec::new()
     };
     (items $word:literal [$doc:expr] [] $part:ty) => {
-        <$part as $crate::config::Settings>::items()
+        <$part as Settings>::items()
     };
     (items $word:literal [$doc:expr] [table] $part:ty) => {
-        vec![<$part as $crate::config::Settings>::item($word, $doc)]
+        vec![<$part as Settings>::item($word, $doc)]
     };
     (read $section:ident $log:ident [] $word:literal $part:ty) => {
-        <$part as $crate::config::Settings>::read($section, $log)
+        <$part as Settings>::read($section, $log)
     };
     (read $section:ident $log:ident [table] $word:literal $part:ty) => {
-        <$part as $crate::config::Settings>::read_in($section, $word, $log)
+        <$part as Settings>::read_in($section, $word, $log)
     };
     (write $value:ident $out:ident [] $word:literal $part:ty) => {
-        $crate::config::Settings::write($value, $out)
+        Settings::write($value, $out)
     };
     (write $value:ident $out:ident [table] $word:literal $part:ty) => {
-        $crate::config::Settings::write_in($value, $word, $out)
+        Settings::write_in($value, $word, $out)
     };
 }
 

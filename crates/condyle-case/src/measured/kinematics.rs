@@ -134,8 +134,8 @@ fn curve(
         let fault = too_few(column, cells.len(), MIN_SAMPLES);
         return Err(vec![(span, fault)]);
     }
-    let sample = |(row, cell): &(usize, Cell)| Sample {
-        percent: percents[*row],
+    let sample = |cell: &Cell| Sample {
+        percent: percents[cell.row],
         value: cell.value,
     };
     let samples = cells.iter().map(sample).collect();

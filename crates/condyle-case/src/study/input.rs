@@ -246,13 +246,16 @@ pub(super) fn check_count(
     None
 }
 
+/// The values of each test.
+type Rows = Vec<Vec<Level>>;
+
 /// Reads the inputs and the values of each test from the CSV file that `section` names.
 pub(super) fn read_rows(
     section: &Section<'_>,
     file: &DataFile,
     case: &Case,
     log: &mut Log<'_>,
-) -> Option<(Vec<Input>, Vec<Vec<Level>>)> {
+) -> Option<(Vec<Input>, Rows)> {
     let source = file.source(section, "file", log)?;
     let (keys, rows) = log.noted(&source, split(source.inner()))?;
     let span = section.value_span("file");
@@ -271,7 +274,7 @@ pub(super) fn read_rows(
 }
 
 /// Reads keys and rows of values from a CSV text, or reports every row that does not fit.
-fn split(text: &str) -> Result<(Vec<String>, Vec<Vec<Level>>), Vec<Placed>> {
+fn split(text: &str) -> Result<(Vec<String>, Rows), Vec<Placed>> {
     let no_rows = || {
         let advice = "write keys of the case in its first line, such as `contact.friction,insert.thickness_mm`, and values below";
         Fault::new("the file has no rows", advice)

@@ -5,7 +5,6 @@ use std::path::Path;
 use condyle::anatomy::{Orientation, Sureness, flange_lead_mm};
 use condyle::geometry::{self, TriangleMesh};
 use condyle::{Mat3, Vec3};
-use condyle_fem::HexMesh;
 
 use super::error::{Body, BuildError, BuildWarning, Finding};
 use super::placing::{Placing, middle_of_points};
@@ -215,16 +214,6 @@ pub(super) fn check_orientation(
     let remark = format!("this {body} likely lies {lies}; {advice}");
     warnings.push(BuildWarning::mesh(file, remark).with(Finding::WrongAxes(body)));
     Ok(false)
-}
-
-pub(super) fn check_orientation_of_hexahedra(
-    file: &DataFile,
-    mesh: &HexMesh,
-    placing: &Placing,
-    warnings: &mut Vec<BuildWarning>,
-) -> Result<bool, BuildError> {
-    let boundary = TriangleMesh::of_quads(mesh.nodes.clone(), mesh.boundary_quads());
-    check_orientation(Body::Insert, file, &boundary, placing, warnings)
 }
 
 /// Warns of a femur, in the frame of a right knee, with the shape of the other knee's femur.

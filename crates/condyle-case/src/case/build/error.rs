@@ -11,7 +11,6 @@ use condyle_mesh::formats::MeshFileError;
 use condyle_mesh::repair::RepairError;
 use thiserror::Error;
 
-use crate::case::frame::AxesError;
 use crate::config::DataFile;
 
 /// One of the two bodies.
@@ -59,7 +58,7 @@ pub struct BuildError {
 }
 
 impl BuildError {
-    fn new(keys: &'static [&'static str], message: impl Into<String>) -> Self {
+    pub(super) fn new(keys: &'static [&'static str], message: impl Into<String>) -> Self {
         Self {
             message: message.into(),
             file: None,
@@ -82,7 +81,7 @@ impl BuildError {
     }
 
     /// Returns the error of a mesh file that can be read but not used.
-    pub(super) fn mesh(
+    pub(in crate::case) fn mesh(
         file: &Path,
         keys: &'static [&'static str],
         message: impl fmt::Display,
@@ -94,7 +93,7 @@ impl BuildError {
     }
 
     /// Returns the error of triangles that do not form a shell.
-    pub(super) fn shell(file: &Path, error: &RepairError) -> Self {
+    pub(in crate::case) fn shell(file: &Path, error: &RepairError) -> Self {
         Self::mesh(file, &["file"], error)
     }
 
@@ -165,12 +164,6 @@ impl From<InsertError> for BuildError {
             _ => INSERT_KEYS,
         };
         Self::new(keys, format!("the insert cannot be used: {error}"))
-    }
-}
-
-impl From<AxesError> for BuildError {
-    fn from(error: AxesError) -> Self {
-        Self::new(&["axes"], format!("`axes`: {error}"))
     }
 }
 

@@ -15,7 +15,7 @@ use serde::{Deserialize, Serialize};
 
 use super::checks::{check_orientation, check_side};
 use super::error::{Body, BuildError, BuildWarning};
-use super::placing::{Placing, ShellOf, parsed_shell, shell, warn};
+use super::placing::{Placing, checks_of, parsed_shell, shell, warn};
 use crate::cache::{Keep, kept};
 use crate::case::contents::Case;
 use crate::case::femur::{FemurPlacement, FemurShape, MeshFemur};
@@ -110,7 +110,13 @@ impl MeshFemur {
         side: Side,
     ) -> Result<TriangleMesh, BuildError> {
         let placing = Placing::new(self.length_unit, &self.axes, side)?;
-        let mesh = shell(&self.file, &placing, ShellOf::FEMUR, &mut Vec::new())?.mesh;
+        let mesh = shell(
+            &self.file,
+            &placing,
+            checks_of(Body::Femur, None),
+            &mut Vec::new(),
+        )?
+        .mesh;
         Ok(self.moved(mesh, placement))
     }
 
@@ -149,7 +155,7 @@ impl MeshFemur {
         // A placement that moves nothing does not change the key under which fields are kept.
         inputs.extend(placement.is_moved().then_some(placed.as_slice()));
         kept(keep, "femur", &inputs, || {
-            let shell = parsed_shell(path, &bytes, placing, ShellOf::FEMUR)?;
+            let shell = parsed_shell(path, &bytes, placing, checks_of(Body::Femur, None))?;
             let mesh = self.moved(shell.mesh.clone(), placement);
             let nodes = SmoothField::node_count(&mesh);
             let (most, memory_gb) = (limits.most(Limits::BYTES_OF_FIELD_NODE), limits.memory_gb);

@@ -4,15 +4,15 @@ use std::collections::BTreeSet;
 use std::path::Path;
 
 use condyle::Vec3;
-use condyle::geometry::{self, GenericInsertShape, Meshing, Underside, flat_insert};
+use condyle::geometry::{self, GenericInsertShape, Meshing, TriangleMesh, Underside, flat_insert};
 use condyle_fem::HexMesh;
 use condyle_mesh::columns::listed_holes;
 use condyle_mesh::formats::{HexFile, parse_surface, read_hexahedra, surface_bytes};
 use condyle_mesh::repair::{CheckedMesh, RepairError};
 
-use super::checks::{check_orientation, check_orientation_of_hexahedra, check_points, off_centre};
+use super::checks::{check_orientation, check_points, off_centre};
 use super::error::{Body, BuildError, BuildWarning, Finding};
-use super::placing::{Placing, ShellOf, middle_of_mesh, middle_of_points, shell};
+use super::placing::{Placing, checks_of, middle_of_mesh, middle_of_points, shell};
 use crate::case::contents::Case;
 use crate::case::insert::{HexahedralInsert, Insert, InsertShape, MeshInsert};
 use crate::case::run_options::Limits;
@@ -102,8 +102,8 @@ impl Case {
     ) -> Result<geometry::Insert, BuildError> {
         let file = &insert.file;
         let placing = Placing::new(insert.length_unit, &insert.axes, self.heading.side)?;
-        let as_insert = ShellOf::insert(insert.clip_below_mm);
-        let mut shell = shell(file, &placing, as_insert, warnings)?;
+        let checks = checks_of(Body::Insert, insert.clip_below_mm);
+        let mut shell = shell(file, &placing, checks, warnings)?;
         if shell.closed && insert.thickness_mm.is_some() {
             let message = "the mesh is closed, so it determines the thickness; remove [insert] `thickness_mm`";
             return Err(BuildError::mesh(file.path(), &["thickness_mm"], message));
@@ -152,7 +152,8 @@ impl Case {
         place(&mut file, &placing);
         check_points(path, &file.mesh.nodes, insert.length_unit)?;
         check_nodes(file.mesh.nodes.len() as f64, &self.limits)?;
-        check_orientation_of_hexahedra(&insert.file, &file.mesh, &placing, warnings)?;
+        let boundary = TriangleMesh::of_quads(file.mesh.nodes.clone(), file.mesh.boundary_quads());
+        check_orientation(Body::Insert, &insert.file, &boundary, &placing, warnings)?;
         let articulating = match &insert.articulating_surface {
             Some(name) => named(&file, path, &["articulating_surface"], name)?,
             None => facing(&file.mesh, 1.0),
@@ -304,7 +305,7 @@ pub(in crate::case) fn cut_at(
     height_mm: f64,
 ) -> Result<CheckedMesh, RepairError> {
     let CheckedMesh { mesh, left_out, .. } = whole;
-    let cut = ShellOf::insert(Some(height_mm)).checks.check(mesh)?;
+    let cut = checks_of(Body::Insert, Some(height_mm)).check(mesh)?;
     Ok(CheckedMesh { left_out, ..cut })
 }
 

@@ -9,9 +9,7 @@ use condyle_mesh::formats::{parse_surface, surface_bytes};
 use condyle_mesh::repair::{CheckedMesh, Checks, Defect, LeftOut, Parts, Touching, WhyLeftOut};
 
 use super::checks::{check_triangles, stray_piece};
-#[cfg(feature = "file-system")]
-use super::error::Body;
-use super::error::{BuildError, BuildWarning, Finding};
+use super::error::{Body, BuildError, BuildWarning, Finding};
 use crate::case::femur::FemurPlacement;
 use crate::case::frame::{Axes, LengthUnit, Side};
 use crate::case::insert::{InsertOrigin, InsertPlacement};
@@ -28,7 +26,8 @@ pub(super) struct Placing {
 
 impl Placing {
     pub(super) fn new(unit: LengthUnit, axes: &Axes, side: Side) -> Result<Self, BuildError> {
-        let axes = axes.rotation(side)?;
+        let axes = axes.rotation(side);
+        let axes = axes.map_err(|why| BuildError::new(&["axes"], format!("`axes`: {why}")))?;
         let mirrors = side == Side::Left;
         let linear = mirror(mirrors) * (axes * unit.in_mm());
         Ok(Self {
@@ -75,41 +74,16 @@ fn turn_round(mesh: &mut TriangleMesh) {
         .for_each(|triangle| triangle.swap(1, 2));
 }
 
-/// Expected orientation of a surface, and the checks of it.
-#[derive(Clone, Copy)]
-pub(super) struct ShellOf {
-    /// True if an open surface must face up on the whole, false if down.
-    faces_up: bool,
-    pub checks: Checks,
-}
-
-impl ShellOf {
-    pub(super) const FEMUR: Self = Self {
-        faces_up: false,
-        checks: Checks {
-            touching: Touching::FromBelowAndBehind,
-            parts: Parts::All,
-            clip_below_mm: None,
-        },
+/// Returns the checks of a body's mesh.
+pub(in crate::case) fn checks_of(body: Body, clip_below_mm: Option<f64>) -> Checks {
+    let (touching, parts) = match body {
+        Body::Femur => (Touching::FromBelowAndBehind, Parts::All),
+        Body::Insert => (Touching::FromAbove, Parts::SeenFromAbove),
     };
-
-    pub(super) fn insert(clip_below_mm: Option<f64>) -> Self {
-        Self {
-            faces_up: true,
-            checks: Checks {
-                touching: Touching::FromAbove,
-                parts: Parts::SeenFromAbove,
-                clip_below_mm,
-            },
-        }
-    }
-}
-
-#[cfg(feature = "file-system")]
-pub(in crate::case) fn checks_of(body: Body) -> Checks {
-    match body {
-        Body::Femur => ShellOf::FEMUR.checks,
-        Body::Insert => ShellOf::insert(None).checks,
+    Checks {
+        touching,
+        parts,
+        clip_below_mm,
     }
 }
 
@@ -117,11 +91,11 @@ pub(in crate::case) fn checks_of(body: Body) -> Checks {
 pub(super) fn shell(
     file: &DataFile,
     placing: &Placing,
-    of: ShellOf,
+    checks: Checks,
     warnings: &mut Vec<BuildWarning>,
 ) -> Result<CheckedMesh, BuildError> {
     let bytes = surface_bytes(file.files(), file.path())?;
-    let shell = parsed_shell(file.path(), &bytes, placing, of)?;
+    let shell = parsed_shell(file.path(), &bytes, placing, checks)?;
     warn(file, &shell, warnings);
     Ok(shell)
 }
@@ -131,12 +105,12 @@ pub(super) fn parsed_shell(
     file: &Path,
     bytes: &[u8],
     placing: &Placing,
-    of: ShellOf,
+    checks: Checks,
 ) -> Result<CheckedMesh, BuildError> {
     let mesh = placing.mesh(parse_surface(file, bytes)?);
     check_triangles(file, &mesh, placing.unit)?;
     let (low_mm, high_mm) = (mesh.bounds().0.y, mesh.bounds().1.y);
-    if let Some(height_mm) = of.checks.clip_below_mm
+    if let Some(height_mm) = checks.clip_below_mm
         && (height_mm <= low_mm || height_mm >= high_mm)
     {
         let message = format!(
@@ -145,9 +119,11 @@ pub(super) fn parsed_shell(
         );
         return Err(BuildError::mesh(file, &["clip_below_mm"], message));
     }
-    let shell = of.checks.check(mesh);
+    let shell = checks.check(mesh);
     let mut shell = shell.map_err(|error| BuildError::shell(file, &error))?;
-    if !shell.closed && faces_up(&shell.mesh) != of.faces_up {
+    // A closed shell shows its inside; an open one must face the other body.
+    let must_face_up = checks.touching == Touching::FromAbove;
+    if !shell.closed && faces_up(&shell.mesh) != must_face_up {
         turn_round(&mut shell.mesh);
         shell.turned_round = true;
     }

@@ -11,8 +11,8 @@ use condyle::geometry::{
 use tempfile::TempDir;
 
 use super::assemble::Built;
-use super::error::BuildError;
-use super::placing::{Placing, ShellOf, shell};
+use super::error::{Body, BuildError};
+use super::placing::{Placing, checks_of, shell};
 use crate::cache::Cache;
 use crate::case::tests::{cases, has_dm_data};
 use crate::case::{Case, FemurShape, InsertShape, Side};
@@ -84,7 +84,13 @@ fn dm_cases_build_and_lie_the_right_way_round() {
         panic!("it is a mesh");
     };
     let placing = Placing::new(femur.length_unit, &femur.axes, Side::Right).unwrap();
-    let shell = shell(&femur.file, &placing, ShellOf::FEMUR, &mut Vec::new()).unwrap();
+    let shell = shell(
+        &femur.file,
+        &placing,
+        checks_of(Body::Femur, None),
+        &mut Vec::new(),
+    )
+    .unwrap();
     let (low, high) = shell.mesh.bounds();
     let (x, y) = condyle::geometry::posterior_arc_centre_mm(&shell.mesh);
     // The posterior condyles lie behind, and the flexion axis inside them.
