@@ -1,8 +1,8 @@
-//! Reads hostile inputs with everything that reads files: good files made bad, the same ones for the same seed.
+//! Feeds every reader of files with hostile inputs: valid files that are corrupted, reproducibly for a seed.
 //!
 //! `cargo run --release -p condyle-case --example hostile_inputs -- --inputs 1000000 --seed 1`
 //!
-//! Prints a table of the inputs a reader got; ends with 1 if one of them panicked, took more than a second or more
+//! Prints a table of the inputs of each reader; exits with 1 if one of them panicked, took more than a second or more
 //! than 1 GB. Such an input is written into the folder of `--failures`, and `--repeat FILE` reads it again.
 
 mod mutate;
@@ -35,7 +35,7 @@ fn main() -> ExitCode {
     }
 }
 
-/// What the command line asks for; the error is the word that is wrong.
+/// Parses the command line; the error is the wrong word.
 fn asked(mut words: impl Iterator<Item = String>) -> Result<Asked, String> {
     let mut asked = Asked {
         inputs: 20_000,
@@ -58,14 +58,14 @@ fn asked(mut words: impl Iterator<Item = String>) -> Result<Asked, String> {
 
 fn run(asked: &Asked) -> ExitCode {
     let Ok(folder) = tempfile::tempdir() else {
-        eprintln!("no temporary folder can be made");
+        eprintln!("no temporary folder can be created");
         return ExitCode::from(2);
     };
     let readers = readers::all(folder.path());
     if let Some(file) = &asked.repeat {
         return repeat(&readers, file);
     }
-    // A panic is said with the name of its input.
+    // A panic is reported with the name of its input.
     std::panic::set_hook(Box::new(|_| ()));
     let failed = read_all(&readers, asked);
     ExitCode::from(u8::from(failed > 0))
@@ -92,7 +92,7 @@ fn repeat(readers: &[Reader], file: &Path) -> ExitCode {
     }
 }
 
-/// Gives every reader its share of the inputs; prints counts and gives how many failed.
+/// Gives every reader its share of the inputs, prints the counts and returns the number of failures.
 fn read_all(readers: &[Reader], asked: &Asked) -> usize {
     println!("| reader | inputs | failed | slowest, ms |\n| --- | --- | --- | --- |");
     let (mut number, mut failed) = (0, 0);
@@ -145,7 +145,7 @@ mod tests {
     }
 
     #[test]
-    fn every_seed_is_a_good_file_or_the_start_of_one() {
+    fn every_seed_is_a_valid_file_or_the_start_of_one() {
         let folder = tempfile::tempdir().expect("a folder for the cache");
         for reader in readers::all(folder.path()) {
             assert!(

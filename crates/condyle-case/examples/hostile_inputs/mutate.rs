@@ -1,11 +1,11 @@
-//! A good file made bad.
+//! Corruption of valid files.
 
 use super::random::Random;
 
 /// Files do not grow beyond this; the limits hold for 1 MB.
 const MAX_BYTES: usize = 60_000;
 
-/// Numbers at the ends of what types hold, and what is none.
+/// Numbers at the limits of types, and texts that are not numbers.
 const NUMBERS: &[&str] = &[
     "0",
     "-0",
@@ -38,7 +38,7 @@ const NUMBERS: &[&str] = &[
     "3,5",
 ];
 
-/// Words that mean something to one reader or another.
+/// Words with a meaning to some reader.
 const WORDS: &[&str] = &[
     "facet",
     "endsolid",
@@ -92,7 +92,7 @@ const WORDS: &[&str] = &[
     "\t",
 ];
 
-/// A seed changed in one to four ways; others of the corpus give pieces.
+/// Returns a seed changed in one to four ways, with pieces of others of the corpus.
 pub fn mutated(seed: &[u8], corpus: &[Vec<u8>], random: &mut Random) -> Vec<u8> {
     let mut bytes = seed.to_vec();
     for _ in 0..=random.below(4) {
@@ -138,7 +138,7 @@ fn swap_tail(bytes: &mut Vec<u8>, other: &[u8], random: &mut Random) {
     bytes.extend(&other[random.below(other.len())..]);
 }
 
-/// A number of 1 to 8 bytes at the end of its range.
+/// Overwrites bytes with a number of 1 to 8 bytes at the end of its range.
 fn overwrite_binary(bytes: &mut [u8], random: &mut Random) {
     let numbers: [&[u8]; 9] = [
         &[0xff],
@@ -157,7 +157,7 @@ fn overwrite_binary(bytes: &mut [u8], random: &mut Random) {
     room.for_each(|(byte, &new)| *byte = new);
 }
 
-/// Where the pieces between `ends` are.
+/// Returns the places of the pieces between ends.
 fn pieces(bytes: &[u8], is_end: impl Fn(u8) -> bool) -> Vec<std::ops::Range<usize>> {
     let mut start = 0;
     let mut pieces = Vec::new();

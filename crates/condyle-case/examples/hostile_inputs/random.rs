@@ -1,10 +1,10 @@
-//! Random numbers that are the same for the same seed.
+//! Reproducible random numbers.
 
 /// SplitMix64 (Steele, Lea & Flood 2014).
 pub struct Random(u64);
 
 impl Random {
-    /// Of input `number` of a run with this seed, whatever came before it.
+    /// Returns the random numbers of input `number` of a run with this seed, independent of earlier inputs.
     pub fn of_input(seed: u64, number: u64) -> Self {
         let mut random = Self(seed ^ number.wrapping_mul(0x9e37_79b9_7f4a_7c15));
         random.next();
@@ -19,17 +19,17 @@ impl Random {
         bits ^ (bits >> 31)
     }
 
-    /// Below `end`, or 0 where that is 0.
+    /// Returns a number below `end`, or 0 if `end` is 0.
     pub fn below(&mut self, end: usize) -> usize {
         (self.next() % end.max(1) as u64) as usize
     }
 
-    /// One of several.
+    /// Returns one of several.
     pub fn of<'a, T>(&mut self, choices: &'a [T]) -> &'a T {
         &choices[self.below(choices.len())]
     }
 
-    /// A range of something `length` long, at most `most` long.
+    /// Returns a range within `length`, no longer than `most`.
     pub fn range(&mut self, length: usize, most: usize) -> std::ops::Range<usize> {
         let start = self.below(length);
         start..(start + 1 + self.below(most)).min(length)

@@ -1,4 +1,4 @@
-//! Everything that reads what a user or another program wrote.
+//! The readers of files that a user or another program wrote.
 
 use std::{path::Path, sync::Arc};
 
@@ -15,10 +15,10 @@ use condyle_results::Checkpoint;
 
 use super::seeds;
 
-/// What takes the bytes of a file and may refuse them.
+/// Reads the bytes of a file, or refuses them.
 pub type Read = dyn Fn(&[u8]);
 
-/// A reader with good files for it.
+/// A reader with valid files for it.
 pub struct Reader {
     /// Without a hyphen, which ends it in the names of inputs.
     pub name: &'static str,
@@ -33,7 +33,7 @@ impl Reader {
     }
 }
 
-/// All of them; `folder` is for the cache.
+/// Returns all readers; `folder` is for the cache.
 pub fn all(folder: &Path) -> Vec<Reader> {
     vec![
         Reader::new("stl", seeds::stl(), |bytes| surface("a.stl", bytes)),
@@ -109,7 +109,7 @@ fn vtu(bytes: &[u8]) {
     let _ = parse_vtu_points(Path::new("a.vtu"), bytes);
 }
 
-/// Reads a case of which one file is not what it should be, and shows what is wrong.
+/// Reads a case with one corrupted file, and renders its problems.
 fn case(name: &str, bytes: &[u8]) {
     // A case has one law of pressure.
     let path = match name {
@@ -129,7 +129,7 @@ fn good_files() -> MemoryFiles {
     })
 }
 
-/// The same of a study of a case.
+/// Reads a study of a case with one corrupted file.
 fn study(name: &str, bytes: &[u8]) {
     let files = good_files().with(name, bytes);
     let path = match name {
@@ -141,7 +141,7 @@ fn study(name: &str, bytes: &[u8]) {
     }
 }
 
-/// The same of measured data.
+/// Reads measured data with one corrupted file.
 fn measured(name: &str, bytes: &[u8]) {
     let mut files = MemoryFiles::default();
     for good in seeds::MEASURED {
@@ -153,7 +153,7 @@ fn measured(name: &str, bytes: &[u8]) {
     }
 }
 
-/// A checkpoint as it is, and with its hash put right: what another version may have written.
+/// Reads a checkpoint as it is, and with its hash corrected, as another version may have written it.
 fn checkpoint(bytes: &[u8]) {
     let _ = Checkpoint::from_bytes(bytes);
     let (magic, hash) = (20, 32);
@@ -163,7 +163,7 @@ fn checkpoint(bytes: &[u8]) {
     }
 }
 
-/// A kept field that was damaged is none, and no other.
+/// Reads a damaged field of the cache, which must be found intact or not at all.
 fn cached(folder: &Path) -> Reader {
     const INPUTS: &[&[u8]] = &[b"input"];
     let cache = Cache::in_folder(folder);

@@ -1,4 +1,4 @@
-//! Good files, small ones, as other programs and users write them.
+//! Small valid files, as other programs and users write them.
 
 use std::fmt::Write;
 
@@ -127,7 +127,7 @@ fn bytes_of<const N: usize>(values: impl Iterator<Item = [u8; N]>) -> Vec<u8> {
     values.flatten().collect()
 }
 
-/// A block's file around three arrays, each the attributes that say where its values are, and the values.
+/// Returns the file of a block around three arrays, each with the attributes that locate its values, and the values.
 fn vtp_file(attributes: &str, arrays: [(String, String); 3], tail: &[u8]) -> Vec<u8> {
     let [points, corners, ends] = arrays;
     let xml = format!(
@@ -220,7 +220,7 @@ pub fn vtu() -> Vec<Vec<u8>> {
 </Piece></UnstructuredGrid></VTKFile>
 "#;
     let read = parse_vtu_points(std::path::Path::new("a.vtu"), text.as_bytes());
-    let mesh = read.expect("it is a good file").mesh;
+    let mesh = read.expect("the file is valid").mesh;
     let depths = [0.0, 0.5, 1.0, 0.0, 0.0, 0.0, 0.25, 0.0];
     let arrays = [
         PointArray {
@@ -360,15 +360,15 @@ pub fn measured(name: &str) -> Vec<Vec<u8>> {
     vec![lines.join("\n").into_bytes()]
 }
 
-/// Of a march that has begun, on a coarse insert.
+/// Returns a checkpoint of a started march on a coarse insert.
 pub fn checkpoint() -> Vec<Vec<u8>> {
     let text = "[insert]\nedge_mm = 5\nlayers = 1\n[march]\ncycles = 1000\nupdates = 1\n";
     let files = MemoryFiles::default().with("case.toml", text);
     let case = CaseReader::new(files)
         .read("case.toml".as_ref())
-        .expect("it is a good case");
+        .expect("the case is valid");
     let test = case.build(1).expect("the generic implant").test;
-    let march = March::start(test).expect("it comes to rest");
+    let march = March::start(test).expect("the bodies settle");
     let checkpoint = Checkpoint {
         inputs_blake3: "0".repeat(64),
         version: "0.1.0".to_owned(),

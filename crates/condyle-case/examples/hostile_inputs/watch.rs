@@ -1,4 +1,4 @@
-//! One input at a time under watch: time, memory and panics.
+//! Limits on the time and memory of each input, and detection of panics.
 
 use std::{
     fs,
@@ -10,12 +10,13 @@ use std::{
     time::{Duration, Instant},
 };
 
-/// What an input may take.
+/// Largest time and memory of an input.
 const MAX_SECONDS: f64 = 1.0;
 const MAX_BYTES: u64 = 1 << 30;
 /// An input that takes longer than this is not waited for.
 const HANGS: Duration = Duration::from_secs(120);
-/// Where the system does not say what time a thread was at work, other programs may hold up one reading, and not three.
+/// Readings of a slow input: where the system does not report the time of a thread, other programs may delay one reading,
+/// but hardly three.
 const READINGS: usize = 3;
 
 /// The input being read.
@@ -87,7 +88,7 @@ impl Watch {
     }
 }
 
-/// The time that this thread is at work, or all time where the system does not say.
+/// The processor time of this thread, or the elapsed time where the system does not report it.
 struct Clock {
     worked_s: Option<f64>,
     began: Instant,
@@ -133,7 +134,7 @@ fn end_if_out_of_bounds(current: &Mutex<Option<Current>>, failures: &Path) {
     }
 }
 
-/// Memory that the process holds; 0 where the system does not say.
+/// Returns the resident memory of the process; 0 where the system does not report it.
 fn resident_bytes() -> u64 {
     let pages = fs::read_to_string("/proc/self/statm")
         .ok()

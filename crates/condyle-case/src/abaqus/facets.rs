@@ -71,6 +71,7 @@ fn cells(femur: &FemoralSurface, nodes: &[Vec3], poses: &[Pose]) -> HashSet<Cell
     let mut cells = HashSet::new();
     for node in touching {
         let [x, y, z] = cell(&on_surface(femur, &node));
+        // A triangle may reach over the side of a cell: the neighbours count too.
         for place in 0..27 {
             cells.insert([x + place % 3 - 1, y + place / 3 % 3 - 1, z + place / 9 - 1]);
         }

@@ -90,6 +90,7 @@ impl Settings for Activities {
 
     fn read_in(root: &Section<'_>, name: &'static str, log: &mut Log<'_>) -> Option<Self> {
         let sections = root.list(name, log)?;
+        // Problems of the machine are reported where the machine is read.
         let freedoms = Machine::freedoms_in(root, log);
         let read = |section| Activity::read(section, freedoms.as_ref(), log);
         let all: Vec<Option<Activity>> = sections.iter().map(read).collect();

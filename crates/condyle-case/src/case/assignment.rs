@@ -128,6 +128,7 @@ impl<'c> Lines<'c> {
             }
             let start = shown.len();
             let key = start..start + change.key.len();
+            // Blanks move the value to its place in the shown text: its problems then point there without a conversion.
             let blanks = " ".repeat(key.end - 1);
             padded.push((key, format!("{blanks}x = {}", change.value())));
             shown.push_str(&change.line());

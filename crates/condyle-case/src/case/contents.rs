@@ -5,6 +5,7 @@ use std::ops::Range;
 use std::sync::Arc;
 
 use condyle::wear::WEAR_LAWS;
+use serde_json::json;
 
 use super::activity::Activities;
 use super::build::BuildWarning;
@@ -14,6 +15,7 @@ use super::frame::{Heading, check_axes};
 use super::insert::Insert;
 use super::machine::Machine;
 use super::material::{Creep, Material};
+use super::renamed::renamed;
 use super::run_options::{Accuracy, Limits, March, Output, Time};
 use super::wear::{Wear, WearLaws};
 use crate::config::*;
@@ -50,7 +52,7 @@ settings! {
         [table] contact: Contact;
         /// The simulator.
         [table] machine: Machine;
-        /// An activity of the simulator, with inputs of its own.
+        /// An activity of the simulator, with its own inputs.
         [table "activity"] activities: Activities;
         /// The wear law.
         [table] wear: Wear;
@@ -114,6 +116,12 @@ pub fn json_schema(wear_laws: WearLaws) -> String {
     let mut schema = table_schema(about, &Case::items_with(wear_laws));
     schema["$schema"] = "https://json-schema.org/draft/2020-12/schema".into();
     schema["title"] = "Case of condyle".into();
+    // Keys under their previous names are still read: editors must not mark them as errors.
+    for (old, new) in renamed() {
+        let key = old.trim_start_matches("contact.");
+        schema["properties"]["contact"]["properties"][key] =
+            json!({ "deprecated": true, "description": format!("Called `{new}`.") });
+    }
     format!("{schema:#}\n")
 }
 

@@ -175,6 +175,7 @@ impl<'a> Concluded<'a> {
         let Some(recognition) = &self.recognition else {
             return of_other.first().copied().unwrap_or(Orientation::ISB);
         };
+        // Both files of one implant mostly have the same axes.
         let shared = recognition.best().find(|best| of_other.contains(best));
         shared.unwrap_or_else(|| recognition.nearest())
     }

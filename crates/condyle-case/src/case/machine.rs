@@ -422,7 +422,7 @@ impl Settings for Machine {
             if section.value(table).is_some() {
                 let fault = Fault::new(
                     format!(
-                        "[machine.{table}] is given, but the machine does what each [[activity]] says"
+                        "[machine.{table}] is given, but the inputs of the machine are those of each [[activity]]"
                     ),
                     format!("move it into the activities, as [activity.{table}]"),
                 );

@@ -110,6 +110,7 @@ impl CaseReader {
         };
         read_part(&source, file.inner(), base, |document, log| {
             let items = Case::items_with(self.wear_laws);
+            // Old names are replaced first: values that are set have the current ones.
             let mut notes = rename_keys(document);
             lines.apply(document);
             notes.extend(lines.leave_out(document, &items));

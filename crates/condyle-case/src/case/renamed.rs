@@ -36,7 +36,7 @@ const MOVED: &[(&str, &[&str])] = &[
 ];
 
 /// Returns old and new dotted paths.
-fn renamed() -> impl Iterator<Item = (String, String)> {
+pub(super) fn renamed() -> impl Iterator<Item = (String, String)> {
     MOVED.iter().flat_map(|(table, keys)| {
         let paths = move |key| (format!("contact.{key}"), format!("contact.{table}.{key}"));
         keys.iter().map(paths)

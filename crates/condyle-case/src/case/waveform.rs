@@ -192,6 +192,7 @@ pub(super) fn read(
     for knot in &mut knots {
         knot.value = knot.value * keys.scale + keys.offset;
     }
+    // Drift is that of the scaled values, so that the seam closes in the unit of the machine.
     if keys.remove_drift {
         knots = without_drift(&knots);
     }
@@ -214,6 +215,7 @@ pub(super) fn read(
             (point_of(&error, &knots), fault)
         }
     };
+    // An error of the whole waveform has no point: it is shown at the table.
     let span = samples.spans.get(index).cloned().unwrap_or(section.span());
     match &samples.source {
         Some(source) => log.noted(source, Err(vec![(span, fault)])),

@@ -109,8 +109,8 @@ pub(crate) fn missing_file(key: &str, path: &Path) -> Fault {
          (Fregly et al. 2012; in jam-resources, models/knee_tka/grand_challenge/DM) and put them \
          there; see the comment at the top of the case"
     } else if holds("data") {
-        "data are not part of condyle: the comment at the top of the case says where they come \
-         from"
+        "data are not part of condyle: the comment at the top of the case names their \
+         source"
     } else {
         "correct the path; it counts from the folder of the file that names it"
     };
@@ -169,6 +169,7 @@ pub(super) fn convert(key: &str, meant: &str, number: f64) -> Option<String> {
             .is_some_and(|base| meant.strip_suffix(to) == Some(base))
     };
     let (_, _, factor) = CONVERSIONS.iter().find(fits)?;
+    // Twelve digits hide the rounding error of the conversion.
     let rounded: f64 = format!("{:.12e}", number * factor).parse().ok()?;
     Some(plain(rounded))
 }
@@ -192,6 +193,7 @@ fn likeness(written: &str, known: &str) -> f64 {
         return 0.0;
     }
     let written = written.to_lowercase();
+    // A forgotten unit must not make a key look unlike itself: the better of both comparisons counts.
     let whole = strsim::normalized_damerau_levenshtein(&written, known);
     let base = strsim::normalized_damerau_levenshtein(&written, split_unit(known).0);
     whole.max(base)

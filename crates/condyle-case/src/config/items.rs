@@ -45,7 +45,7 @@ impl TableItem {
     }
 }
 
-/// A key whose word decides which other entries a table has, such as `shape`.
+/// A key that determines the other entries of its table, such as `shape`.
 #[derive(Clone, Debug)]
 pub(crate) struct Choices {
     pub by: Key,

@@ -131,6 +131,7 @@ impl fmt::Display for Limits {
 
 /// Formats a number as a person would write it.
 pub(crate) fn plain(value: f64) -> String {
+    // Outside this range the zeros are hard to count.
     if value != 0.0 && !(1e-3..1e9).contains(&value.abs()) {
         format!("{value:e}")
     } else {

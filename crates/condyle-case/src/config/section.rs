@@ -224,6 +224,7 @@ pub(crate) fn read_part<'a, T>(
     for error in &errors {
         log.problem(error.span().unwrap_or(0..0), syntax(error.message()));
     }
+    // After a syntax error, keys may be in the wrong tables: their problems would mislead.
     let found = if errors.is_empty() {
         read(&mut document.into_inner(), &mut log)
     } else {

@@ -68,6 +68,7 @@ impl Gravimetric {
         let controls = soak_columns(&columns, &keys, &section, log)?;
         let (cycles, all) = log.noted(&source, weighed(&columns))?;
         let is_counted = |cycles: &&f64| **cycles >= keys.fit_from_cycles;
+        // The first row is the reference of every loss, so it is no observation.
         let rows = cycles.iter().skip(1).filter(is_counted).count();
         if rows < MIN_WEIGHINGS {
             let fault = Fault::new(

@@ -77,6 +77,7 @@ impl Scan {
             surface(&keys, &section, log)?
         };
         let start_mm = Vec3::from(keys.start_mm);
+        // Normals turn with the points and do not shift.
         let turned = |all: Vec<Vec3>| all.iter().map(|normal| rotation * normal).collect();
         Some(Self {
             keys,

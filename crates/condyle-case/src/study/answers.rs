@@ -46,7 +46,7 @@ impl Answers {
         let outputs = outputs?;
         let Some(&first) = outputs.first() else {
             let advice = "name one, such as `mass_loss_mg`, or leave the key out";
-            let fault = Fault::new("the study asks for no output", advice);
+            let fault = Fault::new("the study names no output", advice);
             log.problem(section.value_span("outputs"), fault);
             return None;
         };

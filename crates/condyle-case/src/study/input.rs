@@ -92,6 +92,7 @@ impl Input {
     /// Returns the changes of the case for a value; files are relative to `folder`, that of the study.
     pub fn assignments(&self, folder: &Path, level: &Level) -> Vec<Assignment> {
         let number = |number: f64| {
+            // Whole numbers are written without a fraction, since a key that counts refuses one; beyond 1e15 not all are exact.
             if number.fract() == 0.0 && number.abs() < 1e15 {
                 format!("{number:.0}")
             } else {

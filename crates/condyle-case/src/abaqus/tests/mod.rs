@@ -67,7 +67,7 @@ fn refusal(case: &Case) -> ExportError {
     }
 }
 
-/// Where the led nodes go in each step, mm.
+/// Displacements of the prescribed nodes in each step, mm.
 fn ways_mm(deck: &Deck) -> impl Iterator<Item = Vec3> {
     let led = deck.named("BOUNDARY");
     let led = led.filter(|led| led.rows.iter().all(|row| row[0] == "FEMUR-NODES"));
@@ -77,7 +77,7 @@ fn ways_mm(deck: &Deck) -> impl Iterator<Item = Vec3> {
     })
 }
 
-/// Where they go in the only step, mm.
+/// Displacement in the only step, mm.
 fn way_mm(deck: &Deck) -> Vec3 {
     let ways: Vec<Vec3> = ways_mm(deck).collect();
     assert_eq!(ways.len(), 1);
@@ -85,7 +85,7 @@ fn way_mm(deck: &Deck) -> Vec3 {
 }
 
 #[test]
-fn cross_the_led_facets_lie_on_the_femur_and_look_out_of_it() {
+fn cross_the_prescribed_facets_lie_on_the_femur_and_face_outwards() {
     let case = deformable("");
     let (pressed, deck) = pressed(&case);
     let (row, pose) = pressed.at(PERCENT).unwrap();
@@ -128,7 +128,7 @@ fn cross_the_led_facets_lie_on_the_femur_and_look_out_of_it() {
 }
 
 #[test]
-fn what_touches_has_facets_over_it() {
+fn nodes_in_contact_have_facets_over_them() {
     let case = deformable("");
     let (pressed, deck) = pressed(&case);
     let (_, pose) = pressed.at(PERCENT).unwrap();
@@ -165,7 +165,7 @@ fn the_backside_is_held_and_the_curve_of_yield_is_written() {
 }
 
 #[test]
-fn a_femur_that_slides_on_arrives_where_it_is_to_with_friction_from_when_it_slides() {
+fn a_sliding_femur_arrives_with_friction_only_while_it_slides() {
     let by_mm = Vec3::new(2.0, 0.0, -1.0);
     let deck = slid(by_mm);
     let steps: Vec<_> = deck
@@ -228,7 +228,7 @@ fn slid(by_mm: Vec3) -> Deck {
 }
 
 #[test]
-fn cases_that_cannot_be_pressed_say_why() {
+fn cases_that_cannot_be_pressed_give_the_reason() {
     let foundation = refusal(&parsed(COARSE));
     assert!(
         foundation
@@ -270,7 +270,7 @@ fn the_insert_part_goes_through_the_reader_of_hexahedra() {
 }
 
 #[test]
-fn cases_that_do_not_build_say_why() {
+fn cases_that_do_not_build_give_the_reason() {
     let folder = tempfile::tempdir().unwrap();
     fs::write(
         folder.path().join("a.stl"),
@@ -302,7 +302,7 @@ impl io::Write for Full {
 }
 
 #[test]
-fn a_full_disk_says_so() {
+fn a_full_disk_is_reported() {
     let case = deformable("");
     let pressed = PressedCase::new(&case, 1).unwrap();
     let error = pressed.write(PERCENT, &mut Full).unwrap_err();

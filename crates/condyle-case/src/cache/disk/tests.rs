@@ -1,4 +1,4 @@
-//! What is kept is what was computed, and nothing that is wrong with a cache is ever felt.
+//! Kept content equals computed content, and a damaged cache has no effect on results.
 
 use std::{cell::Cell, thread};
 
@@ -7,7 +7,7 @@ use tempfile::TempDir;
 use super::super::kept;
 use super::*;
 
-/// What stands for a long computation.
+/// A substitute for a long computation.
 fn numbers() -> Vec<f64> {
     (0..100).map(|i| f64::from(i).sqrt()).collect()
 }
@@ -22,7 +22,7 @@ fn only_file(folder: &TempDir) -> PathBuf {
     files[0].clone()
 }
 
-/// Whether a cache had to compute the numbers of `inputs`.
+/// Returns true if a cache had to compute the numbers of `inputs`.
 fn computes(cache: &Cache, inputs: &[&[u8]]) -> bool {
     let computed = Cell::new(false);
     let made: Result<Vec<f64>, ()> = kept(cache, "numbers", inputs, || {
@@ -41,7 +41,7 @@ fn kept_once() -> (TempDir, Cache) {
 }
 
 #[test]
-fn what_was_computed_is_kept_for_the_same_inputs() {
+fn computed_content_is_kept_for_the_same_inputs() {
     let (_folder, cache) = kept_once();
     assert!(!computes(&cache, &[b"inputs"]));
     assert!(computes(&cache, &[b"others"]));
@@ -56,7 +56,7 @@ fn a_cache_that_is_off_keeps_nothing() {
 }
 
 #[test]
-fn what_failed_is_not_kept() {
+fn failed_computations_are_not_kept() {
     let folder = tempfile::tempdir().expect("a folder can be made");
     let cache = Cache::in_folder(folder.path());
     let failed: Result<Vec<f64>, &str> = kept(&cache, "numbers", &[b"inputs"], || Err("bad"));
@@ -65,7 +65,7 @@ fn what_failed_is_not_kept() {
 }
 
 #[test]
-fn a_damaged_file_is_ignored_and_written_anew() {
+fn a_damaged_file_is_ignored_and_written_again() {
     let (folder, cache) = kept_once();
     let file = only_file(&folder);
     let whole = fs::read(&file).expect("it can be read");
@@ -136,7 +136,7 @@ fn folder(variables: &[(&str, &str)]) -> Option<PathBuf> {
 
 #[cfg(unix)]
 #[test]
-fn the_environment_says_where_it_lies() {
+fn the_environment_determines_the_folder() {
     let at = |path: &str| Some(PathBuf::from(path));
     let (home, xdg) = (("HOME", "/users/ann"), ("XDG_CACHE_HOME", "/fast"));
     assert_eq!(folder(&[]), None);

@@ -147,6 +147,7 @@ impl Case {
             Deformable::new(elastic, coefficient, slip, backside, insert)
         })?;
         let mut law = Deformable::clone(&shared);
+        // The shared law has the compliance, which depends on insert and elasticity alone; all else is that of this case.
         (law.friction, law.slip_tolerance_mm_per_s) = (coefficient, slip);
         law.search = contact.search;
         law.sample_reuse_mm = contact.sample_reuse_mm;

@@ -251,6 +251,7 @@ pub(in crate::case) fn longest_mm(mesh: &TriangleMesh) -> f64 {
 fn lies(turn: &Mat3) -> &'static str {
     let up = turn * Vec3::y();
     let front = turn * Vec3::x();
+    // Orientations are multiples of a quarter turn: any threshold between 0 and 1 separates them.
     if up.y < -0.5 {
         "upside down"
     } else if up.y < 0.5 {

@@ -227,6 +227,7 @@ impl Case {
 fn generic(femur: &GenericFemur, about: f64) -> TriangleMesh {
     const COARSE_MM: f64 = 1.0;
     let coarse = femur.surface_mesh(COARSE_MM).triangles.len() as f64;
+    // The number of triangles goes with the inverse square of their edge.
     femur.surface_mesh(COARSE_MM * (coarse / about).sqrt())
 }
 
@@ -258,6 +259,7 @@ fn tube(radius_mm: f64) -> TriangleMesh {
 /// Returns a ball about the origin by repeated subdivision of an icosahedron.
 fn sphere(radius_mm: f64, about: f64) -> TriangleMesh {
     const ICOSAHEDRON_FACES: f64 = 20.0;
+    // Each subdivision has four times the triangles of the one before.
     let halvings = (about / ICOSAHEDRON_FACES).log(4.0).round() as usize;
     let mut ball = icosahedron();
     for _ in 0..halvings {

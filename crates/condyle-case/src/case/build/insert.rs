@@ -187,6 +187,7 @@ fn check_node_count(
     meshing: Meshing,
     limits: &Limits,
 ) -> Result<(), BuildError> {
+    // The grid of the mesher has a whole number of cells, one at least, along each side.
     let points = |length_mm: f64| (length_mm / meshing.edge_mm).round().max(1.0) + 1.0;
     let nodes = points(length_mm) * points(width_mm) * (meshing.layers as f64 + 1.0);
     check_nodes(nodes, limits)
@@ -212,6 +213,7 @@ fn place(file: &mut HexFile, placing: &Placing) {
         .iter_mut()
         .for_each(|node| *node = placing.point(node));
     if placing.mirrors {
+        // A mirror turns a hexahedron inside out; with its two faces exchanged, its volume is positive again.
         let swapped = |[a, b, c, d, e, f, g, h]: [u32; 8]| [e, f, g, h, a, b, c, d];
         file.mesh.hexes = file.mesh.hexes.iter().copied().map(swapped).collect();
         let quads = file

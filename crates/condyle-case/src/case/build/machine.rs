@@ -39,6 +39,7 @@ impl case::Machine {
         machine.joint_mut(knee::IE).axis_point_mm =
             Vec3::new(settings.ie_axis_anterior_mm, 0.0, 0.0);
         let springs = &self.springs;
+        // Two springs act in parallel: each of a pair has half of its stiffness.
         let share = match springs.stiffness_of {
             StiffnessOf::Pair => 0.5,
             StiffnessOf::Each => 1.0,

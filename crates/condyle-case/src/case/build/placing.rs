@@ -40,6 +40,7 @@ impl Placing {
 
     /// Returns the axes of a file whose body must be turned by `turn` after this placing.
     pub(super) fn axes_turned(&self, turn: &Mat3) -> Axes {
+        // The turn holds in the mirrored frame: it is mirrored back before it meets the axes of the file.
         let mirror = mirror(self.mirrors);
         Axes::of(&(mirror * turn * mirror * self.axes))
     }
@@ -202,6 +203,7 @@ fn faces_up(mesh: &TriangleMesh) -> bool {
         let [a, b, c] = mesh.corners(triangle);
         (b - a).cross(&(c - a)).y
     };
+    // An open surface has no inside; areas seen from above weigh a rim that curls over little.
     let sum: f64 = (0..mesh.triangles.len()).map(upward).sum();
     sum > 0.0
 }

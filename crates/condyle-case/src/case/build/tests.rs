@@ -1,4 +1,4 @@
-//! Cases built, and what keeps them from it.
+//! Cases that are built, and cases that cannot be.
 
 use std::fs::{self, File};
 use std::path::Path;
@@ -121,7 +121,7 @@ fn the_hexahedra_of_real_inserts_are_sound_whatever_their_edge() {
 }
 
 #[test]
-fn a_speck_beside_the_insert_is_left_out_with_its_place() {
+fn a_speck_near_the_insert_is_left_out_with_its_place() {
     let mut mesh = block();
     let first = mesh.vertices.len() as u32;
     let speck = block().mapped(|v| Vec3::new(12.0, 3.0, 0.0) + v * 0.1);
@@ -200,7 +200,7 @@ fn closed_mesh_in_another_unit_becomes_an_insert() {
 }
 
 #[test]
-fn inside_out_mesh_is_turned_round_with_a_warning() {
+fn inside_out_mesh_is_reversed_with_a_warning() {
     let mut inside_out = block();
     inside_out
         .triangles
@@ -214,7 +214,7 @@ fn inside_out_mesh_is_turned_round_with_a_warning() {
 }
 
 #[test]
-fn one_turned_triangle_is_put_right_with_a_warning() {
+fn one_reversed_triangle_is_corrected_with_a_warning() {
     let mut odd = block();
     odd.triangles[3].swap(0, 1);
     let folder = with_stl("a.stl", &odd);
@@ -288,7 +288,7 @@ fn place(text: &str, folder: &Path) -> Option<(usize, usize)> {
 }
 
 #[test]
-fn a_failed_build_points_to_the_key_behind_it() {
+fn a_failed_build_points_to_the_key_at_fault() {
     let folder = tempfile::tempdir().unwrap();
     fs::write(folder.path().join("a.inp"), HEX).unwrap();
     let text = "[insert]\nshape = \"hexahedra\"\nfile = \"a.inp\"\n";
@@ -343,7 +343,7 @@ fn two_blocks(away_mm: f64) -> TriangleMesh {
 }
 
 #[test]
-fn a_body_that_is_no_size_for_a_knee_is_refused_with_the_unit_to_write() {
+fn a_body_of_the_wrong_size_is_refused_with_the_unit_to_write() {
     let folder = with_stl("a.stl", &block());
     let said = |unit: &str| {
         let unit = format!("{MESH_INSERT}length_unit = \"{unit}\"\n");
@@ -373,7 +373,7 @@ fn a_body_that_is_no_size_for_a_knee_is_refused_with_the_unit_to_write() {
 }
 
 #[test]
-fn hexahedra_that_are_no_size_for_a_knee_are_refused() {
+fn hexahedra_of_the_wrong_size_are_refused() {
     let folder = tempfile::tempdir().unwrap();
     let node = |i: usize| {
         let at = |axis: usize| if i >> axis & 1 == 0 { 0 } else { 10_000_000 };
@@ -410,9 +410,9 @@ fn a_piece_far_from_the_body_is_warned_of_and_one_too_far_refused() {
         ),
         "{said}"
     );
-    let beside = with_stl("a.stl", &two_blocks(25.0));
+    let near = with_stl("a.stl", &two_blocks(25.0));
     let centred = format!("{MESH_INSERT}origin = \"centre\"\n");
-    assert_eq!(built(&centred, beside.path()).unwrap().warnings, []);
+    assert_eq!(built(&centred, near.path()).unwrap().warnings, []);
 }
 
 #[test]
@@ -437,18 +437,18 @@ fn more_nodes_than_memory_should_hold_are_refused() {
 }
 
 #[test]
-fn an_origin_off_the_dishes_is_told_and_centred() {
+fn an_origin_off_the_dishes_is_reported_and_centred() {
     let off = block().mapped(|vertex| vertex + Vec3::new(0.0, 3.0, 5.0));
     let folder = with_stl("a.stl", &off);
-    let told = built(MESH_INSERT, folder.path()).unwrap().warnings;
-    let told = told[0].to_string();
+    let warnings = built(MESH_INSERT, folder.path()).unwrap().warnings;
+    let warning = warnings[0].to_string();
     for words in [
         "a.stl: the dishes have their middle",
         "and 5.0 mm lateral of the origin",
         "2.5 mm to a side",
         "write origin = \"centre\" in [insert]",
     ] {
-        assert!(told.contains(words), "{told}");
+        assert!(warning.contains(words), "{warning}");
     }
     let centred = format!("{MESH_INSERT}origin = \"centre\"\n");
     let built = built(&centred, folder.path()).unwrap();
@@ -491,7 +491,7 @@ fn block_on_a_peg() -> TriangleMesh {
 }
 
 #[test]
-fn defects_that_contact_does_not_feel_are_told_in_one_warning() {
+fn defects_without_effect_on_contact_are_one_warning() {
     let folder = with_stl("a.stl", &block_on_a_peg());
     let built = built(MESH_INSERT, folder.path()).unwrap();
     let [warning] = &built.warnings[..] else {

@@ -19,7 +19,7 @@ fn activity(keys: &str, word: &str) -> String {
     format!("[[activity]]\n{keys}\n{}", inputs(word))
 }
 
-/// Two activities with these keys beside their names.
+/// Two activities with these keys in addition to their names.
 fn two(first: &str, second: &str) -> String {
     let first = activity(&format!("name = \"walking\"\n{first}"), "iso-like");
     first + &activity(&format!("name = \"stairs\"\n{second}"), "stairs-like")
@@ -30,7 +30,7 @@ fn good(text: &str) -> Case {
 }
 
 #[test]
-fn each_activity_has_inputs_of_its_own_and_a_share() {
+fn each_activity_has_its_own_inputs_and_a_share() {
     let case = good(&two("share = 0.85", "share = 0.15\nfrequency_hz = 0.8"));
     let built = case.build(1).expect("it can be built").test;
     let [walking, stairs] = built.activities.as_slice() else {
@@ -165,12 +165,12 @@ fn double_and_odd_names_are_refused() {
 }
 
 #[test]
-fn inputs_of_the_machine_beside_activities_are_refused() {
+fn inputs_of_the_machine_are_refused_if_there_are_activities() {
     let machine = "[machine.flexion]\nwaveform = \"iso-like\"\n";
     assert_shows(
         &refusal(&(machine.to_owned() + &two("share = 0.85", "share = 0.15"))),
         &[
-            "[machine.flexion] is given, but the machine does what each [[activity]] says",
+            "[machine.flexion] is given, but the inputs of the machine are those of each [[activity]]",
             "help: move it into the activities, as [activity.flexion]",
         ],
     );

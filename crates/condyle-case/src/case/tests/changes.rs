@@ -67,7 +67,7 @@ fn a_wrong_value_is_shown_at_its_line_below_the_file() {
 }
 
 #[test]
-fn a_file_that_is_no_toml_is_reported_as_it_is() {
+fn a_file_that_is_not_toml_is_reported_as_it_is() {
     let shown = refusal("[march\n", &["march.updates=5"]);
     assert!(shown.contains("this is not TOML"), "{shown}");
 }
@@ -85,7 +85,7 @@ fn numbers_are_finite() {
 }
 
 #[test]
-fn updates_that_a_march_determines_are_no_number() {
+fn updates_that_a_march_determines_cannot_be_set() {
     let case = changed("[march]\nupdate = \"auto\"\n", &[]).unwrap();
     let error = case.path_of_number("updates").unwrap_err();
     assert!(
@@ -123,7 +123,7 @@ fn names_of_numbers_are_found_with_and_without_unit() {
 const WEAR: &str = "[wear]\nlaw = \"archard\"\nwear_factor_mm3_per_nm = 2.64e-7 # paper\n[insert]\nedge_mm = 3.0\n";
 
 #[test]
-fn a_choice_that_is_set_leaves_out_what_does_not_go_with_it_and_warns() {
+fn a_choice_that_is_set_leaves_out_keys_of_other_choices_and_warns() {
     let case = changed(WEAR, &["wear.law=kang"]).unwrap();
     let expected = "wear.wear_factor_mm3_per_nm = 2.64e-7: left out, since it does not go with wear.law = \"kang\", \
                     which is set";

@@ -61,7 +61,7 @@ fn unknown_table_is_an_unknown_key() {
 }
 
 #[test]
-fn key_in_another_unit_says_which_is_meant_and_converts() {
+fn key_in_another_unit_names_the_key_and_converts() {
     let cases = [
         (
             "[insert]\nedge_m = 0.001\n",
@@ -150,7 +150,7 @@ fn a_deformable_insert_is_written_without_a_law() {
 }
 
 #[test]
-fn what_is_no_yield_stress_is_named_with_its_place() {
+fn a_wrong_yield_stress_is_reported_at_its_place() {
     let of = |keys: &str| {
         refusal(&format!(
             "[contact]\nmodel = \"deformable\"\n[contact.deformable]\nplasticity = \"j2\"\n{keys}\n"
@@ -263,7 +263,7 @@ fn a_backside_that_rests_is_that_of_a_deformable_insert_alone_and_of_solved_incr
 }
 
 #[test]
-fn a_backside_that_is_not_flat_does_not_rest() {
+fn a_backside_that_is_not_flat_cannot_rest() {
     let resting =
         "[contact]\nmodel = \"deformable\"\n[contact.deformable]\nbackside = \"resting\"\n";
     let case = parsed(resting).expect("it is a good case");
@@ -313,7 +313,7 @@ fn table_of_another_law_contradicts() {
 }
 
 #[test]
-fn wrong_type_says_what_it_must_be() {
+fn wrong_type_names_the_type_that_is_required() {
     let cases = [
         (
             "title = 3\n",
@@ -412,7 +412,7 @@ fn unknown_word_offers_the_nearest_and_lists_all() {
 }
 
 #[test]
-fn number_outside_its_range_says_the_range_with_its_unit() {
+fn number_outside_its_range_shows_the_range_with_its_unit() {
     let shown = refusal("[insert]\nthickness_mm = -9.0\n");
     assert_shows(
         &shown,
@@ -438,7 +438,7 @@ fn number_outside_its_range_says_the_range_with_its_unit() {
 }
 
 #[test]
-fn missing_key_says_what_to_add() {
+fn missing_key_names_the_line_to_add() {
     let shown = refusal("[femur]\nshape = \"mesh\"\n");
     assert_shows(
         &shown,
@@ -518,7 +518,7 @@ fn waveform_with_a_gap_a_nan_or_a_step_is_refused_at_its_point() {
 }
 
 #[test]
-fn waveform_value_no_machine_has_is_out_of_range() {
+fn waveform_value_beyond_any_machine_is_out_of_range() {
     let shown = refusal("[machine.axial_force]\nknots_n = [[0.0, 100.0], [50.0, -20.0]]\n");
     assert_shows(
         &shown,
@@ -531,7 +531,7 @@ fn waveform_value_no_machine_has_is_out_of_range() {
 }
 
 #[test]
-fn waveform_in_another_unit_says_which_is_meant() {
+fn waveform_in_another_unit_names_the_key() {
     let shown = refusal("[machine.flexion]\nknots_rad = [[0.0, 0.0]]\n");
     assert_shows(&shown, &["the key is `knots_deg`, in degrees", "^^^^^^^^^"]);
 }

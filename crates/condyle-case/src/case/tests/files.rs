@@ -41,7 +41,7 @@ fn case_file_that_is_not_there_is_named() {
 }
 
 #[test]
-fn missing_file_says_where_it_was_looked_for() {
+fn missing_file_shows_where_it_was_searched() {
     let text = "[femur]\nshape = \"mesh\"\nfile = \"shapes/femur.stl\"\n";
     let error = Case::parse(text, "case.toml", Path::new("cases")).unwrap_err();
     assert_shows(
@@ -56,7 +56,7 @@ fn missing_file_says_where_it_was_looked_for() {
 }
 
 #[test]
-fn missing_data_say_what_to_fetch() {
+fn missing_data_name_their_source() {
     let fetch = |file: &str| {
         let text = format!("[femur]\nshape = \"mesh\"\nfile = \"{file}\"\n");
         Case::parse(&text, "case.toml", Path::new(""))
@@ -70,12 +70,12 @@ fn missing_data_say_what_to_fetch() {
     );
     assert_shows(
         &fetch("data/mine/none.stl"),
-        &["the comment at the top of the case says where"],
+        &["the comment at the top of the case names their"],
     );
 }
 
 #[test]
-fn file_that_is_no_text_cannot_be_read() {
+fn file_that_is_not_text_cannot_be_read() {
     let folder = tempfile::tempdir().unwrap();
     std::fs::write(folder.path().join("wave.csv"), [0xff, 0xfe, 0x00]).unwrap();
     let text = "[machine.flexion]\nfile = \"wave.csv\"\n";

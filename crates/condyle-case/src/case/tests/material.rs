@@ -1,4 +1,4 @@
-//! What a case says of its polyethylene.
+//! Polyethylene of a case.
 
 use condyle::contact::Moment;
 use condyle::wear::{MeanCycle, WearLaw};
@@ -40,7 +40,7 @@ fn a_factor_out_of_range_or_of_conventional_polyethylene_is_refused() {
 }
 
 #[test]
-fn verify_every_law_of_the_test_wears_so_many_times_as_much() {
+fn verify_every_law_of_the_test_is_multiplied_by_the_factor() {
     let history = pressed_once(Moment {
         pressure_mpa: 5.0,
         slip_mm: [3.0, 1.0],
@@ -51,8 +51,8 @@ fn verify_every_law_of_the_test_wears_so_many_times_as_much() {
     };
     let depths = |text: &str| -> Vec<f64> {
         let test = parsed(text).unwrap().build(1).unwrap().test;
-        let beside = test.comparison_laws.iter().map(|named| named.law.as_ref());
-        let laws = std::iter::once(test.wear.as_ref()).chain(beside);
+        let others = test.comparison_laws.iter().map(|named| named.law.as_ref());
+        let laws = std::iter::once(test.wear.as_ref()).chain(others);
         laws.map(depth).collect()
     };
     let conventional = depths("[insert]\nedge_mm = 6.0\n");

@@ -1,4 +1,4 @@
-//! A whole case without a disk.
+//! Whole cases read from memory.
 
 use std::fs;
 use std::path::Path;
@@ -59,7 +59,7 @@ fn built(case: &Case) -> Built {
 }
 
 #[test]
-fn a_case_from_memory_is_that_from_the_disk() {
+fn a_case_from_memory_equals_that_from_the_disk() {
     let folder = tempfile::tempdir().unwrap();
     let mut memory = MemoryFiles::default();
     for (path, bytes) in files() {
@@ -99,7 +99,7 @@ fn assert_same_test(here: &WearTest, there: &WearTest) {
 }
 
 #[test]
-fn a_file_that_memory_has_not_is_missing() {
+fn a_file_that_is_not_in_memory_is_missing() {
     let files = MemoryFiles::default().with("case.toml", CASE);
     let problems = CaseReader::new(files).read(Path::new("case.toml"));
     assert_shows(

@@ -1,4 +1,4 @@
-//! How messages are shown: not too many, and harmless to a terminal.
+//! Rendered messages: limited in number, and harmless to a terminal.
 
 use super::{assert_shows, parsed, refusal};
 use crate::case::schema_markdown;

@@ -1,4 +1,4 @@
-//! Whole cases: what is read, what is refused and how that looks.
+//! Whole cases: reading, refusals and their messages.
 
 mod activities;
 mod changes;
@@ -23,7 +23,7 @@ pub(super) fn cases() -> PathBuf {
     Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/../../cases")).to_owned()
 }
 
-/// The data of subject DM; says so and gives nothing where they are not there.
+/// Returns true if the data of subject DM are there; prints that a test is skipped otherwise.
 pub(super) fn has_dm_data(test: &str) -> bool {
     let folder = Path::new(concat!(
         env!("CARGO_MANIFEST_DIR"),
@@ -53,7 +53,7 @@ fn parsed(text: &str) -> Result<Case, Problems> {
     Case::parse(text, "case.toml", Path::new(""))
 }
 
-/// What a case file of this text is refused with, as plain text.
+/// Returns the problems of a case file with this text, as plain text.
 fn refusal(text: &str) -> String {
     match parsed(text) {
         Ok(_) => panic!("this is a good case:\n{text}"),

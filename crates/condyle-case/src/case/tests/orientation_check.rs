@@ -1,4 +1,4 @@
-//! Which way bodies lie: what is told of it, and what is concluded for a new case.
+//! Orientation of bodies: warnings and errors, and the conclusions for a new case.
 
 use std::fs::File;
 use std::path::{Path, PathBuf};
@@ -84,14 +84,14 @@ fn turned(mesh: &TriangleMesh, orientation: &Orientation) -> TriangleMesh {
 }
 
 #[test]
-fn every_wrong_orientation_of_real_bodies_is_told_and_the_right_one_is_not() {
+fn every_wrong_orientation_of_real_bodies_is_recognised() {
     for pair in real("every_wrong_orientation") {
         for (body, mesh) in [(Body::Femur, &pair.femur), (Body::Insert, &pair.insert)] {
             for orientation in Orientation::all() {
                 let recognition = body.recognise(&turned(mesh, &orientation)).unwrap();
-                let told = recognition.against(&Orientation::ISB).is_some();
+                let is_wrong = recognition.against(&Orientation::ISB).is_some();
                 assert_eq!(
-                    told,
+                    is_wrong,
                     orientation != Orientation::ISB,
                     "{body} {orientation:?}"
                 );
@@ -125,7 +125,7 @@ fn rough_and_mirrored_real_bodies_are_not_accused() {
     }
 }
 
-/// The pair in files whose axes point as `orientation` says, of which `unit_mm` mm are one.
+/// The pair in files with axes along `orientation` and a unit of `unit_mm` mm.
 fn written(pair: &Pair, orientation: &Orientation, unit_mm: f64) -> (TempDir, PathBuf, PathBuf) {
     let folder = tempfile::tempdir().unwrap();
     let write = |name: &str, mesh: &TriangleMesh| {
@@ -139,7 +139,7 @@ fn written(pair: &Pair, orientation: &Orientation, unit_mm: f64) -> (TempDir, Pa
 }
 
 #[test]
-fn a_drafted_case_builds_without_a_word_of_axes_from_any_unit_and_orientation() {
+fn a_drafted_case_builds_without_warnings_of_axes_from_any_unit_and_orientation() {
     let mut pairs = real("a_drafted_case");
     pairs.push(generic());
     let orientations: Vec<Orientation> = Orientation::all().collect();
@@ -189,7 +189,7 @@ fn refused(pair: &Pair, axes: &str, unit: &str) -> String {
 }
 
 #[test]
-fn what_is_wrong_for_certain_is_an_error_at_its_key_with_the_line_to_write() {
+fn a_certain_mistake_is_an_error_at_its_key_with_the_line_to_write() {
     let said = refused(&generic(), r#"["anterior", "inferior", "left"]"#, "mm");
     assert!(said.contains("lies upside down; write axes ="), "{said}");
     assert!(said.contains("case.toml:9"), "{said}");
@@ -201,7 +201,7 @@ fn what_is_wrong_for_certain_is_an_error_at_its_key_with_the_line_to_write() {
     assert_eq!(said, "[]");
 }
 
-/// The warnings of a case of a pair whose side is said to be `side`.
+/// The warnings about the side of a case of a pair with `side`.
 fn warned_of_side(pair: &Pair, side: &str) -> Vec<BuildWarning> {
     let (folder, ..) = written(pair, &Orientation::ISB, 1.0);
     let keys = |file| format!("shape = \"mesh\"\nfile = \"{file}\"\nlength_unit = \"mm\"\n");
@@ -214,11 +214,11 @@ fn warned_of_side(pair: &Pair, side: &str) -> Vec<BuildWarning> {
 }
 
 #[test]
-fn a_knee_of_the_other_side_is_told_where_the_trochlea_shows_it() {
+fn a_knee_of_the_other_side_is_reported_if_the_trochlea_shows_it() {
     for pair in real("other_side") {
         assert!(warned_of_side(&pair, "right").is_empty());
-        let told = warned_of_side(&pair, "left");
-        let said = told.iter().map(ToString::to_string).collect::<String>();
+        let warnings = warned_of_side(&pair, "left");
+        let said = warnings.iter().map(ToString::to_string).collect::<String>();
         assert!(
             said.contains("as in a right knee; write side = \"right\""),
             "{said}"
@@ -230,7 +230,7 @@ fn a_knee_of_the_other_side_is_told_where_the_trochlea_shows_it() {
 }
 
 #[test]
-fn a_draft_takes_the_side_that_the_trochlea_shows_unless_it_is_said() {
+fn a_draft_takes_the_side_that_the_trochlea_shows_unless_it_is_given() {
     let mirror = |v: &Vec3| Vec3::new(v.x, v.y, -v.z);
     for pair in real("draft_takes_the_side") {
         let mirrored = Pair {

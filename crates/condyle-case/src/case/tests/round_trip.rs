@@ -15,7 +15,7 @@ fn shipped(name: &str) -> Case {
     Case::read(&cases().join(name)).unwrap_or_else(|error| panic!("{error}"))
 }
 
-/// Asserts that a case comes back equal from what it writes, read from any folder.
+/// Asserts that a written case reads back equal, from any folder.
 fn assert_round_trip(case: &Case) {
     let text = case.to_toml();
     match Case::parse(&text, "written.toml", Path::new("elsewhere")) {
@@ -175,7 +175,7 @@ fn page_of_keys_has_unit_range_default_and_meaning() {
 }
 
 #[test]
-fn schema_beside_the_cases_is_up_to_date() {
+fn schema_next_to_the_cases_is_up_to_date() {
     let path = cases().join("condyle.schema.json");
     let schema = std::fs::read_to_string(path).unwrap_or_default();
     let advice = "run: condyle schema > cases/condyle.schema.json";

@@ -57,7 +57,7 @@ const THRESHOLD: WearLawKind = WearLawKind {
     },
 };
 
-/// The one line beside the law itself.
+/// The kinds of law to choose from, including the new one.
 const LAWS: WearLaws = &[WEAR_LAWS[0], &THRESHOLD];
 
 fn read(text: &str) -> Result<Case, String> {
@@ -134,7 +134,7 @@ fn its_keys_are_on_the_page() {
 }
 
 #[test]
-fn verify_it_is_the_law_that_the_test_wears_by() {
+fn verify_the_test_wears_by_it() {
     let test = read(CASE).unwrap().build(1).unwrap().test;
     let history = pressed_once(Moment {
         pressure_mpa: 10.0,
@@ -147,7 +147,7 @@ fn verify_it_is_the_law_that_the_test_wears_by() {
 }
 
 #[test]
-fn it_is_told_beside_the_law_of_a_case_that_takes_another() {
+fn it_is_evaluated_for_comparison_with_another_law() {
     let words = |case: &str| -> Vec<&str> {
         let test = read(case).unwrap().build(1).unwrap().test;
         test.comparison_laws.iter().map(|law| law.word).collect()
@@ -176,7 +176,7 @@ fn constants_quoted_from_memory_are_called_approximate() {
 }
 
 #[test]
-fn a_constant_that_a_law_has_not_or_cannot_have_is_refused() {
+fn a_constant_that_is_unknown_or_out_of_range_is_refused() {
     let archard = || Wear::new(WEAR_LAWS[0]);
     let missing = archard().constant("from_n_per_mm").unwrap_err();
     assert_eq!(
