@@ -140,7 +140,6 @@ impl<'c> Lines<'c> {
         }
     }
 
-    /// Sets every value.
     pub fn apply<'a>(&'a self, document: &mut DeTable<'a>) {
         for (change, (place, text)) in self.changes.iter().zip(&self.padded) {
             let parsed = DeTable::parse(text).ok();

@@ -22,7 +22,7 @@ use condyle_mesh::files::{Files, MemoryFiles};
 /// Reads cases.
 #[derive(Clone, Debug)]
 pub struct CaseReader {
-    files: Arc<dyn Files>,
+    pub(crate) files: Arc<dyn Files>,
     wear_laws: WearLaws,
 }
 
@@ -35,10 +35,6 @@ impl CaseReader {
     pub(crate) fn sharing(files: Arc<dyn Files>) -> Self {
         let wear_laws = WEAR_LAWS;
         Self { files, wear_laws }
-    }
-
-    pub(crate) fn files(&self) -> &dyn Files {
-        self.files.as_ref()
     }
 
     /// Returns the reader with other wear laws to choose from.

@@ -252,7 +252,6 @@ pub(crate) fn no_column(column: &str, file: &str, columns: &[&str]) -> Fault {
     )
 }
 
-/// Returns the fault of a column in another unit.
 pub(crate) fn other_unit(column: &str, unit: &str, suffix: &str) -> Fault {
     Fault::new(
         format!("column `{column}` is in another unit than {unit}, which is needed here"),

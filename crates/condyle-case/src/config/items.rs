@@ -122,7 +122,6 @@ impl Choices {
 }
 
 impl Item {
-    /// Returns the name of a key or table.
     pub fn name(&self) -> Option<&'static str> {
         match self {
             Self::Key(key) => Some(key.name),

@@ -152,7 +152,6 @@ impl<'a> Log<'a> {
         }
     }
 
-    /// Adds a problem of the file.
     pub(crate) fn problem(&mut self, span: Range<usize>, fault: Fault) {
         // Tables precede the keys inside them, so the last place that holds the span is the innermost.
         let mut places = self.places.iter();

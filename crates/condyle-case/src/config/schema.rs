@@ -12,7 +12,6 @@ use serde_json::{Map, Value, json};
 use super::items::{Choices, Item, TableItem, keys};
 use super::key::{Key, Kind, Limits, WhereSilent};
 
-/// Returns the schema of a table.
 pub(crate) fn table_schema(about: &str, items: &[Item]) -> Value {
     let mut properties: Map<String, Value> = items.iter().filter_map(property).collect();
     let mut rules = rules(items);
@@ -46,7 +45,6 @@ fn property(item: &Item) -> Option<(String, Value)> {
     Some((item.name()?.to_owned(), schema))
 }
 
-/// Returns the rules that hold among `items`.
 fn rules(items: &[Item]) -> Vec<Value> {
     let mut rules = Vec::new();
     let must = keys(items).into_iter();
@@ -223,7 +221,6 @@ fn section(above: &str, table: &TableItem) -> String {
     text + &table.note + &sections(&path, &table.items)
 }
 
-/// Returns a table of keys in Markdown.
 pub(crate) fn rows(keys: &[&Key]) -> String {
     let mut text =
         "| key | unit | may be | default | meaning |\n| --- | --- | --- | --- | --- |\n".to_owned();

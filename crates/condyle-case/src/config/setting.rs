@@ -362,12 +362,10 @@ impl Writer {
         }
     }
 
-    /// Writes the table `name` inside the one being written.
     pub(crate) fn table(&mut self, name: &str, write: impl FnOnce(&mut Self)) {
         self.headed(name, ["[", "]"], write);
     }
 
-    /// Writes the next table of the list `name`.
     pub(crate) fn table_of_list(&mut self, name: &str, write: impl FnOnce(&mut Self)) {
         self.headed(name, ["[[", "]]"], write);
     }

@@ -14,7 +14,6 @@ pub(crate) trait Settings: Sized {
     /// Reads the part from the table that has its keys; reports what is wrong with their values.
     fn read(section: &Section<'_>, log: &mut Log<'_>) -> Option<Self>;
 
-    /// Writes every entry with its value.
     fn write(&self, out: &mut Writer);
 
     /// Returns the keys of the part itself, without those of tables inside.
@@ -125,7 +124,6 @@ macro_rules! entry {
     };
 }
 
-/// The declared [`Key`].
 macro_rules! key {
     ($field:ident $ty:ty, [$doc:expr] [$($default:expr)?] [$($limits:expr)?]) => {
         Key {
@@ -207,8 +205,7 @@ macro_rules! variants {
                 match self { $( Self::$variant { .. } => $word, )+ }
             }
 
-            /// Reads the choice that `word` names.
-            pub(crate) fn read_as(word: &str, section: &Section<'_>, log: &mut Log<'_>) -> Option<Self> {
+                    pub(crate) fn read_as(word: &str, section: &Section<'_>, log: &mut Log<'_>) -> Option<Self> {
                 Some(match word {
                     $( $word => Self::$variant
                         $((offer!(read section log [$($how)?] $word $part)?))?, )+

@@ -2,7 +2,6 @@
 
 use crate::config::*;
 
-/// Returns `value`, or the problems if there are any.
 pub(super) fn unless<T>(problems: Vec<Placed>, value: T) -> Result<T, Vec<Placed>> {
     if problems.is_empty() {
         Ok(value)
@@ -11,7 +10,6 @@ pub(super) fn unless<T>(problems: Vec<Placed>, value: T) -> Result<T, Vec<Placed
     }
 }
 
-/// Returns a problem for every column whose name is repeated.
 pub(super) fn repeated(columns: &Columns<'_>) -> Vec<Placed> {
     let names = columns.names();
     let again = |index: &usize| names[..*index].contains(&names[*index]);
@@ -23,7 +21,6 @@ pub(super) fn repeated(columns: &Columns<'_>) -> Vec<Placed> {
     (0..names.len()).filter(again).map(problem).collect()
 }
 
-/// Returns a problem if the first column is not called `wanted`.
 pub(super) fn misnamed_first(columns: &Columns<'_>, wanted: &'static str) -> Option<Placed> {
     let found = columns.names()[0];
     let fault = || {
@@ -71,7 +68,6 @@ pub(super) fn outside(
     wrong.map(problem).collect()
 }
 
-/// Returns the fault of a column with too few numbers.
 pub(super) fn too_few(column: &str, found: usize, needed: usize) -> Fault {
     let message = format!("`{column}` has {found} numbers where {needed} are needed");
     Fault::new(message, "add rows, or leave the column out")

@@ -58,7 +58,6 @@ pub struct Specimen {
 }
 
 impl Gravimetric {
-    /// Reads `[gravimetric]` and its CSV file.
     pub(super) fn read(root: &Section<'_>, log: &mut Log<'_>) -> Option<Self> {
         let section = root.table("gravimetric", log);
         let keys = GravimetricKeys::read_checked(&section, log)?;
@@ -132,7 +131,6 @@ fn soak_columns(
     Some(soaks)
 }
 
-/// Reads the cycles, and the masses of every other column.
 fn weighed(columns: &Columns<'_>) -> Result<(Vec<f64>, Vec<Specimen>), Vec<Placed>> {
     let mut problems = repeated(columns);
     let cycles = match misnamed_first(columns, "cycles") {

@@ -72,7 +72,6 @@ pub struct Sample {
 }
 
 impl Kinematics {
-    /// Reads `[kinematics]` and its CSV file.
     pub(super) fn read(root: &Section<'_>, log: &mut Log<'_>) -> Option<Self> {
         let section = root.table("kinematics", log);
         let known: Vec<&str> = names(&KinematicsKeys::keys()).chain([PHASES]).collect();

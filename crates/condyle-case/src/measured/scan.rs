@@ -59,7 +59,6 @@ pub struct Scan {
 }
 
 impl Scan {
-    /// Reads `[surface]` and its file for a `side` knee.
     pub(super) fn read(root: &Section<'_>, side: Side, log: &mut Log<'_>) -> Option<Self> {
         let section = root.table("surface", log);
         let keys = ScanKeys::read_checked(&section, log)?;

@@ -30,7 +30,6 @@ pub struct Bound {
 }
 
 impl Answers {
-    /// Reads `[answers]` and every `[[limit]]`.
     pub(super) fn read(root: &Section<'_>, log: &mut Log<'_>) -> Option<Self> {
         let bounds = root.list("limit", log);
         let bounds = bounds.map(|all| all.iter().map(|one| Bound::read(one, log)).collect());
@@ -86,7 +85,6 @@ impl Bound {
     }
 }
 
-/// Returns the output that the key `key` names.
 pub(super) fn output(
     name: &str,
     key: &str,

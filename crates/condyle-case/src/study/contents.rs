@@ -134,7 +134,7 @@ impl Study {
         hasher.update(self.case.inputs_blake3()?.as_bytes());
         hasher.update(self.in_words().as_bytes());
         for file in self.files() {
-            let bytes = self.cases.files().read(&file)?;
+            let bytes = self.cases.files.read(&file)?;
             hasher.update(blake3::hash(&bytes).as_bytes());
         }
         Ok(hasher.finalize().to_hex().to_string())

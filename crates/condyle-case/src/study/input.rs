@@ -232,7 +232,6 @@ impl Variation {
     }
 }
 
-/// Reports a list that is too long.
 pub(super) fn check_count(
     what: &'static str,
     count: usize,

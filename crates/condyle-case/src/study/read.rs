@@ -112,7 +112,6 @@ fn listed<T>(
     read.into_iter().collect()
 }
 
-/// Reads every `[[vary]]`, or the columns of a file of rows.
 fn inputs(
     root: &Section<'_>,
     design: &Design,
@@ -140,7 +139,6 @@ fn inputs(
     Some((inputs?, Vec::new()))
 }
 
-/// Reads one `[[alternative]]`.
 fn alternative(section: &Section<'_>, log: &mut Log<'_>) -> Option<Alternative> {
     let keys = AlternativeKeys::read_checked(section, log)?;
     let mut set = Vec::new();
@@ -161,7 +159,6 @@ fn alternative(section: &Section<'_>, log: &mut Log<'_>) -> Option<Alternative> 
     })
 }
 
-/// Reads one `[[correlation]]` between two of `inputs`.
 fn correlation(section: &Section<'_>, inputs: &[Input], log: &mut Log<'_>) -> Option<Correlation> {
     let keys = CorrelationKeys::read_checked(section, log)?;
     let span = section.value_span("keys");

@@ -29,7 +29,6 @@ impl fmt::Display for Body {
 }
 
 impl Body {
-    /// Returns the name of its table in a case.
     pub(in crate::case) fn table(self) -> &'static str {
         match self {
             Self::Femur => "femur",

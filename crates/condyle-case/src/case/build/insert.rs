@@ -10,9 +10,10 @@ use condyle_mesh::columns::listed_holes;
 use condyle_mesh::formats::{HexFile, parse_surface, read_hexahedra, surface_bytes};
 use condyle_mesh::repair::{CheckedMesh, RepairError};
 
-use super::checks::{check_orientation, check_points, off_centre};
+use super::checks::{check_orientation, off_centre};
 use super::error::{Body, BuildError, BuildWarning, Finding};
 use super::placing::{Placing, checks_of, middle_of_mesh, middle_of_points, shell};
+use super::size::check_points;
 use crate::case::contents::Case;
 use crate::case::insert::{HexahedralInsert, Insert, InsertShape, MeshInsert};
 use crate::case::run_options::Limits;

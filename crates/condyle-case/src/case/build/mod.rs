@@ -8,6 +8,7 @@ mod insert;
 mod machine;
 mod placing;
 mod shared;
+mod size;
 #[cfg(test)]
 mod tests;
 

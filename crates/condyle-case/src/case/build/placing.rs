@@ -8,8 +8,8 @@ use condyle::{Mat3, Vec3};
 use condyle_mesh::formats::{parse_surface, surface_bytes};
 use condyle_mesh::repair::{CheckedMesh, Checks, Defect, LeftOut, Parts, Touching, WhyLeftOut};
 
-use super::checks::{check_triangles, stray_piece};
 use super::error::{Body, BuildError, BuildWarning, Finding};
+use super::size::{check_triangles, stray_piece};
 use crate::case::femur::FemurPlacement;
 use crate::case::frame::{Axes, LengthUnit, Side};
 use crate::case::insert::{InsertOrigin, InsertPlacement};
