@@ -18,7 +18,7 @@ use condyle_case::{
     case::{Assignment, Case, FEMUR_TRIANGLES, Side, Update},
     config::DataFile,
 };
-use condyle_report::bodies::{BodiesPicture, BodySurface, MachineAxes, bodies_svg};
+use condyle_report::bodies::{BodiesPicture, MachineAxes, bodies_svg};
 use serde::Serialize;
 
 use crate::{
@@ -106,8 +106,8 @@ impl Preview {
         let (march, at_rest, side) = (&self.march, &self.at_rest, self.case.heading.side);
         let insert = march.test().insert.mesh();
         let on_insert = |vertex: &Vec3| at_rest.pose.to_insert(vertex);
-        let femur = of_triangles(self.femur_triangles.clone().mapped(on_insert));
-        let insert = of_quads(&insert.nodes, &insert.boundary_quads());
+        let femur = self.femur_triangles.clone().mapped(on_insert);
+        let insert = TriangleMesh::of_quads(insert.nodes.clone(), insert.boundary_quads());
         let [femur, insert, contact] =
             [femur, insert, pressed(march, at_rest)].map(|body| mirrored(body, side));
         bodies_svg(&BodiesPicture {
@@ -308,22 +308,8 @@ fn lowered(contact: &mut dyn ContactModel, at_rest: &AtRest, load_n: f64) -> Pos
     pose
 }
 
-fn of_triangles(mesh: TriangleMesh) -> BodySurface {
-    BodySurface {
-        vertices: mesh.vertices,
-        triangles: mesh.triangles,
-    }
-}
-
-fn of_quads(nodes: &[Vec3], quads: &[[u32; 4]]) -> BodySurface {
-    of_triangles(TriangleMesh::of_quads(
-        nodes.to_vec(),
-        quads.iter().copied(),
-    ))
-}
-
 /// Returns the faces of the articulating surface with most corners under pressure.
-fn pressed(march: &March, at_rest: &AtRest) -> BodySurface {
+fn pressed(march: &March, at_rest: &AtRest) -> TriangleMesh {
     const MAX_CORNERS: usize = 3;
     let places = march.test().insert.surface().positions;
     let mut is_pressed = vec![false; places.len()];
@@ -336,12 +322,12 @@ fn pressed(march: &March, at_rest: &AtRest) -> BodySurface {
             .count()
     };
     let faces = march.test().insert.surface_faces().iter().copied();
-    let faces: Vec<[u32; 4]> = faces.filter(|face| corners(face) >= MAX_CORNERS).collect();
-    of_quads(&places, &faces)
+    let faces = faces.filter(|face| corners(face) >= MAX_CORNERS);
+    TriangleMesh::of_quads(places, faces)
 }
 
 /// Mirrors a body to the side of the files: a left knee is computed as a right one.
-fn mirrored(mut body: BodySurface, side: Side) -> BodySurface {
+fn mirrored(mut body: TriangleMesh, side: Side) -> TriangleMesh {
     body.vertices
         .iter_mut()
         .for_each(|vertex| vertex.z *= sign(side));

@@ -31,20 +31,14 @@ pub enum ReportError {
         /// The picture that needs it.
         picture: &'static str,
     },
-    /// A file is there and cannot be read.
-    #[error("The file {path} cannot be read: {source}.")]
-    Read {
+    /// The system refuses to read or write a file.
+    #[error("The file {path} cannot be {action}: {source}.")]
+    Inaccessible {
         /// The file.
         path: PathBuf,
-        /// The system's error.
-        source: std::io::Error,
-    },
-    /// A file cannot be written.
-    #[error("The file {path} cannot be written: {source}.")]
-    Write {
-        /// The file.
-        path: PathBuf,
-        /// The system's error.
+        /// The refused action: "read" or "written".
+        action: &'static str,
+        /// Error of the system.
         source: std::io::Error,
     },
     /// A file does not hold what a run writes into it.

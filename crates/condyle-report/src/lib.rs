@@ -9,7 +9,6 @@ pub mod bodies;
 mod charts;
 mod error;
 mod figure;
-mod file;
 mod maps;
 pub mod measured;
 mod number;
@@ -23,7 +22,6 @@ pub mod runs;
 pub mod scene;
 mod sheets;
 pub mod study;
-mod template;
 
 pub use condyle_fem::Vec3;
 pub use condyle_results::{Side, Summary};
@@ -37,8 +35,8 @@ pub use results::{Extreme, Region, Results, SurfaceFields, Table};
 
 use std::path::{Path, PathBuf};
 
-use file::write_text;
 use scene::Scene;
+use sheets::write_text;
 
 /// Writes `report.html` into a results folder and returns its path.
 ///

@@ -1,4 +1,4 @@
-//! Numbers and units as text for readers.
+//! Numbers, units and keys as text for readers.
 
 use condyle_results::split_unit;
 
@@ -55,6 +55,32 @@ pub(crate) fn with_powers(text: &str) -> String {
     text.replace("mm2", "mm\u{b2}").replace("mm3", "mm\u{b3}")
 }
 
+/// Parts of names that are written in capitals.
+const CAPITALS: [&str; 5] = ["ap", "ie", "ml", "vv", "is"];
+
+/// Returns a key as a title and its unit: `ap_range_mm` is ("AP range", "mm").
+pub(crate) fn in_words(key: &str) -> (String, String) {
+    let (name, unit) = match key.strip_suffix("_cycles") {
+        Some(name) => (name, Some("cycles")),
+        None => split_unit(key),
+    };
+    let word = |part: &str| match CAPITALS.contains(&part) {
+        true => part.to_uppercase(),
+        false => part.to_owned(),
+    };
+    let words: Vec<String> = name.split('_').map(word).collect();
+    let unit = with_powers(unit.unwrap_or_default()).replace(' ', "\u{a0}");
+    (first_letter_large(&words.join(" ")), unit)
+}
+
+/// Returns the text with its first letter in capitals.
+pub(crate) fn first_letter_large(text: &str) -> String {
+    let mut letters = text.chars();
+    letters.next().map_or_else(String::new, |first| {
+        first.to_uppercase().collect::<String>() + letters.as_str()
+    })
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -79,5 +105,19 @@ mod tests {
         assert_eq!(cycles_in_words(5e6), "5 million");
         assert_eq!(cycles_in_words(2.5e6), "2.5 million");
         assert_eq!(cycles_in_words(500_000.0), "500\u{202f}000");
+    }
+
+    #[test]
+    fn a_key_is_a_title_with_a_unit() {
+        for (key, title, unit) in [
+            ("ap_range_mm", "AP range", "mm"),
+            ("peak_memory_mb", "Peak memory", "MB"),
+            ("cycles_solved", "Cycles solved", ""),
+            ("worn_area_mm2", "Worn area", "mm\u{b2}"),
+            ("is", "IS", ""),
+            ("peak_pressure_at_cycles", "Peak pressure at", "cycles"),
+        ] {
+            assert_eq!(in_words(key), (title.to_owned(), unit.to_owned()));
+        }
     }
 }

@@ -7,9 +7,9 @@ use condyle_results::{KINEMATICS_PICTURE, MAP_PICTURES, WEAR_PICTURE};
 use crate::charts;
 use crate::error::ReportError;
 use crate::figure::{MEASURED, Map, Panel, sheet, svg_file};
-use crate::file::write_text;
 use crate::maps::{self, MAPS};
 use crate::results::Results;
+use crate::sheets::write_text;
 
 /// Scale of the maps, px per mm.
 const PX_PER_MM: f64 = 8.0;

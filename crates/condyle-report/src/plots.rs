@@ -1,66 +1,126 @@
-//! Plots of lines as a file, for studies over runs.
+//! Plots of studies over runs: a line over a reference or over a cloud of points.
 
-use crate::figure::{Axis, Curve, Panel, sheet};
+use crate::figure::{Axis, Curve, MEASURED, Panel, finite_range, sheet};
 
-/// Width and height of a plot, px.
-const SIZE: (f64, f64) = (480.0, 232.0);
-/// Plots in a row.
-const COLUMNS: usize = 2;
-/// Most steps of the horizontal axis.
-const MAX_INTERVALS: usize = 5;
-
-/// A plot of one line with a dot at every point, and of a reference.
-#[derive(Clone, Debug, PartialEq)]
+/// A plot of one line with a dot at every point, of a reference line and of unconnected points; each may be empty.
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct Plot {
-    /// The quantity.
+    /// Title of the vertical axis.
     pub title: String,
-    /// Its unit.
+    /// Unit of the vertical axis.
     pub unit: String,
     /// Title of the horizontal axis; may be empty.
-    pub x_title: &'static str,
+    pub x_title: String,
     /// Ticks of the horizontal axis with their texts; round numbers if empty.
     pub x_marks: Vec<(f64, String)>,
-    /// Whether the vertical axis starts at 0.
+    /// True if the vertical axis starts at 0.
     pub from_zero: bool,
-    /// The smallest span of the vertical axis, so that noise does not fill the picture.
-    pub least_span: f64,
-    /// The reference line, (x, y); may be empty.
+    /// Minimum span of the vertical axis, so that noise does not fill the picture.
+    pub min_span: f64,
+    /// Points (x, y) of the reference line.
     pub reference: Vec<(f64, f64)>,
-    /// The line itself, (x, y).
+    /// Unconnected points (x, y).
+    pub points: Vec<(f64, f64)>,
+    /// Points (x, y) of the line.
     pub line: Vec<(f64, f64)>,
 }
 
-/// Draws an SVG file with `plots` two in a row; `keys` names the reference and the line.
-pub fn plots_svg(title: &str, plots: &[Plot], keys: [&str; 2]) -> String {
-    let panels: Vec<Panel> = plots.iter().map(panel).collect();
-    let names: Vec<&str> = plots.iter().map(|plot| plot.title.as_str()).collect();
-    let desc = format!("{}: {}", title, names.join(", "));
-    let key = [("first", keys[0]), ("last", keys[1])];
-    let has_no_reference = plots.iter().all(|plot| plot.reference.is_empty());
-    let used = usize::from(has_no_reference);
-    sheet(title, &desc, &panels, COLUMNS, &key[used..])
+impl Plot {
+    fn all(&self) -> impl Iterator<Item = &(f64, f64)> + Clone {
+        self.reference.iter().chain(&self.points).chain(&self.line)
+    }
+
+    /// Returns the panel; `span` is the minimum span of its vertical axis.
+    fn panel(&self, columns: usize, span: f64) -> Panel {
+        // More than two plots in a row are small, with few ticks, and their marks need room at the ends.
+        let (size, intervals, room) = match columns {
+            0 | 1 => ((480.0, 300.0), 5, 0.04),
+            2 => ((480.0, 232.0), 5, 0.04),
+            _ => ((236.0, 206.0), 4, 0.15),
+        };
+        let x = self.all().map(|point| point.0);
+        let (low, high) = finite_range(x.clone()).unwrap_or((0.0, 1.0));
+        // A point with NaN after each keeps a line from joining the points.
+        let cloud = self
+            .points
+            .iter()
+            .flat_map(|&(x, y)| [(x, y), (x, f64::NAN)]);
+        Panel {
+            title: self.title.clone(),
+            unit: self.unit.clone(),
+            x: match self.x_marks.as_slice() {
+                [] => Axis::covering(
+                    low,
+                    high,
+                    1e-9 * low.abs().max(high.abs()).max(1e-9),
+                    intervals,
+                ),
+                _ => Axis::around(x, room),
+            },
+            x_marks: self.x_marks.clone(),
+            x_title: short(&self.x_title),
+            size,
+            from_zero: self.from_zero,
+            min_span: span,
+            curves: vec![
+                Curve::new("first", self.reference.clone()),
+                Curve::new(MEASURED, cloud.collect()).dotted(),
+                Curve::new("last", self.line.clone()).dotted(),
+            ],
+            ..Panel::default()
+        }
+    }
 }
 
-fn panel(plot: &Plot) -> Panel {
-    let x = plot.line.iter().chain(&plot.reference).map(|point| point.0);
-    Panel {
-        title: plot.title.clone(),
-        unit: plot.unit.clone(),
-        x: match plot.x_marks.as_slice() {
-            [] => Axis::over(x, 1e-6, MAX_INTERVALS),
-            _ => Axis::around(x, 0.04),
-        },
-        x_marks: plot.x_marks.clone(),
-        x_title: plot.x_title.to_owned(),
-        size: SIZE,
-        from_zero: plot.from_zero,
-        min_span: plot.least_span,
-        curves: vec![
-            Curve::new("first", plot.reference.clone()),
-            Curve::new("last", plot.line.clone()).dotted(),
-        ],
-        ..Panel::default()
+/// Draws an SVG file of plots in rows of `columns`; `keys` names the reference, the points and the line.
+///
+/// Plots of the same title have vertical axes of the same length, so that small effects look small.
+pub fn plots_svg(title: &str, plots: &[Plot], columns: usize, keys: [&str; 3]) -> String {
+    let span = |plot: &Plot| {
+        let same = plots.iter().filter(|other| other.title == plot.title);
+        let ranges = same.filter_map(|one| finite_range(one.all().map(|point| point.1)));
+        let largest = plot.all().map(|point| point.1.abs()).fold(0.0, f64::max);
+        let span = ranges
+            .map(|(low, high)| high - low)
+            .fold(plot.min_span, f64::max);
+        span.max(1e-6 * largest.max(1e-6))
+    };
+    let panels: Vec<Panel> = plots
+        .iter()
+        .map(|plot| plot.panel(columns, span(plot)))
+        .collect();
+    let name = |plot: &Plot| match plot.x_title.as_str() {
+        "" => plot.title.clone(),
+        across => format!("{} over {across}", plot.title),
+    };
+    let names: Vec<String> = plots.iter().map(name).collect();
+    let used = [
+        plots.iter().any(|plot| !plot.reference.is_empty()),
+        plots.iter().any(|plot| !plot.points.is_empty()),
+        plots.iter().any(|plot| !plot.line.is_empty()),
+    ];
+    let key = ["first", MEASURED, "last"].into_iter().zip(keys).zip(used);
+    let key: Vec<_> = key.filter(|(_, used)| *used).map(|(key, _)| key).collect();
+    sheet(title, &names.join("; "), &panels, columns.max(1), &key)
+}
+
+/// Returns the last word of a key, or two where the last is common to many keys, cut to fit under a small picture.
+fn short(key: &str) -> String {
+    const MAX_LETTERS: usize = 28;
+    let mut words = key.rsplit('.');
+    let last = words.next().unwrap_or(key);
+    let whole = match words.next() {
+        Some(before) if matches!(last, "scale" | "offset") => format!("{before}.{last}"),
+        _ => last.to_owned(),
+    };
+    if whole.chars().count() <= MAX_LETTERS {
+        return whole;
     }
+    whole
+        .chars()
+        .take(MAX_LETTERS - 1)
+        .chain(['\u{2026}'])
+        .collect()
 }
 
 #[cfg(test)]
@@ -71,28 +131,53 @@ mod tests {
         Plot {
             title: "Depth & more".to_owned(),
             unit: "mm".to_owned(),
-            x_title: "million cycles",
+            x_title: "million cycles".to_owned(),
             x_marks,
             from_zero: true,
-            least_span: 1e-6,
+            min_span: 1e-6,
             reference: vec![(0.0, 1.0), (5.0, 2.0)],
             line: vec![(0.0, 0.0), (2.5, 1.2), (5.0, 2.0)],
+            ..Plot::default()
         }
     }
 
     #[test]
     fn every_point_of_the_line_has_a_dot_and_text_is_escaped() {
-        let svg = plots_svg("A study", &[plot(Vec::new())], ["reference", "ours"]);
+        let svg = plots_svg(
+            "A study",
+            &[plot(Vec::new())],
+            2,
+            ["reference", "tests", "ours"],
+        );
         assert_eq!(svg.matches("<circle").count(), 3);
         assert!(svg.contains("Depth &amp; more") && !svg.contains("Depth & more"));
-        assert!(svg.contains(">reference<") && svg.contains(">ours<"));
+        assert!(svg.contains(">reference<") && svg.contains(">ours<") && !svg.contains(">tests<"));
         assert!(roxmltree::Document::parse(&svg).is_ok());
     }
 
     #[test]
     fn marks_take_the_place_of_round_numbers() {
         let marks = vec![(0.0, "ten".to_owned()), (5.0, "twenty".to_owned())];
-        let svg = plots_svg("A study", &[plot(marks)], ["a", "b"]);
+        let svg = plots_svg("A study", &[plot(marks)], 2, ["a", "b", "c"]);
         assert!(svg.contains(">ten<") && svg.contains(">twenty<") && !svg.contains(">3<"));
+    }
+
+    #[test]
+    fn every_point_has_a_dot_and_no_line_joins_the_points() {
+        let plot = Plot {
+            title: "mass".to_owned(),
+            unit: "mg".to_owned(),
+            x_title: "friction & more".to_owned(),
+            points: vec![(1e-7, 2.0), (2e-7, 3.0), (3e-7, 1.0)],
+            ..Plot::default()
+        };
+        let svg = plots_svg("A study", &[plot], 3, ["", "tests", ""]);
+        assert_eq!(svg.matches("<circle").count(), 3);
+        assert!(roxmltree::Document::parse(&svg).is_ok());
+        let points = svg
+            .split("class=\"specimen\" d=\"")
+            .nth(1)
+            .unwrap_or_default();
+        assert!(!points.split('"').next().unwrap_or_default().contains('l'));
     }
 }

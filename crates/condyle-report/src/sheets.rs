@@ -1,11 +1,56 @@
-//! A page of tables and pictures on white, one file that opens anywhere.
+//! Pages from templates, pages of tables and pictures, and their files.
 
+use std::path::PathBuf;
+
+use minijinja::{Environment, syntax::SyntaxConfig, value::Serde};
+use serde::Serialize;
 use serde_json::json;
 
+use crate::error::ReportError;
 use crate::figure::{STYLE, colour_variables};
-use crate::template::{PAGE_STYLE, render};
+use crate::number::{fixed, significant};
 
-/// The content of such a page.
+/// The style of all pages.
+pub(crate) const PAGE_STYLE: &str = include_str!("page/page.css");
+
+/// Fills a template of HTML, which is part of the program; texts are escaped.
+pub(crate) fn render(template: &str, context: &impl Serialize) -> String {
+    let syntax = SyntaxConfig::builder()
+        .trim_blocks(true)
+        .lstrip_blocks(true)
+        .build();
+    let mut environment = Environment::new();
+    environment.set_syntax(syntax.expect("the default delimiters differ from each other"));
+    environment.add_filter("fixed", fixed);
+    environment.add_filter("significant", significant);
+    environment.add_filter("known", |value: Option<f64>, digits: i32| {
+        value.map_or_else(|| "\u{2013}".to_owned(), |value| significant(value, digits))
+    });
+    environment.add_filter("signed", |value: f64, digits: i32| {
+        let sign = if value < 0.0 { '\u{2212}' } else { '+' };
+        format!("{sign}{}", significant(value.abs(), digits))
+    });
+    // Errors are those of the template itself, which the tests render.
+    let page = environment.render_named_str("page.html", template, Serde(context));
+    page.unwrap_or_else(|error| panic!("a template cannot be rendered: {error:#}"))
+}
+
+/// Writes a text and returns its path.
+pub(crate) fn write_text(path: PathBuf, text: &str) -> Result<PathBuf, ReportError> {
+    // Written next to its place and renamed in one step: an interruption leaves the old file or the new one.
+    let mut part = path.clone().into_os_string();
+    part.push(".part");
+    match std::fs::write(&part, text).and_then(|()| std::fs::rename(&part, &path)) {
+        Ok(()) => Ok(path),
+        Err(source) => Err(ReportError::Inaccessible {
+            path,
+            action: "written",
+            source,
+        }),
+    }
+}
+
+/// A page of tables and pictures on white, one file that opens anywhere.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(crate) struct Sheets<'a> {
     /// The kind of page, above the title.

@@ -340,7 +340,7 @@ impl Convergence {
         let shown = compared().filter(|output| output.key != "volume_loss_mm3");
         let plots: Vec<Plot> = shown.map(|output| self.plot(output)).collect();
         let line = format!("a run for each value of {}", self.key);
-        plots_svg("Convergence", &plots, ["extrapolated", &line])
+        plots_svg("Convergence", &plots, 2, ["extrapolated", "", &line])
     }
 
     fn plot(&self, output: &Scalar) -> Plot {
@@ -363,10 +363,8 @@ impl Convergence {
         Plot {
             title: output.label[..1].to_uppercase() + &output.label[1..],
             unit: superscript(output.unit()),
-            x_title: "",
             x_marks: places.iter().copied().zip(values).collect(),
-            from_zero: false,
-            least_span: MIN_SHOWN_SHARE * finest.abs().max(f64::MIN_POSITIVE),
+            min_span: MIN_SHOWN_SHARE * finest.abs().max(f64::MIN_POSITIVE),
             reference: match self.extrapolation(output) {
                 Extrapolation::Converging { extrapolated, .. } => {
                     ends.map(|place| (place, extrapolated)).to_vec()
@@ -374,6 +372,7 @@ impl Convergence {
                 _ => Vec::new(),
             },
             line,
+            ..Plot::default()
         }
     }
 

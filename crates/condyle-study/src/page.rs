@@ -2,9 +2,9 @@
 
 use std::{fs, path::Path};
 
-use condyle_report::study::{
-    Bar, Bars, Cloud, Distribution, StudyPage, bars_svg, clouds_svg, distributions_svg,
-    write_study_page,
+use condyle_report::{
+    Plot, plots_svg,
+    study::{Bar, Bars, Distribution, bars_svg, distributions_svg, write_study_page},
 };
 
 use crate::{
@@ -43,13 +43,15 @@ pub fn write_answers(plan: &Plan, folder: &Path) -> Result<Answers, StudyError> 
         some => format!("{some} of them failed"),
     };
     let title = Some(answers.title.as_str()).filter(|title| !title.is_empty());
-    let page = StudyPage {
-        title: title.unwrap_or("A study").to_owned(),
-        lede: format!("{kept} tests of a {design} design; {end}."),
-        tables: answers.tables(),
-        pictures: pictures(&answers),
-    };
-    write_study_page(folder, &page)?;
+    let lede = format!("{kept} tests of a {design} design; {end}.");
+    let (tables, pictures) = (answers.tables(), pictures(&answers));
+    write_study_page(
+        folder,
+        title.unwrap_or("A study"),
+        &lede,
+        &tables,
+        &pictures,
+    )?;
     Ok(answers)
 }
 
@@ -102,14 +104,14 @@ fn progress(best: &Best) -> Option<Picture> {
     if best.progress.is_empty() {
         return None;
     }
-    let cloud = Cloud {
+    let plot = Plot {
         title: "Best so far within all limits".to_owned(),
         unit: best.minimised.to_owned(),
-        across: "test".to_owned(),
+        x_title: "test".to_owned(),
         line: best.progress.clone(),
-        ..Cloud::default()
+        ..Plot::default()
     };
-    let svg = clouds_svg("Search", &[cloud], 1, ["", "best so far"]);
+    let svg = plots_svg("Search", &[plot], 1, ["", "", "best so far"]);
     Some(("search.svg", "The progress of the search.".to_owned(), svg))
 }
 
@@ -209,10 +211,10 @@ fn distributions(answers: &Answers) -> Option<Picture> {
 fn main_effects(answers: &Answers) -> Option<Picture> {
     let spread = answers.spreads.first()?;
     let effects = effects_on(answers, spread.output).into_iter();
-    let all: Vec<Cloud> = effects
-        .map(|effect| Cloud {
+    let all: Vec<Plot> = effects
+        .map(|effect| Plot {
             line: effect.means.clone(),
-            ..cloud(spread, effect)
+            ..plot(spread, effect)
         })
         .collect();
     let caption = format!(
@@ -222,7 +224,7 @@ fn main_effects(answers: &Answers) -> Option<Picture> {
     if all.is_empty() {
         return None;
     }
-    let svg = clouds_svg("Main effects", &all, 4, ["", "mean"]);
+    let svg = plots_svg("Main effects", &all, 4, ["", "", "mean"]);
     Some(("main_effects.svg", caption, svg))
 }
 
@@ -235,9 +237,9 @@ fn scatter(answers: &Answers) -> Option<Picture> {
         for column in columns {
             let mut effects = answers.effects.iter();
             let own = effects.find(|one| one.output == spread.output && one.input == column.input);
-            all.extend(own.map(|effect| Cloud {
+            all.extend(own.map(|effect| Plot {
                 points: effect.points.clone(),
-                ..cloud(spread, effect)
+                ..plot(spread, effect)
             }));
         }
     }
@@ -245,21 +247,26 @@ fn scatter(answers: &Answers) -> Option<Picture> {
         return None;
     }
     let caption = "Outputs over the inputs that affect the first of them most; of many tests, some are shown.";
-    let svg = clouds_svg("Scatter matrix", &all, columns.len().max(3), ["tests", ""]);
+    let svg = plots_svg(
+        "Scatter matrix",
+        &all,
+        columns.len().max(3),
+        ["", "tests", ""],
+    );
     Some(("scatter.svg", caption.to_owned(), svg))
 }
 
 /// Returns the axes of an output over an input.
-fn cloud(spread: &Spread, effect: &Effect) -> Cloud {
+fn plot(spread: &Spread, effect: &Effect) -> Plot {
     let marks = effect.words.iter().enumerate();
-    Cloud {
+    Plot {
         title: spread.title.to_owned(),
         unit: superscript(spread.unit),
-        across: effect.name.clone(),
-        marks: marks
+        x_title: effect.name.clone(),
+        x_marks: marks
             .map(|(place, word)| (place as f64, word.clone()))
             .collect(),
-        ..Cloud::default()
+        ..Plot::default()
     }
 }
 
@@ -269,15 +276,20 @@ fn front(front: &Front) -> Option<Picture> {
     }
     let [unit, up_unit] = front.units.map(superscript);
     let tests = front.tests.iter();
-    let cloud = Cloud {
+    let plot = Plot {
         title: front.titles[1].to_owned(),
         unit: up_unit,
-        across: format!("{}, {unit}", front.titles[0]),
+        x_title: format!("{}, {unit}", front.titles[0]),
         points: front.others.clone(),
         line: tests.map(|(_, one, other)| (*one, *other)).collect(),
-        ..Cloud::default()
+        ..Plot::default()
     };
-    let svg = clouds_svg("Pareto front", &[cloud], 1, ["within limits", "the front"]);
+    let svg = plots_svg(
+        "Pareto front",
+        &[plot],
+        1,
+        ["", "within limits", "the front"],
+    );
     let caption =
         "Tests within all limits; no test is better in both outputs than one on the line.";
     Some(("pareto.svg", caption.to_owned(), svg))

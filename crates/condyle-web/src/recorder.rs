@@ -7,7 +7,7 @@ use condyle_case::case::Side;
 use condyle_lab::RunKeeper;
 use condyle_report::{
     Results, Table,
-    scene::{Scene, SceneBody, SceneCycle},
+    scene::{Scene, SceneCycle},
 };
 use condyle_results::{
     InsertFields, KeptCycle, NeutralPose, cycle_pressure_csv, cycle_pressure_file, femur_on_side,
@@ -81,11 +81,7 @@ impl RunKeeper for Recorder {
         let femur = femur_on_side(femur, &march.neutral_pose(), self.side);
         // As `femur.vtu` has its places: in 32 bits.
         let rounded = |place: f64| f64::from(place as f32);
-        let nodes = femur.vertices.iter().map(|place| place.map(rounded));
-        self.scene.femur = Some(SceneBody {
-            nodes: nodes.collect(),
-            triangles: femur.triangles,
-        });
+        self.scene.femur = Some(femur.mapped(|place| place.map(rounded)));
         self.add_update(march);
     }
 

@@ -151,8 +151,8 @@ pub(crate) fn depth_svg(force: &[Ran], displacement: &[Ran]) -> Result<String, S
         plots.push(plot(title, "mm\u{b3}", "volume_loss_mm3", ran, finest)?);
     }
     let reference = updates_of(finest);
-    let keys = [reference.as_str(), "as titled"];
-    Ok(plots_svg("Wear over the test", &plots, keys))
+    let keys = [reference.as_str(), "", "as titled"];
+    Ok(plots_svg("Wear over the test", &plots, 2, keys))
 }
 
 fn updates_of(ran: &Ran) -> String {
@@ -172,12 +172,12 @@ fn plot(
     Ok(Plot {
         title,
         unit: unit.to_owned(),
-        x_title: "million cycles",
-        x_marks: Vec::new(),
+        x_title: "million cycles".to_owned(),
         from_zero: true,
-        least_span: f64::MIN_POSITIVE,
+        min_span: f64::MIN_POSITIVE,
         reference: points(finest, column)?,
         line: points(ran, column)?,
+        ..Plot::default()
     })
 }
 

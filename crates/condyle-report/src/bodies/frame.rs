@@ -1,21 +1,12 @@
 //! The part of a view that is shown, and its place in the picture.
 
-use condyle_fem::Vec3;
+use condyle_mesh::{TriangleMesh, Vec3};
 use condyle_results::Side;
 
 use crate::figure::finite_range;
 
 /// Margin around the bodies, mm.
 const MARGIN_MM: f64 = 4.0;
-
-/// A surface for a picture, in the insert frame: x anterior, y superior, z to the right, mm.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub struct BodySurface {
-    /// Positions of the vertices, mm.
-    pub vertices: Vec<Vec3>,
-    /// Vertices of each triangle, facing either way.
-    pub triangles: Vec<[u32; 3]>,
-}
 
 /// A side from which the bodies are seen, by a parallel projection.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -58,7 +49,7 @@ pub(super) struct Frame {
 
 impl Frame {
     /// Creates a frame around bodies; a small square where there are none.
-    pub(super) fn around(bodies: [&BodySurface; 2], view: View) -> Self {
+    pub(super) fn around(bodies: [&TriangleMesh; 2], view: View) -> Self {
         let ends = |axis: usize| {
             let points = bodies.iter().flat_map(|body| &body.vertices);
             let ends = finite_range(points.map(|point| view.seen(point)[axis]));

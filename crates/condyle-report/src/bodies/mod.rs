@@ -6,17 +6,15 @@
 mod frame;
 mod raster;
 
-pub use frame::BodySurface;
-
 use std::path::{Path, PathBuf};
 
-use condyle_fem::Vec3;
+use condyle_mesh::{TriangleMesh, Vec3};
 
 use condyle_results::Side;
 
 use crate::error::ReportError;
 use crate::figure::{escape, scale_bar, svg_file};
-use crate::file::write_text;
+use crate::sheets::write_text;
 use frame::{Frame, VIEWS, View};
 
 /// The axes of the machine in the insert frame, mm.
@@ -39,12 +37,12 @@ pub struct BodiesPicture<'a> {
     pub title: &'a str,
     /// The side of the knee.
     pub side: Side,
-    /// The femoral component in its pose on the insert.
-    pub femur: &'a BodySurface,
+    /// The femoral component in its pose on the insert, as all surfaces in the insert frame.
+    pub femur: &'a TriangleMesh,
     /// The insert.
-    pub insert: &'a BodySurface,
+    pub insert: &'a TriangleMesh,
     /// The part of the insert's surface under pressure; empty where that is not known.
-    pub contact: &'a BodySurface,
+    pub contact: &'a TriangleMesh,
     /// The machine's axes; none if there is no machine yet.
     pub axes: Option<MachineAxes>,
     /// A line below the picture.

@@ -3,10 +3,10 @@
 use std::io::Write as _;
 
 use base64::{Engine as _, engine::general_purpose::STANDARD};
-use condyle_fem::Vec3;
+use condyle_mesh::{TriangleMesh, Vec3};
 use flate2::{Compression, Crc, write::ZlibEncoder};
 
-use super::frame::{BodySurface, Frame};
+use super::frame::Frame;
 
 /// Pixels of an image for each px of the picture, both ways, so that edges are smooth.
 const FINENESS: f64 = 2.0;
@@ -36,7 +36,7 @@ pub(super) struct Raster {
 }
 
 impl Raster {
-    pub(super) fn new(surface: &BodySurface, frame: &Frame) -> Self {
+    pub(super) fn new(surface: &TriangleMesh, frame: &Frame) -> Self {
         let fine = frame.scale * FINENESS;
         let (width_mm, height_mm) = frame.size_mm();
         let [width, height] = [width_mm, height_mm].map(|mm| (mm * fine).ceil() as usize);
@@ -106,7 +106,7 @@ fn lightness([a, b, c]: [Vec3; 3]) -> f32 {
 }
 
 /// Renders insert, translucent femur and the contact patch over both, in this order, as an element of an SVG.
-pub(super) fn image(surfaces: [&BodySurface; 3], frame: &Frame) -> String {
+pub(super) fn image(surfaces: [&TriangleMesh; 3], frame: &Frame) -> String {
     let [insert, femur, contact] = surfaces.map(|surface| Raster::new(surface, frame));
     let colour = |pixel: usize| {
         let below = insert.lit(pixel, POLYETHYLENE).unwrap_or(PAPER);

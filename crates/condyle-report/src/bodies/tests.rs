@@ -2,14 +2,14 @@
 
 use std::time::Instant;
 
-use condyle_fem::Vec3;
+use condyle_mesh::{TriangleMesh, Vec3};
 
 use super::{raster::Raster, *};
 
 /// A sheet of `count` by `count` quads, 60 mm wide, bent up by `bend` at its ends.
-fn sheet(count: u32, height_mm: f64, bend: f64) -> BodySurface {
+fn sheet(count: u32, height_mm: f64, bend: f64) -> TriangleMesh {
     let place = |i: u32| 60.0 * (f64::from(i) / f64::from(count) - 0.5);
-    let mut surface = BodySurface::default();
+    let mut surface = TriangleMesh::default();
     for i in 0..=count {
         for k in 0..=count {
             let (x, z) = (place(i), place(k));
@@ -27,7 +27,7 @@ fn sheet(count: u32, height_mm: f64, bend: f64) -> BodySurface {
     surface
 }
 
-fn drawn(femur: &BodySurface, insert: &BodySurface, side: Side) -> String {
+fn drawn(femur: &TriangleMesh, insert: &TriangleMesh, side: Side) -> String {
     let contact = sheet(2, 0.1, 0.0);
     bodies_svg(&BodiesPicture {
         title: "A knee <made> of sheets",
@@ -95,7 +95,7 @@ fn what_is_nearer_hides_what_is_behind() {
 
 #[test]
 fn nothing_to_draw_is_an_empty_picture() {
-    let none = BodySurface::default();
+    let none = TriangleMesh::default();
     let svg = bodies_svg(&BodiesPicture {
         title: "nothing",
         side: Side::Right,

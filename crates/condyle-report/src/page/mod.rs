@@ -1,6 +1,5 @@
 //! The report of one run as an HTML page.
 
-mod key_words;
 mod numbers;
 mod sentences;
 mod tables;
@@ -20,7 +19,7 @@ use crate::maps::{self, DrawnMap};
 use crate::number::significant;
 use crate::results::{CaseFacts, Results};
 use crate::scene::Scene;
-use crate::template::{PAGE_STYLE, render};
+use crate::sheets::{PAGE_STYLE, render};
 
 const PAGE: &str = include_str!("page.html");
 /// The page's program: `web/src/report.ts`, bundled and deflated by `web/build.mjs`.

@@ -7,8 +7,7 @@ use condyle_results::{
 use serde::Serialize;
 use serde_json::Value;
 
-use super::key_words::{first_letter_large, in_words};
-use crate::number::{fixed, significant, with_powers};
+use crate::number::{first_letter_large, fixed, in_words, significant, with_powers};
 use crate::results::Results;
 
 /// Numbers under one heading.

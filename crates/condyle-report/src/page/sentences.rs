@@ -5,8 +5,9 @@ use condyle_results::catalogue::{
 };
 use serde::Serialize;
 
-use super::key_words::{first_letter_large, in_words};
-use crate::number::{cycles_in_words, fixed, significant, with_powers};
+use crate::number::{
+    cycles_in_words, first_letter_large, fixed, in_words, significant, with_powers,
+};
 use crate::results::{CaseFacts, Region, Results, Table};
 use crate::scene::Scene;
 

@@ -2,13 +2,12 @@
 
 use serde::Serialize;
 
-use super::key_words::first_letter_large;
 use super::numbers::unit_of;
 use super::sentences::{not_estimated, reached};
 use condyle_results::{ErrorParts, Part, Side, catalogue::VOLUME_LOSS_MM3};
 
 use crate::charts::{CHANNELS, Cycle, first_and_last};
-use crate::number::{fixed, significant};
+use crate::number::{first_letter_large, fixed, significant};
 use crate::results::{Region, Results, SurfaceFields, Table};
 
 /// Depth above which a place counts as part of the scar, as a share of the largest depth.

@@ -166,8 +166,9 @@ pub(crate) fn read_mesh(path: &Path) -> Result<VtuFile, ReportError> {
 
 /// Returns the meshes `insert_NNNN.vtu` of a run with their numbers of updates, in rising order.
 pub(crate) fn meshes(folder: &Path) -> Result<Vec<(u32, PathBuf)>, ReportError> {
-    let failed = |source| ReportError::Read {
+    let failed = |source| ReportError::Inaccessible {
         path: folder.to_owned(),
+        action: "read",
         source,
     };
     let update_of = |path: &Path| {
@@ -232,8 +233,9 @@ fn text(path: &Path) -> Result<Option<String>, ReportError> {
     match std::fs::read_to_string(path) {
         Ok(text) => Ok(Some(text)),
         Err(source) if source.kind() == std::io::ErrorKind::NotFound => Ok(None),
-        Err(source) => Err(ReportError::Read {
+        Err(source) => Err(ReportError::Inaccessible {
             path: path.to_owned(),
+            action: "read",
             source,
         }),
     }

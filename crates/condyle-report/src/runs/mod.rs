@@ -2,10 +2,8 @@
 
 mod differences;
 mod page;
-mod run;
 
 pub use differences::{
-    CurveDifference, Differences, MapDifference, NumberDifference, SettingDifference,
+    CurveDifference, Differences, MapDifference, NumberDifference, Run, SettingDifference,
 };
 pub use page::{runs_html, write_runs};
-pub use run::Run;

@@ -5,19 +5,16 @@ use std::path::{Path, PathBuf};
 use condyle_results::catalogue::{self, Scalar};
 use serde_json::{Value, json};
 
-use super::differences::{Differences, NumberDifference, subtracted};
-use super::run::Run;
+use super::differences::{Differences, NumberDifference, Run, subtracted};
 use crate::charts;
 use crate::error::ReportError;
 use crate::figure::{
     ColourRange, Curve, MEASURED, Map, MapStyle, Panel, escape, largest_size, sheet, svg_file,
 };
-use crate::file::write_text;
 use crate::maps::{MAPS, MappedField};
 use crate::number::significant;
 use crate::page::{label_of, shown, unit_of};
-use crate::sheets::Sheets;
-use crate::template::render;
+use crate::sheets::{Sheets, render, write_text};
 
 /// A picture: its name, caption and text.
 type Sheet = (&'static str, String, String);

@@ -2,9 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use condyle_fem::Vec3;
-
-use super::SceneBody;
+use condyle_mesh::{TriangleMesh, Vec3};
 
 /// Cosine of the angle, 30 degrees, from which an edge is visibly sharp.
 const SHARP_COSINE: f64 = 0.866;
@@ -13,113 +11,107 @@ const SHARP_COSINE: f64 = 0.866;
 const WIDER: f64 = 1.1;
 const MAX_WIDENINGS: i32 = 3;
 
-/// The nodes that become one: those in a cube of a grid, or a single node of the border.
+/// The vertices that become one: those in a cube of a grid, or a single one of the border.
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 enum Cell {
     Cube([i64; 3]),
     Border(u32),
 }
 
-impl SceneBody {
-    /// Returns the body with at most `most` triangles, or more if its border and sharp edges need them; the body
-    /// itself if it has no more.
-    ///
-    /// The border stays as it is, and so do sharp edges. The other nodes of every cube of a grid become the one that is
-    /// nearest to their mean: all nodes stay on the surface, and a triangle of edge `h` deviates from a surface of radius
-    /// `R` by up to `h^2 / (8 R)`.
-    pub(super) fn coarser(&self, most: usize) -> Self {
-        if self.triangles.len() <= most {
-            return self.clone();
-        }
-        // A cube cuts a square out of the surface, which becomes two triangles.
-        let edge = (2.0 * self.area() / most as f64).sqrt();
-        let border = self.border();
-        let mut body = self.clustered(edge, &border);
-        for times in 1..=MAX_WIDENINGS {
-            if body.triangles.len() <= most {
-                break;
-            }
-            body = self.clustered(edge * WIDER.powi(times), &border);
-        }
-        body
+/// Returns a body with at most `max` triangles, or more if its border and sharp edges need them; the body itself if it
+/// has no more.
+///
+/// The border stays as it is, and so do sharp edges. The other vertices of every cube of a grid become the one that is
+/// nearest to their mean: all vertices stay on the surface, and a triangle of edge `h` deviates from a surface of radius
+/// `R` by up to `h^2 / (8 R)`.
+pub(super) fn coarser(body: &TriangleMesh, max: usize) -> TriangleMesh {
+    if body.triangles.len() <= max {
+        return body.clone();
     }
-
-    fn area(&self) -> f64 {
-        let normals = self.triangles.iter().map(|triangle| self.normal(triangle));
-        normals.map(|normal| normal.norm() / 2.0).sum()
-    }
-
-    /// Returns the normal of a triangle, twice its area long.
-    fn normal(&self, triangle: &[u32; 3]) -> Vec3 {
-        let [a, b, c] = triangle.map(|node| self.nodes[node as usize]);
-        (b - a).cross(&(c - a))
-    }
-
-    /// For each node, whether it is on an edge of a single triangle or on a sharp edge.
-    fn border(&self) -> Vec<bool> {
-        let of_triangle = |triangle: &[u32; 3]| {
-            let [a, b, c] = *triangle;
-            let normal = self.normal(triangle).normalize();
-            [(a, b), (b, c), (c, a)].map(|(from, to)| ((from.min(to), from.max(to)), normal))
-        };
-        let mut edges: Vec<_> = self.triangles.iter().flat_map(of_triangle).collect();
-        edges.sort_by_key(|(edge, _)| *edge);
-        let mut border = vec![false; self.nodes.len()];
-        for same in edges.chunk_by(|one, next| one.0 == next.0) {
-            let is_sharp = |pair: &[(_, Vec3)]| pair[0].1.dot(&pair[1].1) < SHARP_COSINE;
-            if same.len() == 1 || same.windows(2).any(is_sharp) {
-                let (a, b) = same[0].0;
-                border[a as usize] = true;
-                border[b as usize] = true;
-            }
+    // A cube cuts a square out of the surface, which becomes two triangles.
+    let edge = (2.0 * area(body) / max as f64).sqrt();
+    let border = border(body);
+    let mut coarse = clustered(body, edge, &border);
+    for times in 1..=MAX_WIDENINGS {
+        if coarse.triangles.len() <= max {
+            break;
         }
-        border
+        coarse = clustered(body, edge * WIDER.powi(times), &border);
     }
-
-    fn clustered(&self, edge: f64, border: &[bool]) -> Self {
-        let cell = |(node, is_border): (u32, &bool)| match is_border {
-            true => Cell::Border(node),
-            false => {
-                let place = <[f64; 3]>::from(self.nodes[node as usize] / edge);
-                Cell::Cube(place.map(|at| at.floor() as i64))
-            }
-        };
-        let cells: Vec<Cell> = (0..).zip(border).map(cell).collect();
-        // Sorted cells give the same order of nodes on every machine.
-        let mut members: BTreeMap<Cell, Vec<Vec3>> = BTreeMap::new();
-        for (node, cell) in self.nodes.iter().zip(&cells) {
-            members.entry(*cell).or_default().push(*node);
-        }
-        let place: BTreeMap<Cell, u32> = members.keys().copied().zip(0..).collect();
-        let renumbered = |triangle: &[u32; 3]| triangle.map(|node| place[&cells[node as usize]]);
-        let mut triangles: Vec<_> = self.triangles.iter().map(renumbered).collect();
-        triangles.retain(|[a, b, c]| a != b && b != c && c != a);
-        Self {
-            nodes: members.values().map(|nodes| middle(nodes)).collect(),
-            triangles: unpaired(triangles),
-        }
-    }
+    coarse
 }
 
-/// Returns the node nearest to the mean of `nodes`.
-fn middle(nodes: &[Vec3]) -> Vec3 {
-    let mean = nodes.iter().sum::<Vec3>() / nodes.len() as f64;
-    let away = |node: &Vec3| (node - mean).norm_squared();
-    let nearest = nodes.iter().min_by(|a, b| away(a).total_cmp(&away(b)));
-    nearest.copied().unwrap_or(mean)
+fn area(body: &TriangleMesh) -> f64 {
+    let normals = (0..body.triangles.len()).map(|triangle| normal(body, triangle));
+    normals.map(|normal| normal.norm() / 2.0).sum()
 }
 
-/// Removes pairs of coincident triangles, which face both ways: a closed surface stays closed.
-fn unpaired(mut triangles: Vec<[u32; 3]>) -> Vec<[u32; 3]> {
-    triangles.sort_by_key(|triangle| sorted(*triangle));
-    let same = triangles.chunk_by(|one, next| sorted(*one) == sorted(*next));
+/// Returns the normal of a triangle, twice its area long.
+fn normal(body: &TriangleMesh, triangle: usize) -> Vec3 {
+    let [a, b, c] = body.corners(triangle);
+    (b - a).cross(&(c - a))
+}
+
+/// Returns true for each vertex on an edge of a single triangle or on a sharp edge.
+fn border(body: &TriangleMesh) -> Vec<bool> {
+    let of_triangle = |(number, &[a, b, c]): (usize, &[u32; 3])| {
+        let normal = normal(body, number).normalize();
+        [(a, b), (b, c), (c, a)].map(|(from, to)| ((from.min(to), from.max(to)), normal))
+    };
+    let triangles = body.triangles.iter().enumerate();
+    let mut edges: Vec<_> = triangles.flat_map(of_triangle).collect();
+    edges.sort_by_key(|(edge, _)| *edge);
+    let mut border = vec![false; body.vertices.len()];
+    for same in edges.chunk_by(|one, next| one.0 == next.0) {
+        let is_sharp = |pair: &[(_, Vec3)]| pair[0].1.dot(&pair[1].1) < SHARP_COSINE;
+        if same.len() == 1 || same.windows(2).any(is_sharp) {
+            let (a, b) = same[0].0;
+            border[a as usize] = true;
+            border[b as usize] = true;
+        }
+    }
+    border
+}
+
+fn clustered(body: &TriangleMesh, edge: f64, border: &[bool]) -> TriangleMesh {
+    let cell = |(vertex, is_border): (u32, &bool)| match is_border {
+        true => Cell::Border(vertex),
+        false => {
+            let place = <[f64; 3]>::from(body.vertices[vertex as usize] / edge);
+            Cell::Cube(place.map(|at| at.floor() as i64))
+        }
+    };
+    let cells: Vec<Cell> = (0..).zip(border).map(cell).collect();
+    // Sorted cells give the same order of vertices on every machine.
+    let mut members: BTreeMap<Cell, Vec<Vec3>> = BTreeMap::new();
+    for (vertex, cell) in body.vertices.iter().zip(&cells) {
+        members.entry(*cell).or_default().push(*vertex);
+    }
+    let place: BTreeMap<Cell, u32> = members.keys().copied().zip(0..).collect();
+    let renumbered = |triangle: &[u32; 3]| triangle.map(|vertex| place[&cells[vertex as usize]]);
+    let mut triangles: Vec<_> = body.triangles.iter().map(renumbered).collect();
+    triangles.retain(|[a, b, c]| a != b && b != c && c != a);
+    // Pairs of coincident triangles face both ways and are removed: a closed surface stays closed.
+    let sorted = |triangle: &[u32; 3]| {
+        let mut corners = *triangle;
+        corners.sort_unstable();
+        corners
+    };
+    triangles.sort_by_key(sorted);
+    let same = triangles.chunk_by(|one, next| sorted(one) == sorted(next));
     let odd = same.filter(|same| same.len() % 2 == 1);
-    odd.map(|same| same[0]).collect()
+    TriangleMesh {
+        triangles: odd.map(|same| same[0]).collect(),
+        vertices: members.values().map(|vertices| middle(vertices)).collect(),
+    }
 }
 
-fn sorted(mut triangle: [u32; 3]) -> [u32; 3] {
-    triangle.sort_unstable();
-    triangle
+/// Returns the vertex nearest to the mean of `vertices`.
+fn middle(vertices: &[Vec3]) -> Vec3 {
+    let mean = vertices.iter().sum::<Vec3>() / vertices.len() as f64;
+    let away = |vertex: &Vec3| (vertex - mean).norm_squared();
+    let nearest = vertices.iter().min_by(|a, b| away(a).total_cmp(&away(b)));
+    nearest.copied().unwrap_or(mean)
 }
 
 #[cfg(test)]
@@ -132,7 +124,7 @@ mod tests {
     const RADIUS_MM: f64 = 25.0;
     const RING_MM: f64 = 30.0;
 
-    fn ring() -> SceneBody {
+    fn ring() -> TriangleMesh {
         let (along, around) = (160_u32, 120_u32);
         let at = |i: u32, j: u32| {
             let (way, turn) = (
@@ -150,15 +142,15 @@ mod tests {
             [[a, b, c], [a, c, d]]
         };
         let quads = (0..along).flat_map(|i| (0..around).flat_map(move |j| quad(i, j)));
-        SceneBody {
-            nodes: nodes.collect(),
+        TriangleMesh {
+            vertices: nodes.collect(),
             triangles: quads.collect(),
         }
     }
 
     #[test]
-    fn a_coarse_ring_is_closed_and_as_far_off_as_is_said() {
-        let coarse = ring().coarser(6000);
+    fn a_coarse_ring_is_closed_and_within_its_stated_deviation() {
+        let coarse = coarser(&ring(), 6000);
         assert!(coarse.triangles.len() <= 6000 && coarse.triangles.len() > 3000);
         let mut edges = BTreeMap::new();
         for [a, b, c] in &coarse.triangles {
@@ -168,7 +160,7 @@ mod tests {
         }
         assert!(edges.values().all(|count| count % 2 == 0), "it has a hole");
         let middles = coarse.triangles.iter().map(|triangle| {
-            let [a, b, c] = triangle.map(|node| coarse.nodes[node as usize]);
+            let [a, b, c] = triangle.map(|node| coarse.vertices[node as usize]);
             (a + b + c) / 3.0
         });
         let off = middles.map(|middle| {
@@ -184,11 +176,11 @@ mod tests {
         let mut open = ring();
         let half = open.triangles.len() / 2;
         open.triangles.truncate(half);
-        let coarse = open.coarser(4000);
-        let border = open.border();
-        let places = open.nodes.iter().zip(&border).filter(|(_, is)| **is);
+        let coarse = coarser(&open, 4000);
+        let border = border(&open);
+        let places = open.vertices.iter().zip(&border).filter(|(_, is)| **is);
         for (place, _) in places {
-            assert!(coarse.nodes.contains(place));
+            assert!(coarse.vertices.contains(place));
         }
         assert!(coarse.triangles.len() <= 4000);
     }
@@ -210,28 +202,28 @@ mod tests {
             [[a, b, c], [a, c, d]]
         };
         let quads = (0..side).flat_map(|i| (0..side).flat_map(move |j| quad(i, j)));
-        let folded = SceneBody {
-            nodes: nodes.collect(),
+        let folded = TriangleMesh {
+            vertices: nodes.collect(),
             triangles: quads.collect(),
         };
-        let coarse = folded.coarser(1000);
+        let coarse = coarser(&folded, 1000);
         assert!(coarse.triangles.len() <= 1000);
         // Both sides are covered: areas as vectors add up to the same.
-        let vector = |body: &SceneBody| -> Vec3 {
-            let corners = |triangle: &[u32; 3]| triangle.map(|node| body.nodes[node as usize]);
+        let vector = |body: &TriangleMesh| -> Vec3 {
+            let corners = |triangle: &[u32; 3]| triangle.map(|node| body.vertices[node as usize]);
             let corners = body.triangles.iter().map(corners);
             corners.map(|[a, b, c]| (b - a).cross(&(c - a))).sum()
         };
-        assert!((vector(&coarse) - vector(&folded)).norm() < 1e-9 * folded.area());
+        assert!((vector(&coarse) - vector(&folded)).norm() < 1e-9 * area(&folded));
         for j in 0..=side {
-            assert!(coarse.nodes.contains(&at(side / 2, j)));
+            assert!(coarse.vertices.contains(&at(side / 2, j)));
         }
     }
 
     #[test]
     fn a_body_of_few_triangles_stays_as_it_is() {
         let ring = ring();
-        let same = ring.coarser(ring.triangles.len());
+        let same = coarser(&ring, ring.triangles.len());
         assert_eq!(same.triangles, ring.triangles);
     }
 }

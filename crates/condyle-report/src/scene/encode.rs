@@ -1,9 +1,9 @@
 //! A scene as bytes.
 
-use condyle_fem::Vec3;
+use condyle_mesh::{TriangleMesh, Vec3};
 use serde_json::{Value, json};
 
-use super::{Scene, SceneBody, SceneCycle, arrays::Arrays};
+use super::{Scene, SceneCycle, SceneUpdate, coarse::coarser};
 use crate::figure::{Curve, Panel, finite_range};
 use crate::results::ARTICULATING;
 
@@ -19,7 +19,7 @@ impl Scene {
         self.add_insert(&mut arrays);
         let fields = self.add_fields(&mut arrays);
         if let Some(femur) = &self.femur {
-            add_body(&mut arrays, "femur", &femur.coarser(FEMUR_TRIANGLES));
+            add_body(&mut arrays, "femur", &coarser(femur, FEMUR_TRIANGLES));
         }
         for cycle in &self.cycles {
             self.add_cycle(&mut arrays, cycle);
@@ -58,7 +58,7 @@ impl Scene {
             return;
         };
         arrays.whole("surface.quads", insert.articulating.quads.as_flattened());
-        add_body(arrays, "skin", &insert.skin.coarser(SKIN_TRIANGLES));
+        add_body(arrays, "skin", &coarser(&insert.skin, SKIN_TRIANGLES));
         add_places(arrays, "surface.nodes", &first.nodes);
         let moved = |update: usize| {
             let nodes = self.updates[update].nodes.iter().zip(&first.nodes);
@@ -78,7 +78,7 @@ impl Scene {
         let names = names.map(|(name, _)| name.as_str());
         let mut kept = Vec::new();
         for name in names.filter(|name| *name != ARTICULATING) {
-            let of_update = |update: &'_ super::SceneUpdate| {
+            let of_update = |update: &'_ SceneUpdate| {
                 let mut fields = update.fields.iter();
                 fields
                     .find(|(known, _)| known == name)
@@ -140,8 +140,8 @@ fn chart(panel: &Panel) -> Value {
     })
 }
 
-fn add_body(arrays: &mut Arrays, name: &str, body: &SceneBody) {
-    add_places(arrays, &format!("{name}.nodes"), &body.nodes);
+fn add_body(arrays: &mut Arrays, name: &str, body: &TriangleMesh) {
+    add_places(arrays, &format!("{name}.nodes"), &body.vertices);
     let triangles = body.triangles.as_flattened();
     arrays.whole(&format!("{name}.triangles"), triangles);
 }
@@ -154,4 +154,96 @@ fn add_places(arrays: &mut Arrays, name: &str, nodes: &[Vec3]) {
 /// Returns the smallest and largest finite value; 0 twice where there is none.
 fn range(values: impl Iterator<Item = f64>) -> [f64; 2] {
     finite_range(values).unwrap_or_default().into()
+}
+
+/// The largest quantised value.
+const LEVELS: f64 = 65535.0;
+
+/// Named arrays, one after the other.
+#[derive(Debug, Default)]
+struct Arrays {
+    /// For each array: name, kind, offset from the start of the first array in bytes, length, and the values of the
+    /// quantised numbers 0 and 65535.
+    entries: Vec<Value>,
+    bytes: Vec<u8>,
+}
+
+impl Arrays {
+    /// Adds whole numbers, in 16 bits where they fit.
+    fn whole(&mut self, name: &str, values: &[u32]) {
+        let narrow: Option<Vec<u16>> = values.iter().map(|&value| value.try_into().ok()).collect();
+        if let Some(values) = narrow {
+            let bytes = values.into_iter().flat_map(u16::to_le_bytes);
+            self.add(name, "u16", 2, bytes.collect(), None);
+        } else {
+            let bytes = values.iter().flat_map(|value| value.to_le_bytes());
+            self.add(name, "u32", 4, bytes.collect(), None);
+        }
+    }
+
+    /// Adds numbers in full precision.
+    fn exact(&mut self, name: &str, values: impl Iterator<Item = f64>) {
+        let bytes = values.flat_map(f64::to_le_bytes);
+        self.add(name, "f64", 8, bytes.collect(), None);
+    }
+
+    /// Adds numbers in 16 bits of their range; values that are not finite become the lower end.
+    fn quantised(&mut self, name: &str, values: impl Iterator<Item = f64>, range: [f64; 2]) {
+        let [low, high] = range;
+        let span = (high - low).max(f64::MIN_POSITIVE);
+        let level = |value: f64| (((value - low) / span).clamp(0.0, 1.0) * LEVELS).round() as u16;
+        let bytes = values.flat_map(|value| level(value).to_le_bytes());
+        self.add(name, "q16", 2, bytes.collect(), Some(range));
+    }
+
+    fn add(
+        &mut self,
+        name: &str,
+        kind: &'static str,
+        width: usize,
+        bytes: Vec<u8>,
+        range: Option<[f64; 2]>,
+    ) {
+        let (offset, length) = (self.bytes.len(), bytes.len() / width);
+        let entry = json!({ "name": name, "kind": kind, "offset": offset, "length": length, "range": range });
+        self.entries.push(entry);
+        self.bytes.extend(bytes);
+        // Typed arrays of JavaScript must start at a multiple of their width.
+        self.bytes.resize(self.bytes.len().next_multiple_of(8), 0);
+    }
+
+    /// Encodes eight bytes with the length of a header, the header as JSON with `facts` and the list, and the arrays.
+    fn to_bytes(&self, facts: &Value) -> Vec<u8> {
+        let head = json!({ "facts": facts, "arrays": self.entries });
+        let mut head = head.to_string().into_bytes();
+        head.resize(head.len().next_multiple_of(8), b' ');
+        let mut bytes = (head.len() as u64).to_le_bytes().to_vec();
+        bytes.append(&mut head);
+        bytes.extend_from_slice(&self.bytes);
+        bytes
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_list_says_where_each_array_begins() {
+        let mut arrays = Arrays::default();
+        arrays.whole("faces", &[1, 2, 3]);
+        arrays.quantised("depth", [0.0, 0.5, 1.0, f64::NAN].into_iter(), [0.0, 1.0]);
+        arrays.exact("cycles", [2.5].into_iter());
+        arrays.whole("many", &[70_000]);
+        let bytes = arrays.to_bytes(&json!("facts"));
+        let head = u64::from_le_bytes(bytes[..8].try_into().expect("eight bytes")) as usize;
+        let list: Value = serde_json::from_slice(&bytes[8..8 + head]).expect("the list is JSON");
+        let data = &bytes[8 + head..];
+        let begin = |at: usize| list["arrays"][at]["offset"].as_u64().expect("is listed") as usize;
+        assert_eq!(data[begin(0)..][..6], [1, 0, 2, 0, 3, 0]);
+        assert_eq!(data[begin(1)..][..8], [0, 0, 0, 128, 255, 255, 0, 0]);
+        assert_eq!(data[begin(2)..][..8], 2.5_f64.to_le_bytes());
+        assert_eq!(list["arrays"][3]["kind"], "u32");
+        assert_eq!(bytes.len() % 8, 0);
+    }
 }

@@ -3,12 +3,12 @@
 //! A [`Scene`] is made from a results folder, or from a march in memory; [`Scene::to_bytes`] encodes it for the page's
 //! programs, with the same bytes from both.
 
-mod arrays;
 mod coarse;
 mod encode;
 mod read;
 
-use condyle_fem::{HexMesh, Vec3};
+use condyle_fem::HexMesh;
+use condyle_mesh::{TriangleMesh, Vec3};
 use condyle_results::NeutralPose;
 
 use crate::charts;
@@ -22,7 +22,7 @@ pub struct Scene {
     updates: Vec<SceneUpdate>,
     charts: Vec<Panel>,
     /// The femur in the insert frame at neutral.
-    pub femur: Option<SceneBody>,
+    pub femur: Option<TriangleMesh>,
     /// The pose of the femur at neutral.
     pub neutral_pose: Option<NeutralPose>,
     /// The cycles with stored motion.
@@ -31,21 +31,12 @@ pub struct Scene {
     pub missing: Vec<String>,
 }
 
-/// Triangles of a body.
-#[derive(Clone, Debug, Default)]
-pub struct SceneBody {
-    /// Positions of the nodes, mm.
-    pub nodes: Vec<Vec3>,
-    /// Nodes of each triangle, from 0.
-    pub triangles: Vec<[u32; 3]>,
-}
-
 /// The insert: its articulating surface and the rest of its skin.
 #[derive(Clone, Debug)]
 struct SceneInsert {
     articulating: Articulating,
     nodes_of_mesh: usize,
-    skin: SceneBody,
+    skin: TriangleMesh,
 }
 
 /// The articulating surface after an update.
@@ -130,7 +121,7 @@ impl Scene {
 }
 
 /// Returns the skin of a mesh without its articulating surface, as triangles.
-fn skin(mesh: &HexMesh, articulating: &Articulating) -> SceneBody {
+fn skin(mesh: &HexMesh, articulating: &Articulating) -> TriangleMesh {
     let mut is_articulating = vec![false; mesh.nodes.len()];
     for &node in &articulating.nodes {
         is_articulating[node as usize] = true;
@@ -138,12 +129,12 @@ fn skin(mesh: &HexMesh, articulating: &Articulating) -> SceneBody {
     let rest = mesh.boundary_quads().into_iter();
     let rest = rest.filter(|quad| !quad.iter().all(|&node| is_articulating[node as usize]));
     let mut place = vec![None; mesh.nodes.len()];
-    let mut skin = SceneBody::default();
+    let mut skin = TriangleMesh::default();
     for quad in rest {
         let [a, b, c, d] = quad.map(|node| {
             *place[node as usize].get_or_insert_with(|| {
-                skin.nodes.push(mesh.nodes[node as usize]);
-                skin.nodes.len() as u32 - 1
+                skin.vertices.push(mesh.nodes[node as usize]);
+                skin.vertices.len() as u32 - 1
             })
         });
         skin.triangles.extend([[a, b, c], [a, c, d]]);

@@ -6,10 +6,10 @@ use std::{
     path::{Path, PathBuf},
 };
 
-use condyle_mesh::formats::parse_vtu_triangles;
+use condyle_mesh::{TriangleMesh, formats::parse_vtu_triangles};
 use condyle_results::{KeptCycle, catalogue::UPDATES, check_file, cycle_pressure_file};
 
-use super::{Scene, SceneBody, SceneCycle};
+use super::{Scene, SceneCycle};
 use crate::error::ReportError;
 use crate::results::{ARTICULATING, Results, Table, meshes, read_mesh, table, without_folder};
 
@@ -106,16 +106,12 @@ fn add_mesh(scene: &mut Scene, cycles: f64, path: &Path) -> Result<(), String> {
     Err(left_out("has another mesh than the insert before it"))
 }
 
-fn femur(folder: &Path, missing: &mut Vec<String>) -> Option<SceneBody> {
+fn femur(folder: &Path, missing: &mut Vec<String>) -> Option<TriangleMesh> {
     let path = folder.join("femur.vtu");
     let bytes = fs::read(&path).ok()?;
     let checked = check_file(&path).map_err(ReportError::from);
     let read = checked.and_then(|()| Ok(parse_vtu_triangles(&path, &bytes)?));
-    let mesh = or_missing(read.map(Some), missing)?;
-    Some(SceneBody {
-        nodes: mesh.vertices,
-        triangles: mesh.triangles,
-    })
+    or_missing(read.map(Some), missing)
 }
 
 /// Returns the cycles of `femur_pose.csv`, with their pressures where the folder has them.

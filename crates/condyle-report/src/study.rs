@@ -1,0 +1,248 @@
+//! Pictures of studies over many tests, and the page that shows them.
+
+use std::path::{Path, PathBuf};
+
+use crate::error::ReportError;
+use crate::figure::{Axis, Curve, MEASURED, Panel, escape, finite_range, sheet, svg_file, titled};
+use crate::number::significant;
+use crate::sheets::{Sheets, write_text};
+
+const MAX_INTERVALS: usize = 6;
+
+/// Writes `study.html` and every picture into `folder`, and returns the path of the page.
+///
+/// `tables`: headings and rows, of which the first is the head. `pictures`: file names, captions and texts.
+///
+/// # Errors
+/// A folder that cannot be written.
+pub fn write_study_page(
+    folder: &Path,
+    title: &str,
+    lede: &str,
+    tables: &[(String, Vec<Vec<String>>)],
+    pictures: &[(&'static str, String, String)],
+) -> Result<PathBuf, ReportError> {
+    for (name, _, svg) in pictures {
+        write_text(folder.join(name), svg)?;
+    }
+    let sheets = Sheets {
+        kicker: "condyle study",
+        title,
+        lede,
+        tables,
+        pictures,
+        ..Sheets::default()
+    };
+    write_text(folder.join("study.html"), &sheets.html())
+}
+
+/// Size of a picture of bars, px: with space for the names on the left, the values on the right, and the heading.
+const WIDTH: f64 = 760.0;
+const LEFT: f64 = 270.0;
+const RIGHT: f64 = 70.0;
+const TOP: f64 = 44.0;
+/// Distance between bars and their thickness, px.
+const PITCH: f64 = 26.0;
+const THICK: f64 = 14.0;
+
+/// A horizontal bar: of a tornado, an index or a ranking.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Bar {
+    /// The label.
+    pub name: String,
+    /// Both ends.
+    pub span: [f64; 2],
+    /// An interval, drawn as a thin line over the bar.
+    pub interval: Option<[f64; 2]>,
+}
+
+/// A picture of bars.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Bars {
+    /// The heading.
+    pub title: String,
+    /// Unit of the values; may be empty.
+    pub unit: String,
+    /// A vertical line for comparison.
+    pub middle: Option<f64>,
+    /// The bars from the top.
+    pub bars: Vec<Bar>,
+}
+
+/// Returns the text of an SVG file.
+pub fn bars_svg(bars: &Bars) -> String {
+    let ends = bars.bars.iter().flat_map(|bar| {
+        let interval = bar.interval.into_iter().flatten();
+        bar.span.into_iter().chain(interval)
+    });
+    let (low, high) = finite_range(ends.chain(bars.middle)).unwrap_or((0.0, 1.0));
+    let min_span = 1e-9 * low.abs().max(high.abs()).max(1e-9);
+    let axis = Axis::covering(low, high, min_span, MAX_INTERVALS);
+    let to_x = |value: f64| LEFT + axis.fraction(value) * (WIDTH - LEFT - RIGHT);
+    let bottom = TOP + PITCH * bars.bars.len() as f64;
+    let title = titled(&bars.title, &bars.unit);
+    let mut body = format!(r#"<text x="0" y="16" class="title">{title}</text>"#);
+    for tick in axis.ticks() {
+        let (x, base, label) = (to_x(tick), bottom + 17.0, axis.label(tick));
+        body += &format!(
+            r#"<path class="grid" d="M{x:.1} {TOP}V{bottom}"/><text x="{x:.1}" y="{base}" text-anchor="middle">{label}</text>"#
+        );
+    }
+    for (place, bar) in bars.bars.iter().enumerate() {
+        let y = TOP + PITCH * (place as f64 + 0.5);
+        let [low, high] = bar.span;
+        let (x, end) = (to_x(low.min(high)), to_x(low.max(high)));
+        let (width, top, base) = ((end - x).max(1.0), y - THICK / 2.0, y + 3.8);
+        let (name, name_x) = (escape(&bar.name), LEFT - 10.0);
+        body += &format!(
+            r#"<text x="{name_x}" y="{base:.1}" text-anchor="end">{name}</text><rect class="bar" x="{x:.1}" y="{top:.1}" width="{width:.1}" height="{THICK}"/>"#
+        );
+        let mut label_at = end;
+        if let Some(interval) = bar.interval {
+            let [from, to] = interval.map(to_x);
+            body += &format!(r#"<path class="mark" d="M{from:.1} {y:.1}H{to:.1}"/>"#);
+            label_at = label_at.max(to);
+        }
+        let (label, label_x) = (significant(high - low, 3), label_at + 6.0);
+        body += &format!(r#"<text x="{label_x:.1}" y="{base:.1}">{label}</text>"#);
+    }
+    if let Some(middle) = bars.middle {
+        let x = to_x(middle);
+        body += &format!(r#"<path class="axis" d="M{x:.1} {TOP}V{bottom}"/>"#);
+    }
+    let described = bars.bars.iter().map(|bar| {
+        let [low, high] = bar.span.map(|end| significant(end, 4));
+        format!("{}: {low} to {high}", bar.name)
+    });
+    let described = described.collect::<Vec<_>>().join("; ");
+    svg_file(&bars.title, &described, (WIDTH, bottom + 26.0), &body)
+}
+
+/// The distribution of an output.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Distribution {
+    /// The output.
+    pub title: String,
+    /// Its unit.
+    pub unit: String,
+    /// All values, smallest first.
+    pub sorted: Vec<f64>,
+    /// Marked percentiles.
+    pub marks: Vec<f64>,
+    /// Its limits.
+    pub limits: Vec<f64>,
+}
+
+/// Returns the text of an SVG file with one panel per output.
+pub fn distributions_svg(all: &[Distribution]) -> String {
+    let panels: Vec<Panel> = all.iter().map(histogram).collect();
+    let names: Vec<&str> = all.iter().map(|one| one.title.as_str()).collect();
+    let desc = format!("Distributions of {} over the tests.", names.join(", "));
+    let has_limits = all.iter().any(|one| !one.limits.is_empty());
+    let key = [
+        ("last", "tests"),
+        (MEASURED, "5, 50 and 95 %"),
+        ("first", "limit"),
+    ];
+    let shown = if has_limits { 3 } else { 2 };
+    sheet("Distributions", &desc, &panels, 2, &key[..shown])
+}
+
+fn histogram(one: &Distribution) -> Panel {
+    let ends = [one.sorted.first(), one.sorted.last()]
+        .into_iter()
+        .flatten();
+    let ends = ends.chain(&one.limits).copied();
+    let (low, high) = finite_range(ends).unwrap_or((0.0, 1.0));
+    let outline = outline(&one.sorted);
+    let highest = outline.iter().map(|point| point.1).fold(0.0, f64::max);
+    let upright = |class, at: &f64| Curve::new(class, vec![(*at, 0.0), (*at, highest)]);
+    let mut curves: Vec<Curve> = one.limits.iter().map(|at| upright("first", at)).collect();
+    curves.extend(one.marks.iter().map(|at| upright(MEASURED, at)));
+    curves.push(Curve::new("last", outline));
+    Panel {
+        title: match one.unit.as_str() {
+            "" => one.title.clone(),
+            unit => format!("{}, {unit}", one.title),
+        },
+        unit: "% of tests".to_owned(),
+        x: Axis::covering(low, high, 1e-9 * high.abs().max(1e-9), MAX_INTERVALS),
+        size: (480.0, 232.0),
+        from_zero: true,
+        min_span: 1e-6,
+        curves,
+        ..Panel::default()
+    }
+}
+
+/// Returns the outline of a histogram, % of the values in each slice; the number of slices is the root of the number
+/// of values.
+fn outline(sorted: &[f64]) -> Vec<(f64, f64)> {
+    let (Some(low), Some(high)) = (sorted.first(), sorted.last()) else {
+        return Vec::new();
+    };
+    // With more slices than this the picture shows noise.
+    const MAX_SLICES: usize = 60;
+    let slices = ((sorted.len() as f64).sqrt().ceil() as usize).clamp(1, MAX_SLICES);
+    let width = ((high - low) / slices as f64).max(1e-12 * high.abs().max(1e-300));
+    let mut counts = vec![0.0; slices];
+    for value in sorted {
+        let slice = ((value - low) / width) as usize;
+        counts[slice.min(slices - 1)] += 100.0 / sorted.len() as f64;
+    }
+    let mut points = vec![(*low, 0.0)];
+    for (slice, count) in counts.into_iter().enumerate() {
+        let left = low + slice as f64 * width;
+        points.extend([(left, count), (left + width, count)]);
+    }
+    points.push((low + slices as f64 * width, 0.0));
+    points
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_bar_has_its_name_and_text_is_escaped() {
+        let bar = |name: &str, high| Bar {
+            name: name.to_owned(),
+            span: [1.0, high],
+            interval: Some([high - 0.1, high + 0.1]),
+        };
+        let svg = bars_svg(&Bars {
+            title: "Mass & more".to_owned(),
+            unit: "mg".to_owned(),
+            middle: Some(1.0),
+            bars: vec![bar("friction <a>", 3.0), bar("load", 2.0)],
+        });
+        assert_eq!(svg.matches("<rect class=\"bar\"").count(), 2);
+        assert!(svg.contains("friction &lt;a&gt;") && svg.contains("Mass &amp; more"));
+        assert!(roxmltree::Document::parse(&svg).is_ok());
+    }
+
+    #[test]
+    fn verify_all_tests_are_in_the_outline() {
+        let sorted: Vec<f64> = (0..100).map(f64::from).collect();
+        let outline = outline(&sorted);
+        let sum: f64 = outline[1..outline.len() - 1]
+            .iter()
+            .step_by(2)
+            .map(|point| point.1)
+            .sum();
+        assert!((sum - 100.0).abs() < 1e-9);
+    }
+
+    #[test]
+    fn one_value_alone_and_none_are_drawn() {
+        let of = |sorted| Distribution {
+            title: "a".to_owned(),
+            unit: String::new(),
+            sorted,
+            marks: Vec::new(),
+            limits: vec![2.0],
+        };
+        let svg = distributions_svg(&[of(vec![1.0, 1.0]), of(Vec::new())]);
+        assert!(roxmltree::Document::parse(&svg).is_ok() && !svg.contains("NaN"));
+    }
+}
