@@ -1,7 +1,7 @@
 // A chart as a picture on white, for a paper.
 
 import { acrossTitle, withUnit } from "./plots";
-import { inDigits } from "./quantities";
+import { inDigits } from "./digits";
 import type { Chart } from "./scene";
 
 const [WIDTH, HEIGHT] = [480, 300];

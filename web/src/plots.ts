@@ -3,7 +3,7 @@
 import uPlot from "uplot";
 import { chartSvg } from "./chart_svg";
 import { button, element } from "./dom";
-import { inDigits } from "./quantities";
+import { inDigits } from "./digits";
 import { savePicture, saveText } from "./save";
 import type { Chart } from "./scene";
 
@@ -99,7 +99,7 @@ export class Plot {
   }
 }
 
-export function withUnit({ title, unit }: Chart): string {
+export function withUnit({ title, unit }: Pick<Chart, "title" | "unit">): string {
   return unit ? `${title}, ${unit}` : title;
 }
 

@@ -3,7 +3,6 @@
 import { element } from "./dom";
 import { FlatMaps } from "./flat_maps";
 import { Plot, type PlotOptions } from "./plots";
-import { quantity } from "./quantities";
 import type { Chart, Scene } from "./scene";
 import { updateAfter, Viewer } from "./viewer";
 
@@ -62,9 +61,9 @@ export class RunView {
     const [x, , z] = viewer.placeOf(node);
     this.maps.mark(x, z);
     const { fields, updates } = this.scene.facts;
-    const name = fields.includes(viewer.shownField) ? viewer.shownField : fields[0];
-    if (name === undefined) return;
-    const { label, unit } = quantity(name);
+    const field = fields.find(({ name }) => name === viewer.shownField) ?? fields[0];
+    if (!field) return;
+    const { name, label, unit } = field;
     const curve = {
       name: label,
       style: "last",

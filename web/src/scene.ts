@@ -12,10 +12,17 @@ export interface Pose {
   rotation: number[][];
 }
 
+// A field of the surface, its name in words and its unit.
+export interface Field {
+  name: string;
+  label: string;
+  unit: string;
+}
+
 interface Facts {
   // JSON has no NaN: an update whose cycles are not known has none.
   updates: (number | null)[];
-  fields: string[];
+  fields: Field[];
   cycles: CycleFacts[];
   neutral_pose: Pose | null;
   has_femur: boolean;

@@ -3,10 +3,11 @@
 import { gradient, type MapName } from "./colours";
 import { button, choice, element, labelled, slider } from "./dom";
 import { forces, shares } from "./forces";
-import { cyclesInWords, inDigits, quantity, withUnit } from "./quantities";
+import { cyclesInWords, inDigits } from "./digits";
+import { withUnit } from "./plots";
 import { savePicture } from "./save";
 import { matrixOf, stageOr, type Axis, type Force, type Stage, type View } from "./stage";
-import type { CycleFacts, Pressed, Scene } from "./scene";
+import type { CycleFacts, Field, Pressed, Scene } from "./scene";
 
 // The pressure through the cycle, by which the surface can be coloured besides the fields of an update.
 const IN_CYCLE = "pressure_mpa";
@@ -56,8 +57,8 @@ export class Viewer {
   private node: number | undefined;
   private legendShown = "";
   private values: Float32Array = new Float32Array();
-  private saidAt = 0;
-  private readonly said = element("output", { class: "told" });
+  private statusAt = 0;
+  private readonly status = element("output", { class: "status" });
   private readonly picked = element("div", { class: "picked", "aria-live": "polite" });
   private readonly bar = element("div", { class: "bar" });
   private readonly barEnds = element("div", { class: "ends" });
@@ -71,14 +72,14 @@ export class Viewer {
     const host = element("div", { class: "stage" });
     this.stage = stageOr(host, scene);
     this.update = updates.length - 1;
-    this.field = fields.includes("wear_depth_mm") ? "wear_depth_mm" : (fields[0] ?? IN_CYCLE);
+    this.field = (fields.find(({ name }) => name === "wear_depth_mm") ?? fields[0])?.name ?? IN_CYCLE;
     this.cycles = cyclesOf(scene);
     this.cycle = this.cycles.at(-1);
     this.fields = choice(this.shownFields(), (field) => this.colourBy(field));
     this.fields.value = this.field;
     this.updates = slider(0, updates.length - 1, 1, this.update, (update) => this.showUpdate(update));
     this.instants = slider(0, Math.max(0, (this.cycle?.percents.length ?? 1) - 1), 1, 0, (instant) => this.showInstant(instant));
-    this.box.append(host, this.legend(), this.said, this.controls(), this.picked);
+    this.box.append(host, this.legend(), this.status, this.controls(), this.picked);
     this.listen();
     this.showUpdate(this.update);
   }
@@ -88,7 +89,7 @@ export class Viewer {
     this.isInCycle = false;
     this.update = update;
     this.updates.value = String(update);
-    if (this.field === IN_CYCLE) this.field = this.fields.value = this.scene.facts.fields[0] ?? IN_CYCLE;
+    if (this.field === IN_CYCLE) this.field = this.fields.value = this.scene.facts.fields[0]?.name ?? IN_CYCLE;
     this.surface = this.scene.surface(update) as Float32Array<ArrayBuffer>;
     this.stage?.moveFemur();
     this.stage?.press([]);
@@ -121,9 +122,9 @@ export class Viewer {
   }
 
   // Values of all fields at a node, at the update that is shown.
-  valuesAt(node: number): [string, number][] {
+  valuesAt(node: number): [Field, number][] {
     const { fields } = this.scene.facts;
-    return fields.map((name) => [name, this.scene.field(name, this.update)[node]!]);
+    return fields.map((field) => [field, this.scene.field(field.name, this.update)[node]!]);
   }
 
   get shownField(): string {
@@ -133,7 +134,7 @@ export class Viewer {
   // Takes the view and the field of another viewer.
   lookAs(other: Viewer): void {
     if (other.stage) this.stage?.lookAs(other.stage);
-    if (!this.scene.facts.fields.includes(other.field)) return;
+    if (!this.scene.facts.fields.some(({ name }) => name === other.field)) return;
     this.fields.value = other.field;
     this.colourBy(other.field);
   }
@@ -146,8 +147,8 @@ export class Viewer {
   // While the cycle plays, text and controls change no more often than can be read, since every change is painted.
   private isToBeRead(): boolean {
     const now = performance.now();
-    if (this.playing && now - this.saidAt < READ_MS) return false;
-    this.saidAt = now;
+    if (this.playing && now - this.statusAt < READ_MS) return false;
+    this.statusAt = now;
     return true;
   }
 
@@ -189,7 +190,8 @@ export class Viewer {
     if (shown === this.legendShown) return;
     this.legendShown = shown;
     this.bar.style.background = gradient(this.map);
-    const { unit } = quantity(this.field);
+    const shownField = this.scene.facts.fields.find(({ name }) => name === this.field);
+    const unit = shownField?.unit ?? "MPa";
     const ends = [0, 0.25, 0.5, 0.75, 1].map((part) => inDigits(range[0] + part * (range[1] - range[0])));
     this.barEnds.replaceChildren(...ends.map((end, index) => element("span", {}, index === 4 ? `${end} ${unit}` : end)));
   }
@@ -230,11 +232,11 @@ export class Viewer {
   }
 
   private say(words: string): void {
-    this.said.textContent = words;
+    this.status.textContent = words;
   }
 
   private shownFields(): [string, string][] {
-    const options = this.scene.facts.fields.map((name): [string, string] => [name, withUnit(quantity(name))]);
+    const options = this.scene.facts.fields.map(({ name, label, unit }): [string, string] => [name, withUnit({ title: label, unit })]);
     if (this.cycles.some(({ facts }) => facts.has_pressure)) options.push([IN_CYCLE, "Pressure through the cycle, MPa"]);
     return options;
   }
@@ -363,10 +365,9 @@ export class Viewer {
     this.stage?.mark(node);
     const [x, y, z] = this.placeOf(node);
     const place = `x ${inDigits(x)}, y ${inDigits(y)}, z ${inDigits(z)} mm`;
-    const rows = this.valuesAt(node).map(([name, value]) => {
-      const { label, unit } = quantity(name);
-      return element("div", {}, element("dt", {}, label), element("dd", {}, `${inDigits(value)} ${unit}`));
-    });
+    const rows = this.valuesAt(node).map(([{ label, unit }, value]) =>
+      element("div", {}, element("dt", {}, label), element("dd", {}, `${inDigits(value)} ${unit}`)),
+    );
     this.picked.replaceChildren(element("p", {}, `At ${place}:`), element("dl", { class: "facts" }, ...rows));
     this.onPick(node);
   }

@@ -41,30 +41,9 @@ impl Compliance {
     pub fn values(&self) -> &[f64] {
         &self.values
     }
-
-    /// Returns the displacement of a node by a force, both in the order in which they were given.
-    ///
-    /// # Panics
-    /// If there is no such node or force.
-    pub fn displacement(&self, node: usize, force: usize) -> Vec3 {
-        Vec3::from_fn(|k, _| self.values[(3 * node + k) * self.forces + force])
-    }
 }
 
 impl ElasticSolid {
-    /// Returns the displacements of `nodes` by a unit force on each of them along its direction.
-    ///
-    /// Column j is the force on `nodes[j]` along `directions[j]`, a unit vector, so that values are lengths per
-    /// force.
-    ///
-    /// # Panics
-    /// If there is no such node, or not one direction per node.
-    pub fn compliance(&self, nodes: &[u32], directions: &[Vec3]) -> Compliance {
-        assert_eq!(nodes.len(), directions.len(), "a direction for every node");
-        let forces = nodes.iter().copied().zip(directions.iter().copied());
-        self.influence(nodes, &forces.collect::<Vec<_>>())
-    }
-
     /// Returns the displacements of `nodes` by forces on other nodes, each acting alone.
     ///
     /// By reciprocity it is also the displacement by forces on `nodes`, such as those of an eigenstrain
@@ -169,7 +148,15 @@ impl ElasticSolid {
         let felt: Vec<usize> = (0..felt.len()).filter(|&group| felt[group]).collect();
         let mut memory = Columns::new(factor.freedoms());
         let strips = forces.chunks(Columns::COLUMNS).map(|forces| {
-            self.load(forces, &mut memory);
+            for (column, forces) in forces.iter().enumerate() {
+                for &(node, force) in *forces {
+                    if let Some(place) = factor.dissection.place(node) {
+                        for (k, component) in self.felt(node, force).iter().enumerate() {
+                            *memory.at_mut(3 * place as usize + k, column) += *component;
+                        }
+                    }
+                }
+            }
             factor.solve_half(&felt, &mut memory)
         });
         let strips = strips.collect();
@@ -183,19 +170,6 @@ impl ElasticSolid {
             forces: forces.len(),
             groups: groups.collect(),
             strips,
-        }
-    }
-
-    /// Puts sums of forces in zeros.
-    fn load(&self, forces: &[&[(u32, Vec3)]], zeros: &mut Columns) {
-        for (column, forces) in forces.iter().enumerate() {
-            for &(node, force) in *forces {
-                if let Some(place) = self.factor.dissection.place(node) {
-                    for (k, component) in self.felt(node, force).iter().enumerate() {
-                        *zeros.at_mut(3 * place as usize + k, column) += *component;
-                    }
-                }
-            }
         }
     }
 }
@@ -219,8 +193,13 @@ impl HalfSolved {
             {
                 for (at, other) in others.strips.iter().enumerate() {
                     let sums = products(own, other, four, &common);
-                    let place = [row, Columns::COLUMNS * at];
-                    put(&mut moved, [self.forces, others.forces], place, &sums);
+                    for (row, sums) in (row..self.forces).zip(&sums) {
+                        let numbers = sums.iter().flat_map(|sum| *sum.as_array());
+                        let columns = Columns::COLUMNS * at..others.forces;
+                        for (column, number) in columns.zip(numbers) {
+                            moved[row * others.forces + column] = number;
+                        }
+                    }
                 }
             }
         }
@@ -241,7 +220,6 @@ impl HalfSolved {
     }
 }
 
-/// Products of four forces with those of another strip.
 fn products(
     own: &[[f64x4; VECTORS]],
     other: &[[f64x4; VECTORS]],
@@ -260,16 +238,6 @@ fn products(
         }
     }
     sums
-}
-
-/// Writes sums to their places in a row-major matrix of that size, as far as they lie inside.
-fn put(matrix: &mut [f64], [rows, columns]: [usize; 2], [row, column]: [usize; 2], sums: &Sums) {
-    for (row, sums) in (row..rows).zip(sums) {
-        let numbers = sums.iter().flat_map(|sum| *sum.as_array());
-        for (column, number) in (column..columns).zip(numbers) {
-            matrix[row * columns + column] = number;
-        }
-    }
 }
 
 #[cfg(test)]
@@ -293,19 +261,27 @@ mod tests {
     fn columns_are_the_displacements_by_single_forces() {
         let (solid, nodes) = (standing([9, 8, 4]), some_nodes());
         let directions: Vec<Vec3> = nodes.iter().map(|&n| direction(n)).collect();
-        let compliance = solid.compliance(&nodes, &directions);
+        let forces: Vec<_> = nodes
+            .iter()
+            .copied()
+            .zip(directions.iter().copied())
+            .collect();
+        let compliance = solid.influence(&nodes, &forces);
+        let displacement = |node: usize, force: usize| {
+            Vec3::from_fn(|k, _| compliance.values()[(3 * node + k) * 42 + force])
+        };
         assert_eq!(compliance.values().len(), 3 * 42 * 42);
         for (j, (&node, &direction)) in nodes.iter().zip(&directions).enumerate() {
             let alone = solid.displacements(&[(node, direction)]);
             for (i, &node) in nodes.iter().enumerate() {
-                let found = compliance.displacement(i, j);
+                let found = displacement(i, j);
                 assert!((found - alone[node as usize]).norm() < 1e-15);
             }
-            assert_eq!(compliance.displacement(40, j), Vec3::zeros());
+            assert_eq!(displacement(40, j), Vec3::zeros());
         }
         // Work is the same whichever force comes first (Betti).
         for (i, j) in [(0, 7), (12, 33), (41, 5)] {
-            let work = |a: usize, b: usize| compliance.displacement(a, b).dot(&directions[a]);
+            let work = |a: usize, b: usize| displacement(a, b).dot(&directions[a]);
             assert!((work(i, j) - work(j, i)).abs() < 1e-15);
         }
     }

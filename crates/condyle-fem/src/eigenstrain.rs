@@ -164,7 +164,6 @@ impl YieldingElement {
         std::array::from_fn(|node| nodes[node] - passed_on[node])
     }
 
-    /// Strains at the Gauss points with the modes in balance with eigenstrains.
     fn strains(
         &self,
         solid: &ElasticSolid,
@@ -176,7 +175,6 @@ impl YieldingElement {
         solid.elements()[self.number].strains(nodes, &modes)
     }
 
-    /// Forces of eigenstrains on the nodes and on the modes.
     fn pull(&self, solid: &ElasticSolid, eigenstrains: &[Strain; POINTS]) -> ([Vec3; 8], Modes) {
         let elastic = solid.elastic();
         let stresses = eigenstrains.map(|strain| elastic.stress(&strain));

@@ -48,7 +48,6 @@ impl Elastic {
         material.checked()
     }
 
-    /// Returns the material if its constants are possible.
     pub(crate) fn checked(self) -> Result<Self, ElasticError> {
         let Self {
             youngs_modulus,

@@ -19,7 +19,6 @@ use crate::{
     stress::{Strain, Stress},
 };
 
-/// Gauss points of an element.
 pub(crate) const POINTS: usize = 8;
 /// Number of incompatible functions, in addition to the eight of the nodes.
 const MODES: usize = 3;
@@ -54,7 +53,6 @@ pub(crate) struct Element {
 
 /// Strains at one Gauss point by displacements.
 struct Point {
-    /// Gradient of every function.
     gradients: [Vec3; FUNCTIONS],
     /// The projected divergence by a displacement of every function.
     dilatations: [Vec3; FUNCTIONS],
@@ -89,21 +87,6 @@ impl Stiffness {
     pub(crate) fn passed_on(&self, forces: &Modes) -> [Vec3; 8] {
         let passed = self.coupling.tr_mul(&self.modal.solve(forces));
         std::array::from_fn(|node| passed.fixed_rows::<3>(3 * node).into_owned())
-    }
-}
-
-impl Point {
-    /// Subtracts the stiffness that is lost along the flow by yielding.
-    fn soften(&self, softening: &Softening, all: &mut SMatrix<f64, 33, 33>) {
-        let along = self
-            .gradients
-            .map(|gradient| softening.flow.times(&gradient));
-        for (a, row) in along.iter().enumerate() {
-            for (b, column) in along[..=a].iter().enumerate() {
-                let mut place = all.fixed_view_mut::<3, 3>(3 * a, 3 * b);
-                place -= row * column.transpose() * (self.volume * softening.along_flow);
-            }
-        }
     }
 }
 
@@ -184,7 +167,6 @@ impl Element {
         }
     }
 
-    /// Elastic stiffness.
     pub(crate) fn stiffness(&self, elastic: &Elastic) -> Stiffness {
         self.softened(elastic, &[None; POINTS])
     }
@@ -198,8 +180,16 @@ impl Element {
         let mut all = SMatrix::<f64, 33, 33>::zeros();
         self.add_stiffness(elastic, softenings, &mut all);
         for (point, softening) in self.points.iter().zip(softenings) {
-            if let Some(softening) = softening {
-                point.soften(softening, &mut all);
+            // The stiffness that is lost along the flow by yielding.
+            let Some(softening) = softening else { continue };
+            let along = point
+                .gradients
+                .map(|gradient| softening.flow.times(&gradient));
+            for (a, row) in along.iter().enumerate() {
+                for (b, column) in along[..=a].iter().enumerate() {
+                    let mut place = all.fixed_view_mut::<3, 3>(3 * a, 3 * b);
+                    place -= row * column.transpose() * (point.volume * softening.along_flow);
+                }
             }
         }
         all.fill_upper_triangle_with_lower_triangle();
@@ -272,7 +262,6 @@ impl Element {
         )
     }
 
-    /// Returns the strain at every Gauss point.
     pub(crate) fn strains(&self, nodes: &[Vec3; 8], modes: &Modes) -> [Strain; POINTS] {
         let amplitude = |f: usize| match f.checked_sub(8) {
             None => nodes[f],
@@ -290,7 +279,6 @@ impl Element {
         })
     }
 
-    /// Stress at every Gauss point of an elastic element with eigenstrains.
     pub(crate) fn stresses(
         &self,
         elastic: &Elastic,
@@ -316,7 +304,6 @@ impl Element {
         })
     }
 
-    /// Returns the share of every Gauss point of the volume.
     pub(crate) fn volumes(&self) -> [f64; POINTS] {
         std::array::from_fn(|p| self.points[p].volume)
     }

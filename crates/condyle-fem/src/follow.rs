@@ -17,7 +17,6 @@ const RELATIVE_RESIDUAL: f64 = 1e-2;
 pub struct InteriorFollower {
     /// Nodes that are not held, ascending; "row k" is that of node `free[k]`.
     free: Vec<u32>,
-    /// The neighbours of every row.
     neighbours: Neighbours,
     /// The inverse of their number: the inverse of the diagonal, the preconditioner.
     scale: Vec<f64>,
@@ -55,9 +54,14 @@ impl InteriorFollower {
     /// # Panics
     /// If there are fewer displacements than the mesh has nodes.
     pub fn follow(&self, displacement: &mut [Vec3]) {
-        // Relative to the pull of the held nodes, not to the first residual: with a good initial guess the iteration
-        // then ends at once.
-        let enough2 = (RELATIVE_RESIDUAL * self.pull_of_held(displacement)).powi(2);
+        // Relative to the pull of the held nodes alone, not to the first residual: with a good initial guess the
+        // iteration then ends at once.
+        let mut held = displacement.to_vec();
+        for &node in &self.free {
+            held[node as usize] = Vec3::zeros();
+        }
+        let pull2: f64 = self.pulls(&held).map(|pull| pull.norm_squared()).sum();
+        let enough2 = (RELATIVE_RESIDUAL * pull2.sqrt()).powi(2);
         let mut residual: Vec<Vec3> = self.pulls(displacement).collect();
         let (mut length2, mut scaled2) = self.size(&residual);
         let mut direction = vec![Vec3::zeros(); displacement.len()];
@@ -115,21 +119,8 @@ impl InteriorFollower {
             sum - u[node as usize] * around.len() as f64
         })
     }
-
-    /// Returns the length of the pull of the held nodes alone.
-    fn pull_of_held(&self, displacement: &[Vec3]) -> f64 {
-        let mut held = displacement.to_vec();
-        for &node in &self.free {
-            held[node as usize] = Vec3::zeros();
-        }
-        self.pulls(&held)
-            .map(|pull| pull.norm_squared())
-            .sum::<f64>()
-            .sqrt()
-    }
 }
 
-/// The neighbours along the edges of some nodes.
 pub(crate) struct Neighbours {
     /// The neighbours of row k are `nodes[first[k]..first[k + 1]]`, ascending.
     first: Vec<usize>,
@@ -162,13 +153,11 @@ impl Neighbours {
         Self { first, nodes }
     }
 
-    /// Returns the neighbours of row `k`.
     #[inline]
     pub(crate) fn of(&self, k: usize) -> &[u32] {
         &self.nodes[self.first[k]..self.first[k + 1]]
     }
 
-    /// Returns the number of neighbours of each row.
     pub(crate) fn counts(&self) -> impl Iterator<Item = usize> {
         self.first.windows(2).map(|ends| ends[1] - ends[0])
     }

@@ -49,9 +49,10 @@
 //! let displacements = solid.displacements(&[(6, down * 10.0)]);
 //! assert!(displacements[6].z < 0.0 && displacements[0].norm() == 0.0);
 //!
-//! // The same by the compliance of two nodes, computed once for all loads.
-//! let compliance = solid.compliance(&[6, 7], &[down, down]);
-//! assert!((compliance.displacement(0, 0) * 10.0 - displacements[6]).norm() < 1e-12);
+//! // The same along the forces on two nodes, computed once for all loads.
+//! let forces = solid.half_solved(&[(6, down), (7, down)]);
+//! let compliance = forces.moved_along(&forces);
+//! assert!((compliance[0] * 10.0 - displacements[6].dot(&down)).abs() < 1e-12);
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 

@@ -48,37 +48,39 @@ impl HexMesh {
     /// # Panics
     /// If an element names a missing node.
     pub fn boundary_quads(&self) -> Vec<[u32; 4]> {
-        let shared = self.shared_quads();
-        let alone = shared
-            .iter()
-            .enumerate()
-            .filter(|(_, is_shared)| !**is_shared);
-        alone.map(|(quad, _)| self.quad(quad)).collect()
+        self.boundary_quads_where(|_| true)
     }
 
-    /// Returns for each quad whether another hexahedron shares it.
+    /// Returns those of the boundary quads for which `is_chosen`, which must not depend on the order of the nodes.
     ///
-    /// Every quad is compared with the few earlier quads that have the same lowest node.
-    fn shared_quads(&self) -> Vec<bool> {
-        // Chained lists in two flat arrays: several times faster than a map of sorted quads.
+    /// # Panics
+    /// If an element names a missing node.
+    pub fn boundary_quads_where(&self, is_chosen: impl Fn(&[u32; 4]) -> bool) -> Vec<[u32; 4]> {
+        // Every quad is compared with the few earlier quads that have the same lowest node. Chained lists in two flat arrays: several times faster than a map of sorted quads.
         const NONE: u32 = u32::MAX;
         let count = HEX_FACES.len() * self.hexes.len();
-        let mut is_shared = vec![false; count];
+        let mut is_left_out = vec![false; count];
         let mut newest = vec![NONE; self.nodes.len()];
         let mut older = vec![NONE; count];
         for here in 0..count {
-            let quad = sorted(self.quad(here));
+            let quad = self.quad(here);
+            if !is_chosen(&quad) {
+                is_left_out[here] = true;
+                continue;
+            }
+            let quad = sorted(quad);
             older[here] = std::mem::replace(&mut newest[quad[0] as usize], here as u32);
             let mut other = older[here];
             while other != NONE {
                 let at = other as usize;
                 if sorted(self.quad(at)) == quad {
-                    (is_shared[at], is_shared[here]) = (true, true);
+                    (is_left_out[at], is_left_out[here]) = (true, true);
                 }
                 other = older[at];
             }
         }
-        is_shared
+        let left = (0..count).filter(|&quad| !is_left_out[quad]);
+        left.map(|quad| self.quad(quad)).collect()
     }
 
     /// Returns a quad by its number; each element has six.
@@ -167,14 +169,13 @@ impl HexMesh {
         self.hexes.chunks(LANES).flat_map(|hexes| {
             let at = |corner: usize| self.gathered(hexes, corner);
             let (bottom, top) = ([at(0), at(1), at(2), at(3)], [at(4), at(5), at(6), at(7)]);
+            let upright = |i: usize| top[i] - bottom[i];
+            let upright = [upright(0), upright(1), upright(2), upright(3)];
             // The least of the signed squares belongs to the least value: one root per element is enough.
-            let squares = least_signed_squares(&bottom, &top);
+            let squares = around(&bottom, &upright).min(around(&top, &upright));
             let quality = |square: f64| square.abs().sqrt().copysign(square);
-            squares
-                .to_array()
-                .map(quality)
-                .into_iter()
-                .take(hexes.len())
+            let qualities = squares.to_array().map(quality);
+            qualities.into_iter().take(hexes.len())
         })
     }
 
@@ -193,17 +194,8 @@ impl HexMesh {
     }
 }
 
-/// Returns the smallest square of the scaled Jacobian over all corners, with its sign: so one root is enough.
-///
-/// The corners of the bottom and of the top are anticlockwise seen from the top.
-#[inline(always)]
-fn least_signed_squares(bottom: &[Vec3x4; 4], top: &[Vec3x4; 4]) -> f64x4 {
-    let upright = |i: usize| top[i] - bottom[i];
-    let upright = [upright(0), upright(1), upright(2), upright(3)];
-    around(bottom, &upright).min(around(top, &upright))
-}
-
-/// Returns the same square over the corners of the bottom or the top.
+/// Returns the smallest square of the scaled Jacobian, with its sign, over the corners of the bottom or the top, which
+/// are anticlockwise seen from the top.
 ///
 /// With e and f the edges that lead to a corner and on from it, and h the upright one, the triple
 /// product is e x f . h, at the bottom as at the top.
@@ -256,30 +248,25 @@ impl HexMesh {
         let mut forces = Vec::with_capacity(4 * quads.len());
         for quad in quads {
             let corners = quad.map(|node| self.nodes[node as usize]);
-            forces.extend(quad.iter().copied().zip(quad_forces(&corners, &traction)));
+            let mut own = [Vec3::zeros(); 4];
+            for at in SIGNS.map(|sign| sign.map(|s| s / 3f64.sqrt())) {
+                let shape = SIGNS.map(|[a, b]| (1.0 + a * at[0]) * (1.0 + b * at[1]) / 4.0);
+                let along = |[a, b]: [f64; 2]| a * (1.0 + b * at[1]) / 4.0;
+                let across = |[a, b]: [f64; 2]| b * (1.0 + a * at[0]) / 4.0;
+                let sum = |weights: [f64; 4]| -> Vec3 {
+                    let parts = std::iter::zip(corners, weights);
+                    parts.map(|(corner, weight)| corner * weight).sum()
+                };
+                let area = sum(SIGNS.map(along)).cross(&sum(SIGNS.map(across)));
+                let force = traction(sum(shape), area.normalize()) * area.norm();
+                for (sum, shape) in own.iter_mut().zip(shape) {
+                    *sum += force * shape;
+                }
+            }
+            forces.extend(quad.iter().copied().zip(own));
         }
         forces
     }
-}
-
-fn quad_forces(corners: &[Vec3; 4], traction: impl Fn(Vec3, Vec3) -> Vec3) -> [Vec3; 4] {
-    let mut forces = [Vec3::zeros(); 4];
-    for at in SIGNS.map(|sign| sign.map(|s| s / 3f64.sqrt())) {
-        let shape = SIGNS.map(|[a, b]| (1.0 + a * at[0]) * (1.0 + b * at[1]) / 4.0);
-        let along = |[a, b]: [f64; 2]| a * (1.0 + b * at[1]) / 4.0;
-        let across = |[a, b]: [f64; 2]| b * (1.0 + a * at[0]) / 4.0;
-        let sum = |weights: [f64; 4]| -> Vec3 {
-            std::iter::zip(corners, weights)
-                .map(|(corner, weight)| corner * weight)
-                .sum()
-        };
-        let area = sum(SIGNS.map(along)).cross(&sum(SIGNS.map(across)));
-        let force = traction(sum(shape), area.normalize()) * area.norm();
-        for (sum, shape) in forces.iter_mut().zip(shape) {
-            *sum += force * shape;
-        }
-    }
-    forces
 }
 
 #[cfg(test)]

@@ -103,11 +103,9 @@ struct Balance<P> {
     /// Forces on the modes of every element.
     modal: Vec<Modes>,
     responses: Vec<[Response<P>; POINTS]>,
-    /// Elements that yield.
     yielding: Vec<Yielding>,
 }
 
-/// An element that yields.
 struct Yielding {
     element: usize,
     stiffness: Stiffness,
@@ -164,19 +162,11 @@ impl<M: Material> PlasticSolid<M> {
         for &(node, force) in forces {
             external[node as usize] += self.solid.felt(node, force);
         }
-        self.newton(&external, before)
-    }
-
-    fn newton(
-        &self,
-        external: &[Vec3],
-        before: &PlasticState<M::Point>,
-    ) -> Result<PlasticSolution<M::Point>, PlasticError> {
-        let (mut displacements, mut modes, size2) = self.predicted(external, before);
+        let (mut displacements, mut modes, size2) = self.predicted(&external, before);
         let (mut solves, mut left) = (1, f64::INFINITY);
         for iterations in 0..MAX_ITERATIONS {
             let balance = self.balance(&displacements, &modes, before);
-            let residual = self.residual(external, &balance);
+            let residual = self.residual(&external, &balance);
             // The larger scale: without load there is no stress, but rounding of the plastic forces remains.
             let size = balance.size2.max(size2).sqrt();
             let modal2: f64 = balance.modal.iter().map(Modes::norm_squared).sum();
@@ -280,7 +270,6 @@ impl<M: Material> PlasticSolid<M> {
         })
     }
 
-    /// Returns the residual force at every node.
     fn residual(&self, external: &[Vec3], balance: &Balance<M::Point>) -> Vec<Vec3> {
         let nodes = external.iter().zip(&balance.internal).enumerate();
         nodes
@@ -339,7 +328,6 @@ impl<M: Material> PlasticSolid<M> {
         forces
     }
 
-    /// Updates the modes for a motion of the nodes.
     fn follow(&self, step: &[Vec3], balance: &Balance<M::Point>, modes: &mut [Modes]) {
         let mut yielding = balance.yielding.iter().peekable();
         for (e, hex) in self.solid.mesh().hexes.iter().enumerate() {

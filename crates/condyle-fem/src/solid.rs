@@ -167,7 +167,6 @@ impl ElasticSolid {
         Vec3::from_fn(|i, _| if held[i] { 0.0 } else { force[i] })
     }
 
-    /// Strains of every element.
     pub(crate) fn elements(&self) -> &[Element] {
         &self.elements
     }

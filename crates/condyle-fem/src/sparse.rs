@@ -34,7 +34,6 @@ struct Remainder {
     columns: usize,
 }
 
-/// The working state of the factorisation.
 struct Assembly<'a, S> {
     hexes: &'a [[u32; 8]],
     held: &'a [[bool; 3]],
@@ -77,7 +76,13 @@ impl Factor {
         for group in &dissection.groups {
             let layout = Layout::new(group.own.len(), group.boundary.len());
             let mut triangle = assembly.front(group, &layout, &mut left);
-            let least = assembly.least_pivots(group, &layout);
+            let own = 3 * group.own.start as usize..3 * group.own.end as usize;
+            let least = assembly.diagonal[own]
+                .iter()
+                .map(|stiffness| MIN_PIVOT * stiffness);
+            let mut least: Vec<f64> = least.collect();
+            // Freedoms that pad a tile have a pivot of one.
+            least.resize(layout.columns, 0.0);
             let pivots = triangle.eliminate(layout.columns, &least);
             pivots.map_err(|column| dissection.order[group.own.start as usize + column / 3])?;
             fronts.push(Front::from_triangle(&triangle, layout.columns, layout.rows));
@@ -89,19 +94,16 @@ impl Factor {
         Ok(Self { dissection, fronts })
     }
 
-    /// Returns the number of freedoms.
     pub(crate) fn freedoms(&self) -> usize {
         3 * self.dissection.order.len()
     }
 
-    /// Returns the count of numbers in the factor.
     pub(crate) fn len(&self) -> usize {
         self.fronts.iter().map(Front::len).sum()
     }
 }
 
 impl<S: FnMut(usize) -> NodalStiffness> Assembly<'_, S> {
-    /// Assembles the front of a group before its elimination.
     fn front(
         &mut self,
         group: &Group,
@@ -164,7 +166,6 @@ impl<S: FnMut(usize) -> NodalStiffness> Assembly<'_, S> {
         }
     }
 
-    /// Adds the remainder of a child on its boundary.
     fn add_remainder(&self, remainder: &Remainder, boundary: &[u32], triangle: &mut Triangle) {
         let freedoms = boundary.iter().flat_map(|&place| {
             let row = self.rows[place as usize];
@@ -178,14 +179,6 @@ impl<S: FnMut(usize) -> NodalStiffness> Assembly<'_, S> {
             }
         }
     }
-
-    fn least_pivots(&self, group: &Group, layout: &Layout) -> Vec<f64> {
-        let freedoms = 3 * group.own.start as usize..3 * group.own.end as usize;
-        let own = self.diagonal[freedoms].iter();
-        let mut least: Vec<f64> = own.map(|stiffness| MIN_PIVOT * stiffness).collect();
-        least.resize(layout.columns, 0.0);
-        least
-    }
 }
 
 /// `4 W` columns of forces or displacements, a row for every freedom in the order of elimination.
@@ -194,28 +187,23 @@ pub(crate) struct Rhs<const W: usize> {
 }
 
 impl<const W: usize> Rhs<W> {
-    /// The number of columns side by side.
     pub(crate) const COLUMNS: usize = 4 * W;
 
-    /// Creates columns of zeros.
     pub(crate) fn new(freedoms: usize) -> Self {
         Self {
             rows: vec![[f64x4::ZERO; W]; freedoms],
         }
     }
 
-    /// Returns the number at a row and a column.
     pub(crate) fn at(&self, row: usize, column: usize) -> f64 {
         self.rows[row][column / 4].as_array()[column % 4]
     }
 
-    /// Returns the number at a row and a column.
     pub(crate) fn at_mut(&mut self, row: usize, column: usize) -> &mut f64 {
         &mut self.rows[row][column / 4].as_mut_array()[column % 4]
     }
 }
 
-/// Four rows of right-hand sides.
 type Rows<const W: usize> = [[f64x4; W]; TILE];
 
 impl Factor {
@@ -276,7 +264,6 @@ impl Factor {
         half
     }
 
-    /// Freedoms that a group eliminates.
     pub(crate) fn own_freedoms(&self, group: usize) -> Range<usize> {
         let own = &self.dissection.groups[group].own;
         3 * own.start as usize..3 * own.end as usize
@@ -343,7 +330,6 @@ impl Factor {
     }
 }
 
-/// Freedoms of places, in their order.
 fn freedoms(places: &[u32]) -> impl Iterator<Item = usize> {
     places
         .iter()

@@ -33,7 +33,6 @@ impl Stress {
         part(0) + part(1) + part(2) + 2.0 * (part(3) + part(4) + part(5))
     }
 
-    /// Product with a vector.
     pub(crate) fn times(&self, v: &Vec3) -> Vec3 {
         let [xx, yy, zz, xy, yz, zx] = self.0;
         Vec3::new(

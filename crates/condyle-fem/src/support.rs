@@ -9,7 +9,6 @@ use nalgebra::SVector;
 
 use crate::{Vec3, compliance::HalfSolved, solid::ElasticSolid};
 
-/// Displacements of some held nodes.
 type Motion = [(u32, Vec3)];
 
 /// Motions of the supports of a solid, each alone: as forces on its free nodes, solved half way, and their stiffness.

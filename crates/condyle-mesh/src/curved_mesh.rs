@@ -69,7 +69,6 @@ impl<'a> CurvedMesh<'a> {
             .collect()
     }
 
-    /// Returns whether no two of some triangles form a sharp edge.
     fn is_smooth(&self, triangles: &[u32]) -> bool {
         let normal = |triangle: &u32| self.planes[*triangle as usize].0;
         triangles.iter().enumerate().all(|(n, one)| {
@@ -174,10 +173,8 @@ impl<'a> CurvedMesh<'a> {
     }
 }
 
-/// The intersection of a vertical line with the curved surface.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Over {
-    /// Height, mm.
     pub(crate) height: f64,
     /// Cosine of the slope: the component along y of the unit normal, less than 0 where it points down.
     pub(crate) upward: f64,
@@ -194,7 +191,6 @@ pub struct Foot {
     pub normal: Vec3,
 }
 
-/// Returns the vector from the flat triangle to the curved surface.
 fn lift(corners: &[Vec3; 3], normals: &[Vec3; 3], weights: [f64; 3], flat: &Vec3) -> Vec3 {
     let half = |i: usize| normals[i] * (weights[i] / 2.0 * (corners[i] - flat).dot(&normals[i]));
     half(0) + half(1) + half(2)

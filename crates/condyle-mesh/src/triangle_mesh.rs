@@ -36,7 +36,6 @@ impl TriangleMesh {
         self.volume_of(0..self.triangles.len())
     }
 
-    /// Returns the volume inside some of its triangles.
     pub(crate) fn volume_of(&self, triangles: impl Iterator<Item = usize>) -> f64 {
         let origin = self.vertices.first().copied().unwrap_or_default();
         triangles
@@ -72,7 +71,6 @@ impl TriangleMesh {
             .collect()
     }
 
-    /// Returns the triangles around each vertex, rising.
     pub(crate) fn triangles_around(&self) -> Vec<Vec<u32>> {
         let mut around = vec![Vec::new(); self.vertices.len()];
         for (triangle, vertices) in (0..).zip(&self.triangles) {

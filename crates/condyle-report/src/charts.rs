@@ -11,9 +11,7 @@ use crate::figure::{Axis, Curve, MEASURED, Panel};
 use crate::number::{cycles_in_words, printed_unit, significant};
 use crate::results::{Results, Table};
 
-/// Width and height of a chart over the cycle, px.
 const CYCLE_SIZE: (f64, f64) = (340.0, 206.0);
-/// Width and height of a chart over the test, px.
 const TEST_SIZE: (f64, f64) = (480.0, 232.0);
 
 /// A column of kinematics.csv as it is plotted.
@@ -64,12 +62,10 @@ impl Channel {
         }
     }
 
-    /// Returns the channel of a column.
     pub(crate) fn find(column: &str) -> Option<&'static Self> {
         CHANNELS.iter().find(|channel| channel.column == column)
     }
 
-    /// Returns a chart of the channel over the cycle.
     pub(crate) fn panel(&self, curves: Vec<Curve>) -> Panel {
         Panel {
             id: format!("k-{}", self.column),
@@ -134,7 +130,6 @@ pub(crate) fn cycle_captions(table: &Table) -> Option<[String; 2]> {
     Some([first, last].map(caption))
 }
 
-/// Returns all charts of a run.
 pub(crate) fn all(results: &Results) -> Vec<Panel> {
     let mut charts = wear(results);
     charts.extend(cycle(results));
@@ -205,12 +200,10 @@ const TEST_COLUMNS: [(&str, &str); 6] = [
 /// The column that specimens are weighed for.
 const MASS: &str = "mass_loss_mg";
 
-/// Wear over the test, mass loss and depth first.
 pub(crate) fn wear(results: &Results) -> Vec<Panel> {
     wear_up_to(results, cycles_of(results))
 }
 
-/// Returns the cycles at the last update.
 pub(crate) fn cycles_of(results: &Results) -> f64 {
     let table = results.wear.as_ref();
     let cycles = table.and_then(|table| table.column("cycles"));
@@ -270,7 +263,6 @@ pub(crate) fn wear_up_to(results: &Results, cycles: f64) -> Vec<Panel> {
     TEST_COLUMNS.into_iter().filter_map(panel).collect()
 }
 
-/// Mass loss of each weighed specimen.
 fn weighed(results: &Results, cycles_per_x: f64) -> Vec<Curve> {
     let table = results.measured_wear.as_ref();
     let cycles = table.and_then(|table| table.column("cycles"));

@@ -6,9 +6,7 @@ use condyle_results::{MAP_PICTURES, SLIP_PATHS_PICTURE, Side};
 use crate::figure::{ColourRange, Map, MapStyle, Path, finite_range};
 use crate::results::{Results, SurfaceFields, Table};
 
-/// A field that has a map.
 pub(crate) struct MappedField {
-    /// Name of the point data.
     pub(crate) field: &'static str,
     /// Name of the picture as a file, without an ending.
     pub(crate) file: &'static str,
@@ -160,10 +158,8 @@ pub(crate) fn drawn(
 
 /// Factors on length and width with which a slip path is drawn: neighbours stay apart, and its width shows.
 const DRAWN: [f64; 2] = [0.4, 1.6];
-/// Radius of the dot at a place, px.
 const DOT_PX: f64 = 2.2;
 
-/// The slip past one place of the insert.
 struct SlipPath {
     /// x and z of the place, mm.
     place: (f64, f64),

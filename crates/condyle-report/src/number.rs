@@ -55,18 +55,16 @@ pub(crate) fn with_powers(text: &str) -> String {
     text.replace("mm2", "mm\u{b2}").replace("mm3", "mm\u{b3}")
 }
 
-/// Parts of names that are written in capitals.
-const CAPITALS: [&str; 5] = ["ap", "ie", "ml", "vv", "is"];
-
 /// Returns a key as a title and its unit: `ap_range_mm` is ("AP range", "mm").
 pub(crate) fn in_words(key: &str) -> (String, String) {
     let (name, unit) = match key.strip_suffix("_cycles") {
         Some(name) => (name, Some("cycles")),
         None => split_unit(key),
     };
-    let word = |part: &str| match CAPITALS.contains(&part) {
-        true => part.to_uppercase(),
-        false => part.to_owned(),
+    let word = |part: &str| match part {
+        "ap" | "ie" | "ml" | "vv" | "is" => part.to_uppercase(),
+        "mises" => "Mises".to_owned(),
+        _ => part.to_owned(),
     };
     let words: Vec<String> = name.split('_').map(word).collect();
     let unit = with_powers(unit.unwrap_or_default()).replace(' ', "\u{a0}");

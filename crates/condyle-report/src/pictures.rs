@@ -11,7 +11,6 @@ use crate::maps::{self, MAPS};
 use crate::results::Results;
 use crate::sheets::write_text;
 
-/// Scale of the maps, px per mm.
 const PX_PER_MM: f64 = 8.0;
 
 /// A picture of the report as a file.
@@ -26,37 +25,31 @@ pub struct Picture {
 /// Returns all pictures of a report for which a folder has the numbers: maps, slip paths, wear over the test, motion
 /// and load.
 pub fn pictures(results: &Results) -> Vec<Picture> {
-    let maps = maps::drawn(&MAPS, results, PX_PER_MM, map_file).into_iter();
-    let maps = maps.map(|map| (map.file, Some(map.svg)));
-    let charts = [
-        (WEAR_PICTURE, wear_sheet(&charts::wear(results))),
-        (KINEMATICS_PICTURE, motion_sheet(&charts::cycle(results))),
-    ];
-    let all = maps.chain(charts);
-    all.filter_map(|(name, svg)| Some(Picture { name, svg: svg? }))
-        .collect()
-}
-
-fn map_file(map: &Map<'_>, desc: &str, over: &str) -> String {
-    svg_file(map.style.title, desc, map.size(), &(map.body() + over))
-}
-
-/// Charts over the test as a file; `None` without any.
-fn wear_sheet(panels: &[Panel]) -> Option<String> {
-    let mut key = vec![("last", "each dot is an update of the shape")];
-    key.extend(measured(panels, "weighed"));
-    let desc = "Wear against cycles.";
-    (!panels.is_empty()).then(|| sheet("Wear over the test", desc, panels, 2, &key))
-}
-
-/// Charts over the cycle as a file; `None` without any.
-fn motion_sheet(panels: &[Panel]) -> Option<String> {
+    let file = |map: &Map<'_>, desc: &str, over: &str| {
+        svg_file(map.style.title, desc, map.size(), &(map.body() + over))
+    };
+    let maps = maps::drawn(&MAPS, results, PX_PER_MM, file).into_iter();
+    let maps = maps.map(|map| (map.file, map.svg));
+    let wear = charts::wear(results);
+    let dots = "each dot is an update of the shape";
+    let key = Vec::from_iter(
+        [("last", dots)]
+            .into_iter()
+            .chain(measured(&wear, "weighed")),
+    );
+    let wear = (!wear.is_empty())
+        .then(|| sheet("Wear over the test", "Wear against cycles.", &wear, 2, &key));
+    let motion = charts::cycle(results);
     let last = "last cycle, against % of the gait cycle";
-    let mut key = vec![("first", "first cycle"), ("last", last)];
-    key.extend(measured(panels, "measured"));
+    let key = [("first", "first cycle"), ("last", last)].into_iter();
+    let key = Vec::from_iter(key.chain(measured(&motion, "measured")));
     let desc = "Motions and loads against percent of the gait cycle.";
     let title = "Motion and load in a gait cycle";
-    (!panels.is_empty()).then(|| sheet(title, desc, panels, 3, &key))
+    let motion = (!motion.is_empty()).then(|| sheet(title, desc, &motion, 3, &key));
+    let wear = wear.map(|svg| (WEAR_PICTURE, svg));
+    let motion = motion.map(|svg| (KINEMATICS_PICTURE, svg));
+    let all = maps.chain(wear).chain(motion);
+    all.map(|(name, svg)| Picture { name, svg }).collect()
 }
 
 /// Returns the entry of measured curves in the key, where a panel has some.

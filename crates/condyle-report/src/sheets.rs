@@ -10,7 +10,6 @@ use crate::error::ReportError;
 use crate::figure::{STYLE, colour_variables};
 use crate::number::{fixed, significant};
 
-/// The style of all pages.
 pub(crate) const PAGE_STYLE: &str = include_str!("page/page.css");
 
 /// Fills a template of HTML, which is part of the program; texts are escaped.
@@ -69,7 +68,6 @@ pub(crate) struct Sheets<'a> {
 }
 
 impl Sheets<'_> {
-    /// Renders the page.
     pub(crate) fn html(&self) -> String {
         let (light, dark) = colour_variables();
         let picture = |(name, caption, svg): &(&str, String, String)| {

@@ -6,7 +6,7 @@ use condyle_case::case::{Draft, DraftError, Preset};
 
 use crate::{
     failure::Failure,
-    told::{Told, tell},
+    message::{Message, send},
 };
 
 /// Writes the case of two meshes at `path`; unit, axes and start are concluded from the shapes.
@@ -28,7 +28,7 @@ pub fn draft(path: &Path, femur: &Path, insert: &Path) -> Result<(), Failure> {
                 _ => Failure::of_words(error),
             })?;
     for remark in drafted.remarks {
-        tell(&Told::Remark(remark));
+        send(&Message::Remark(remark));
     }
     fs::write(path, drafted.text).map_err(|error| Failure::of_file(path, &error))
 }

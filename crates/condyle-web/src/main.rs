@@ -1,9 +1,9 @@
 //! The program that the web page of condyle calls, built for `wasm32-wasip1`.
 //!
 //! The page keeps a few files in memory and calls this program once for every task; the program answers on standard
-//! output, with one [`Told`] as JSON per line.
+//! output, with one [`Message`] as JSON per line.
 //!
-//! | arguments | what it does |
+//! | arguments | effect |
 //! | --- | --- |
 //! | `check CASE` | reports the problems of the text and files of a case |
 //! | `run CASE OUT` | runs it in memory; OUT receives `scene` and `summary.json` |
@@ -14,14 +14,14 @@
 
 mod draft;
 mod failure;
+mod message;
 mod recorder;
 mod runs;
-mod told;
 
 use std::{env, path::Path, process::ExitCode};
 
 use failure::Failure;
-use told::{Told, tell};
+use message::{Message, send};
 
 fn main() -> ExitCode {
     let arguments: Vec<String> = env::args().skip(1).collect();
@@ -30,7 +30,7 @@ fn main() -> ExitCode {
         Ok(()) => ExitCode::SUCCESS,
         Err(failure) => {
             let code = failure.exit_code();
-            tell(&Told::Failed(failure));
+            send(&Message::Failed(failure));
             ExitCode::from(code)
         }
     }

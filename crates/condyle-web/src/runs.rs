@@ -8,8 +8,8 @@ use condyle_results::Summary;
 
 use crate::{
     failure::Failure,
+    message::{Message, send},
     recorder::Recorder,
-    told::{Told, tell},
 };
 
 /// Reads the case at `case` and reports all of its problems.
@@ -26,9 +26,10 @@ pub fn run(case: &Path, out: &Path) -> Result<(), Failure> {
         wear_law: None,
     };
     let mut recorder = Recorder::new(case.heading.side);
-    let mut heard = Heard::of(&case);
-    let outcome =
-        condyle_lab::run_in_memory(&case, &how, &mut recorder, &mut |event| heard.hear(&event));
+    let mut reporter = ProgressReporter::of(&case);
+    let outcome = condyle_lab::run_in_memory(&case, &how, &mut recorder, &mut |event| {
+        reporter.report(&event)
+    });
     let summary = done(outcome)?;
     let scene = recorder.into_scene(summary.neutral_pose);
     write(out, "scene", &scene.to_bytes())?;
@@ -47,8 +48,8 @@ pub fn keep(case: &Path, out: &Path) -> Result<(), Failure> {
         threads: 1,
         cache: Cache::off(),
     };
-    let mut heard = Heard::of(&case);
-    let outcome = condyle_lab::run_case(&case, &options, &mut |event| heard.hear(&event));
+    let mut reporter = ProgressReporter::of(&case);
+    let outcome = condyle_lab::run_case(&case, &options, &mut |event| reporter.report(&event));
     done(outcome).map(|_| ())
 }
 
@@ -73,12 +74,12 @@ fn write(folder: &Path, name: &str, content: &[u8]) -> Result<(), Failure> {
 }
 
 /// Reports the progress of a run to the page.
-struct Heard {
+struct ProgressReporter {
     reached: Reached,
     is_estimating: bool,
 }
 
-impl Heard {
+impl ProgressReporter {
     fn of(case: &Case) -> Self {
         let reached = Reached {
             updates: 0,
@@ -91,9 +92,9 @@ impl Heard {
         }
     }
 
-    fn hear(&mut self, event: &RunEvent<'_>) -> ControlFlow<()> {
+    fn report(&mut self, event: &RunEvent<'_>) -> ControlFlow<()> {
         match event {
-            RunEvent::Warning(warning) => tell(&Told::Warning(warning.clone())),
+            RunEvent::Warning(warning) => send(&Message::Warning(warning.clone())),
             RunEvent::Started(reached) => self.reach(*reached),
             RunEvent::Updated(update) => self.reach(Reached {
                 updates: self.reached.updates + 1,
@@ -102,7 +103,7 @@ impl Heard {
             }),
             RunEvent::Estimating if !self.is_estimating => {
                 self.is_estimating = true;
-                tell(&Told::Estimating);
+                send(&Message::Estimating);
             }
             RunEvent::Estimating | RunEvent::Solved(_) => {}
         }
@@ -111,6 +112,6 @@ impl Heard {
 
     fn reach(&mut self, reached: Reached) {
         self.reached = reached;
-        tell(&Told::Reached(reached));
+        send(&Message::Reached(reached));
     }
 }

@@ -26,8 +26,8 @@ fn called(folder: &Path, words: &[&str]) -> Output {
     ran.expect("the program starts")
 }
 
-/// What was told, one JSON value a line.
-fn told(output: &Output) -> Vec<Value> {
+/// The messages on standard output, one JSON value per line.
+fn messages(output: &Output) -> Vec<Value> {
     let text = String::from_utf8(output.stdout.clone()).expect("it is text");
     let lines = text.lines();
     lines
@@ -46,7 +46,7 @@ fn what_the_page_shows_is_what_the_results_folder_holds() {
     let folder = folder_with(CASE);
     let ran = called(folder.path(), &["run", "case.toml", "out"]);
     assert!(ran.status.success(), "{ran:?}");
-    let reached = told(&ran);
+    let reached = messages(&ran);
     let updates = reached
         .iter()
         .filter_map(|line| line["reached"]["updates"].as_u64());
@@ -74,7 +74,7 @@ fn what_the_page_shows_is_what_the_results_folder_holds() {
 }
 
 #[test]
-fn a_wrong_case_is_told_as_the_command_tells_it() {
+fn a_wrong_case_fails_with_the_message_of_the_command() {
     const WRONG: &str = "[contact]\nfrictoin = 0.04\n";
     let folder = folder_with(WRONG);
     for words in [
@@ -84,7 +84,7 @@ fn a_wrong_case_is_told_as_the_command_tells_it() {
     ] {
         let output = called(folder.path(), words);
         assert_eq!(output.status.code(), Some(2));
-        let failed = &told(&output)[0]["failed"];
+        let failed = &messages(&output)[0]["failed"];
         let problems = Case::parse(WRONG, "case.toml", folder.path()).expect_err("it is wrong");
         assert_eq!(failed["message"], problems.to_string());
         let problem = &failed["problems"][0];
@@ -98,7 +98,7 @@ fn a_wrong_case_is_told_as_the_command_tells_it() {
 }
 
 #[test]
-fn files_that_are_no_meshes_make_no_case() {
+fn files_that_are_not_meshes_give_no_case() {
     let folder = folder_with("");
     for name in ["femur.stl", "insert.stl"] {
         fs::write(folder.path().join(name), "solid x\nnonsense").expect("it can be written");
@@ -108,7 +108,7 @@ fn files_that_are_no_meshes_make_no_case() {
         &["draft", "drafted.toml", "femur.stl", "insert.stl"],
     );
     assert_eq!(output.status.code(), Some(2));
-    let message = told(&output)[0]["failed"]["message"].to_string();
+    let message = messages(&output)[0]["failed"]["message"].to_string();
     assert!(message.contains("femur.stl:2"), "{message}");
     assert!(!folder.path().join("drafted.toml").exists());
 }

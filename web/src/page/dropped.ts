@@ -16,14 +16,14 @@ const NAMED: [body: "femur" | "insert", words: RegExp][] = [
   ["insert", /insert|inlay|tib|poly|pe\b/i],
 ];
 
-export interface Hears {
+export interface Listener {
   bodies(bodies: Bodies): void;
   caseText(text: string): void;
   refused(why: string): void;
 }
 
 // Takes files that are dropped anywhere on the page.
-export function takeDropped(hears: Hears): void {
+export function takeDropped(listener: Listener): void {
   const over = (event: DragEvent) => {
     event.preventDefault();
     document.body.toggleAttribute("data-dropping", event.type === "dragover");
@@ -32,23 +32,23 @@ export function takeDropped(hears: Hears): void {
   addEventListener("dragleave", over);
   addEventListener("drop", (event) => {
     over(event);
-    void take([...(event.dataTransfer?.files ?? [])], hears);
+    void take([...(event.dataTransfer?.files ?? [])], listener);
   });
 }
 
-export async function take(files: File[], hears: Hears): Promise<void> {
+export async function take(files: File[], listener: Listener): Promise<void> {
   const text = files.find(({ name }) => CASE.test(name));
-  if (text && files.length === 1) return hears.caseText(await text.text());
+  if (text && files.length === 1) return listener.caseText(await text.text());
   const [one, other] = files.filter(({ name }) => MESH.test(name));
   if (!one || !other || files.length !== 2) {
-    return hears.refused("error: give two meshes (STL, OBJ, PLY or VTP), one of the femoral component and one of the insert; or one case (.toml)");
+    return listener.refused("error: give two meshes (STL, OBJ, PLY or VTP), one of the femoral component and one of the insert, or one case (.toml)");
   }
   const femur = femurByName(one, other) ?? (await askFemur(one, other));
   if (!femur) return;
   const insert = femur === one ? other : one;
-  if (femur.name === insert.name) return hears.refused("error: both files have the same name; rename one");
+  if (femur.name === insert.name) return listener.refused("error: both files have the same name; rename one");
   const bytes = async (file: File) => new Uint8Array(await file.arrayBuffer());
-  hears.bodies({ femur: femur.name, insert: insert.name, files: { [femur.name]: await bytes(femur), [insert.name]: await bytes(insert) } });
+  listener.bodies({ femur: femur.name, insert: insert.name, files: { [femur.name]: await bytes(femur), [insert.name]: await bytes(insert) } });
 }
 
 // The femur among two files, if exactly one assignment fits their names.
@@ -68,7 +68,7 @@ function askFemur(one: File, other: File): Promise<File | undefined> {
       done(femur);
     };
     dialog.append(
-      element("p", {}, "Which file is the femoral component? The names do not show it."),
+      element("p", {}, "Which file is the femoral component? The file names do not identify it."),
       ...[one, other].map((file) => button(file.name, () => answer(file))),
       button("Neither", () => answer()),
     );

@@ -3,7 +3,7 @@
 import { Scene } from "../scene";
 import type { Files } from "./wasi";
 import type { Summary } from "./numbers";
-import type { Failure, Told } from "./program";
+import type { Failure, Message } from "./program";
 import type { Found } from "./shown_run";
 import { Solver } from "./solver";
 import type { Bodies } from "./dropped";
@@ -12,8 +12,8 @@ const CASE = "case.toml";
 // Pause after a change before a run starts, ms: a moving slider starts none.
 const PATIENCE_MS = 120;
 
-export interface Hears {
-  told(told: Told): void;
+export interface Listener {
+  message(message: Message): void;
   found(found: Found): void;
   failed(failure: Failure | null): void;
   // Called with whether a run is in progress.
@@ -30,7 +30,7 @@ export class Laboratory {
   constructor(
     module: WebAssembly.Module,
     text: string,
-    private readonly hears: Hears,
+    private readonly listener: Listener,
   ) {
     this.text = text;
     this.runs = new Solver(module);
@@ -47,28 +47,28 @@ export class Laboratory {
   cancel(): void {
     clearTimeout(this.timer);
     this.runs.cancel();
-    this.hears.busy(false);
+    this.listener.busy(false);
   }
 
   async run(): Promise<void> {
-    this.hears.busy(true);
-    const answer = await this.runs.call({ words: ["run", CASE, "out"], files: this.files(), wanted: "out" }, this.hears.told);
+    this.listener.busy(true);
+    const answer = await this.runs.call({ words: ["run", CASE, "out"], files: this.files(), output: "out" }, this.listener.message);
     if (!answer) return;
-    this.hears.busy(false);
-    this.hears.failed(answer.failure);
+    this.listener.busy(false);
+    this.listener.failed(answer.failure);
     const [scene, summary] = [answer.files["out/scene"], answer.files["out/summary.json"]];
     if (answer.failure || !scene || !summary) return;
-    this.hears.found({ scene: new Scene(scene.buffer as ArrayBuffer), summary: JSON.parse(decode(summary)) as Summary });
+    this.listener.found({ scene: new Scene(scene.buffer as ArrayBuffer), summary: JSON.parse(decode(summary)) as Summary });
   }
 
   // A case of two meshes, with unit and axes as condyle detects them.
   async draft({ femur, insert, files }: Bodies): Promise<string | undefined> {
     this.cancel();
-    this.hears.busy(true);
-    const answer = await this.runs.call({ words: ["draft", CASE, femur, insert], files, wanted: CASE }, this.hears.told);
+    this.listener.busy(true);
+    const answer = await this.runs.call({ words: ["draft", CASE, femur, insert], files, output: CASE }, this.listener.message);
     if (!answer) return undefined;
-    this.hears.busy(false);
-    this.hears.failed(answer.failure);
+    this.listener.busy(false);
+    this.listener.failed(answer.failure);
     const drafted = answer.files[CASE];
     if (answer.failure || !drafted) return undefined;
     this.bodies = files;
@@ -78,11 +78,11 @@ export class Laboratory {
   // The results folder of the case, as the command writes it.
   async kept(folder: string): Promise<Files | undefined> {
     this.cancel();
-    this.hears.busy(true);
-    const answer = await this.runs.call({ words: ["keep", CASE, folder], files: this.files(), wanted: folder }, this.hears.told);
+    this.listener.busy(true);
+    const answer = await this.runs.call({ words: ["keep", CASE, folder], files: this.files(), output: folder }, this.listener.message);
     if (!answer) return undefined;
-    this.hears.busy(false);
-    this.hears.failed(answer.failure);
+    this.listener.busy(false);
+    this.listener.failed(answer.failure);
     return answer.failure ? undefined : answer.files;
   }
 
@@ -92,9 +92,9 @@ export class Laboratory {
   }
 
   private async checkAndRun(): Promise<void> {
-    const answer = await this.checks.call({ words: ["check", CASE], files: this.files(), wanted: CASE });
+    const answer = await this.checks.call({ words: ["check", CASE], files: this.files(), output: CASE });
     if (!answer) return;
-    this.hears.failed(answer.failure);
+    this.listener.failed(answer.failure);
     if (!answer.failure) await this.run();
   }
 

@@ -1,7 +1,7 @@
 // The numbers of a run from summary.json with their errors, and the comparison of two runs.
 
 import { element } from "../dom";
-import { inDigits } from "../quantities";
+import { inDigits } from "../digits";
 import { HEADLINES, type Headline, type Numbers } from "./catalogue";
 
 export interface Summary extends Numbers {

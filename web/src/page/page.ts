@@ -3,7 +3,7 @@
 import plotStyle from "uplot/dist/uPlot.min.css";
 import { element } from "../dom";
 import { Plot } from "../plots";
-import { inDigits } from "../quantities";
+import { inDigits } from "../digits";
 import { save, saveText } from "../save";
 import type { Scene } from "../scene";
 import viewStyle from "../style.css";
@@ -14,7 +14,7 @@ import { Editor } from "./editor";
 import { Laboratory } from "./laboratory";
 import { comparison, doubts, tiles } from "./numbers";
 import style from "./page.css";
-import type { Failure, Told } from "./program";
+import type { Failure, Message } from "./program";
 import { CaseSchema } from "./schema";
 import { ShownRun, type Found } from "./shown_run";
 import { Sliders } from "./sliders";
@@ -41,7 +41,7 @@ class Page {
     // The first line names a schema file for editors on the disk.
     const text = genericCase.replace(/^#:schema.*\n/, "");
     this.laboratory = new Laboratory(module, text, {
-      told: (told) => this.hear(told),
+      message: (message) => this.report(message),
       found: (found) => this.find(found),
       failed: (failure) => this.fail(failure),
       busy: (isBusy) => document.documentElement.toggleAttribute("data-busy", isBusy),
@@ -75,14 +75,14 @@ class Page {
   }
 
   private takeFiles(): void {
-    const hears = {
+    const listener = {
       bodies: (bodies: Bodies) => void this.draft(bodies),
       caseText: (text: string) => this.open(text),
       refused: (why: string) => this.fail({ message: why, problems: [] }),
     };
-    takeDropped(hears);
+    takeDropped(listener);
     const input = byId("files") as HTMLInputElement;
-    input.addEventListener("change", () => void take([...(input.files ?? [])], hears).then(() => (input.value = "")));
+    input.addEventListener("change", () => void take([...(input.files ?? [])], listener).then(() => (input.value = "")));
   }
 
   private async draft(bodies: Bodies): Promise<void> {
@@ -106,7 +106,7 @@ class Page {
     this.sliders.show();
   }
 
-  private hear({ reached, remark, warning }: Told): void {
+  private report({ reached, remark, warning }: Message): void {
     if (remark) byId("remarks").append(element("li", {}, remark));
     // The summary repeats the warning.
     else if (warning) this.say(warning);
@@ -161,7 +161,7 @@ class Page {
     const { kept, now } = this;
     if (!kept || !now) return;
     this.plots.forEach((plot) => plot.dispose());
-    this.plots = COMPARED.flatMap((id) => beside(kept.scene, now.scene, id));
+    this.plots = COMPARED.flatMap((id) => sideBySide(kept.scene, now.scene, id));
     byId("compared").replaceChildren(comparison(kept.summary, now.summary), ...this.plots.map((plot) => plot.box));
   }
 
@@ -182,7 +182,7 @@ class Page {
 }
 
 // A chart of two runs; none where one of them lacks it.
-function beside(kept: Scene, now: Scene, id: string): Plot[] {
+function sideBySide(kept: Scene, now: Scene, id: string): Plot[] {
   const [before, after] = [kept, now].map((scene) => scene.charts().find((chart) => chart.id === id));
   const [first, last] = [before?.curves.at(-1), after?.curves.at(-1)];
   if (!before || !after || !first || !last) return [];

@@ -16,7 +16,7 @@ export interface Failure {
 }
 
 // A line of standard output: one of these.
-export interface Told {
+export interface Message {
   warning?: string;
   remark?: string;
   reached?: { updates: number; cycles: number; of_cycles: number };
@@ -27,7 +27,7 @@ export interface Call {
   words: string[];
   files: Files;
   // The folder or file to return.
-  wanted: string;
+  output: string;
 }
 
 export interface Answer {
@@ -35,13 +35,13 @@ export interface Answer {
   failure: Failure | null;
 }
 
-export function call(module: WebAssembly.Module, { words, files, wanted }: Call, told: (told: Told) => void): Answer {
+export function call(module: WebAssembly.Module, { words, files, output }: Call, onMessage: (message: Message) => void): Answer {
   let failure: Failure | null = null;
   const wasi = new Wasi(["condyle-web", ...words], files, (line) => {
-    const heard = JSON.parse(line) as Told | "estimating";
-    if (heard === "estimating") return told({});
-    if (heard.failed) failure = heard.failed;
-    told(heard);
+    const message = JSON.parse(line) as Message | "estimating";
+    if (message === "estimating") return onMessage({});
+    if (message.failed) failure = message.failed;
+    onMessage(message);
   });
   try {
     const code = wasi.run(module);
@@ -49,7 +49,7 @@ export function call(module: WebAssembly.Module, { words, files, wanted }: Call,
   } catch (thrown) {
     failure = internal(`${wasi.errors}\n${String(thrown)}`);
   }
-  return { files: wasi.at(wanted), failure };
+  return { files: wasi.at(output), failure };
 }
 
 function internal(words: string): Failure {

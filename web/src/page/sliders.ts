@@ -1,7 +1,7 @@
 // Sliders for numbers of the case.
 
 import { element, slider } from "../dom";
-import { inDigits } from "../quantities";
+import { inDigits } from "../digits";
 import { numberOf, valueAt, withValue, type Place } from "./case_text";
 
 interface Moved extends Place {

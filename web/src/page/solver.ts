@@ -1,6 +1,6 @@
 // A worker that calls the program, one call at a time; a cancelled call ends with its worker.
 
-import type { Answer, Call, Told } from "./program";
+import type { Answer, Call, Message } from "./program";
 
 export class Solver {
   private worker: Worker | undefined;
@@ -9,7 +9,7 @@ export class Solver {
   constructor(private readonly module: WebAssembly.Module) {}
 
   // The answer of a call; undefined if it was cancelled or replaced by the next.
-  call(order: Call, told: (told: Told) => void = () => {}): Promise<Answer | undefined> {
+  call(order: Call, onMessage: (message: Message) => void = () => {}): Promise<Answer | undefined> {
     this.cancel();
     const worker = (this.worker ??= new Worker("worker.js"));
     return new Promise((done) => {
@@ -18,8 +18,8 @@ export class Solver {
         done(answer);
       };
       this.giveUp = () => end();
-      worker.onmessage = ({ data }: MessageEvent<{ told?: Told; answer?: Answer }>) => {
-        if (data.told) told(data.told);
+      worker.onmessage = ({ data }: MessageEvent<{ message?: Message; answer?: Answer }>) => {
+        if (data.message) onMessage(data.message);
         if (data.answer) end(data.answer);
       };
       worker.onerror = ({ message }) => {

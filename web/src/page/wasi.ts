@@ -33,13 +33,13 @@ export class Wasi {
   }
 
   // A file, or the files in a folder, by their paths.
-  at(wanted: string): Files {
+  at(name: string): Files {
     const found: Files = {};
     const visit = (path: string, inode: Inode | undefined) => {
       if (inode instanceof File) found[path] = inode.data;
       if (inode instanceof Directory) for (const [name, inner] of inode.contents) visit(`${path}/${name}`, inner);
     };
-    visit(wanted, this.root.dir.contents.get(wanted));
+    visit(name, this.root.dir.contents.get(name));
     return found;
   }
 

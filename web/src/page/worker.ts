@@ -3,7 +3,7 @@
 import { call, type Call } from "./program";
 
 addEventListener("message", ({ data }: MessageEvent<{ module: WebAssembly.Module; order: Call }>) => {
-  const answer = call(data.module, data.order, (told) => postMessage({ told }));
+  const answer = call(data.module, data.order, (message) => postMessage({ message }));
   const transfer = Object.values(answer.files).map((bytes) => bytes.buffer as ArrayBuffer);
   postMessage({ answer }, { transfer });
 });

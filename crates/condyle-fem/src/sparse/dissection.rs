@@ -40,7 +40,12 @@ pub(crate) struct Dissection {
 impl Dissection {
     /// Orders all nodes of a mesh that belong to an element and are not held in all directions.
     pub(crate) fn new(mesh: &HexMesh, held: &[[bool; 3]]) -> Self {
-        let around = elements_around(mesh);
+        let mut around = vec![Vec::new(); mesh.nodes.len()];
+        for (element, nodes) in mesh.hexes.iter().enumerate() {
+            for &node in nodes {
+                around[node as usize].push(element as u32);
+            }
+        }
         let free = (0..mesh.nodes.len() as u32)
             .filter(|&n| held[n as usize] != [true; 3] && !around[n as usize].is_empty());
         let mut cutter = Cutter {
@@ -69,29 +74,24 @@ impl Dissection {
             order,
             places,
         };
-        dissection.gather_elements(mesh);
+        for (element, nodes) in mesh.hexes.iter().enumerate() {
+            let places = nodes.iter().filter_map(|&node| dissection.place(node));
+            if let Some(first) = places.min() {
+                let group = dissection.group_of(first);
+                dissection.groups[group].elements.push(element as u32);
+            }
+        }
         dissection.find_boundaries(mesh);
         dissection
     }
 
-    /// Place of a node, if it is free.
     #[inline]
     pub(crate) fn place(&self, node: u32) -> Option<u32> {
         Some(self.places[node as usize]).filter(|&place| place != HELD)
     }
 
-    /// Returns the group that eliminates a place.
     pub(crate) fn group_of(&self, place: u32) -> usize {
         self.groups.partition_point(|group| group.own.end <= place)
-    }
-
-    fn gather_elements(&mut self, mesh: &HexMesh) {
-        for (element, nodes) in mesh.hexes.iter().enumerate() {
-            if let Some(first) = nodes.iter().filter_map(|&node| self.place(node)).min() {
-                let group = self.group_of(first);
-                self.groups[group].elements.push(element as u32);
-            }
-        }
     }
 
     /// The boundary of a group: what its elements and its children touch, less its own.
@@ -112,7 +112,6 @@ impl Dissection {
     }
 }
 
-/// The working state of a dissection.
 struct Cutter<'a> {
     mesh: &'a HexMesh,
     around: &'a [Vec<u32>],
@@ -129,7 +128,12 @@ impl Cutter<'_> {
         if nodes.len() <= SMALL {
             return self.close(nodes, Vec::new());
         }
-        let axis = longest_side(self.mesh.positions(&nodes));
+        let nothing = [f64::INFINITY, f64::NEG_INFINITY].map(Vec3::repeat);
+        let [low, high] = self
+            .mesh
+            .positions(&nodes)
+            .fold(nothing, |[low, high], p| [low.inf(&p), high.sup(&p)]);
+        let axis = (high - low).imax();
         let along = |node: &u32| self.mesh.nodes[*node as usize][axis];
         // Ties by number, so that the order does not depend on the sort.
         nodes.sort_by(|a, b| along(a).total_cmp(&along(b)).then(a.cmp(b)));
@@ -164,23 +168,6 @@ impl Cutter<'_> {
         });
         vec![self.groups.len() - 1]
     }
-}
-
-fn elements_around(mesh: &HexMesh) -> Vec<Vec<u32>> {
-    let mut around = vec![Vec::new(); mesh.nodes.len()];
-    for (element, nodes) in mesh.hexes.iter().enumerate() {
-        for &node in nodes {
-            around[node as usize].push(element as u32);
-        }
-    }
-    around
-}
-
-/// Returns the axis along which some points lie farthest apart.
-fn longest_side(points: impl Iterator<Item = Vec3>) -> usize {
-    let nothing = [f64::INFINITY, f64::NEG_INFINITY].map(Vec3::repeat);
-    let [low, high] = points.fold(nothing, |[low, high], p| [low.inf(&p), high.sup(&p)]);
-    (high - low).imax()
 }
 
 #[cfg(test)]

@@ -39,12 +39,10 @@ impl Triangle {
         }
     }
 
-    /// Returns its memory, for reuse.
     pub(crate) fn into_memory(self) -> Vec<f64x4> {
         self.vectors
     }
 
-    /// Row `t` of tiles: its columns up to the diagonal.
     pub(crate) fn row(&self, t: usize) -> &[f64x4] {
         &self.vectors[start_of_row(t)..start_of_row(t + 1)]
     }
@@ -127,7 +125,6 @@ impl Triangle {
         }
     }
 
-    /// Factors a tile on the diagonal.
     fn factor_tile(&mut self, tile: usize, least: &[f64]) -> Result<(), usize> {
         let start = TILE * tile;
         for j in start..start + TILE {
@@ -203,7 +200,6 @@ pub(crate) struct Front {
 }
 
 impl Front {
-    /// Creates the first `columns` of an eliminated triangle.
     pub(crate) fn from_triangle(triangle: &Triangle, columns: usize, rows: usize) -> Self {
         let (mut starts, mut vectors) = (vec![0], Vec::with_capacity(columns * rows / TILE));
         for t in 0..rows / TILE {
@@ -218,7 +214,6 @@ impl Front {
         }
     }
 
-    /// Row `t` of tiles.
     #[inline]
     pub(crate) fn row(&self, t: usize) -> &[f64x4] {
         &self.vectors[self.starts[t]..self.starts[t + 1]]
@@ -229,7 +224,6 @@ impl Front {
         self.starts.len() - 1
     }
 
-    /// Returns the count of numbers in the front.
     pub(crate) fn len(&self) -> usize {
         TILE * self.vectors.len()
     }

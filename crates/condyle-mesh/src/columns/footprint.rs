@@ -27,7 +27,6 @@ const LONGEST_TOOTH_SAMPLES: usize = 6;
 /// Samples around the shell, so many that the removal of details never reaches the last of them.
 const MARGIN_SAMPLES: usize = 2 * DETAIL_SAMPLES + 1;
 
-/// The part of the transverse plane in which columns may stand.
 pub(super) struct Footprint<'a> {
     lines: VerticalLines<'a>,
     thinnest_mm: f64,
@@ -39,10 +38,20 @@ pub(super) struct Footprint<'a> {
 }
 
 impl<'a> Footprint<'a> {
-    /// Returns the footprint of a shell that is to be filled with hexahedra with edges of `edge_mm`.
     pub(super) fn new(shell: &'a TriangleMesh, is_closed: bool, edge_mm: f64) -> Self {
         let lines = VerticalLines::new(shell, is_closed);
-        let samples = samples_around(shell, edge_mm);
+        // The lines of the samples lie on the bounds of the shell.
+        let (low, high) = shell.bounds();
+        let step_mm = (edge_mm / SAMPLES_PER_EDGE).max(CLOSEST_SAMPLES_MM);
+        let size = Place::new(high.x - low.x, high.z - low.z);
+        let cells = size.map(|length| (length / step_mm).ceil().max(1.0));
+        let step_mm = size.component_div(&cells);
+        let with_margin = |axis: usize| cells[axis] as usize + 2 * MARGIN_SAMPLES;
+        let samples = ColumnGrid {
+            origin_mm: Place::new(low.x, low.z) - step_mm * MARGIN_SAMPLES as f64,
+            step_mm,
+            cells: (with_margin(0), with_margin(1)),
+        };
         let numbers = 0..samples.point_count();
         let through: Vec<_> = numbers.map(|n| lines.at(samples.place_of_mm(n))).collect();
         let met = through.iter().flatten();
@@ -68,7 +77,6 @@ impl<'a> Footprint<'a> {
         footprint
     }
 
-    /// Returns the intersections of the vertical line over a place with the shell or a bridge.
     pub(super) fn through(&self, place_mm: Place) -> Option<Through> {
         let bridge = self.bridges.at(&self.samples, place_mm);
         bridge.or_else(|| self.lines.at(place_mm))
@@ -86,7 +94,6 @@ impl<'a> Footprint<'a> {
         self.bridges.add(&self.samples, samples, height);
     }
 
-    /// Returns whether a column may stand on the sample nearest to a place.
     pub(super) fn holds_near(&self, place_mm: Place) -> bool {
         let samples = &self.samples;
         let steps = (place_mm - samples.origin_mm).component_div(&samples.step_mm);
@@ -95,7 +102,6 @@ impl<'a> Footprint<'a> {
         self.holds[samples.number(i, k)]
     }
 
-    /// Returns whether a column may stand at a place.
     pub(super) fn holds(&self, place_mm: Place) -> bool {
         self.may_stand(self.through(place_mm))
     }
@@ -111,23 +117,6 @@ impl<'a> Footprint<'a> {
             let is_thin = through.top - through.bottom < self.thinnest_mm;
             !is_wall && !is_thin
         })
-    }
-}
-
-/// Returns a grid of samples whose lines lie on the bounds of the shell.
-fn samples_around(shell: &TriangleMesh, edge_mm: f64) -> ColumnGrid {
-    let (low, high) = shell.bounds();
-    let step_mm = (edge_mm / SAMPLES_PER_EDGE).max(CLOSEST_SAMPLES_MM);
-    let size = Place::new(high.x - low.x, high.z - low.z);
-    let cells = size.map(|length| (length / step_mm).ceil().max(1.0));
-    let step_mm = size.component_div(&cells);
-    ColumnGrid {
-        origin_mm: Place::new(low.x, low.z) - step_mm * MARGIN_SAMPLES as f64,
-        step_mm,
-        cells: (
-            cells[0] as usize + 2 * MARGIN_SAMPLES,
-            cells[1] as usize + 2 * MARGIN_SAMPLES,
-        ),
     }
 }
 

@@ -124,7 +124,6 @@ impl ColumnGrid {
         (self.cells.0 + 1) * (self.cells.1 + 1)
     }
 
-    /// Returns the neighbours of a grid point in its row and its column.
     pub(super) fn around(&self, number: usize) -> impl Iterator<Item = usize> + use<> {
         neighbours(number, self.cells.0 + 1, self.cells.1 + 1)
     }

@@ -201,8 +201,7 @@ fn standing(
     Ok((plan, columns))
 }
 
-/// Lists holes in words.
-pub fn listed_holes(holes: &[Hole]) -> String {
+fn listed_holes(holes: &[Hole]) -> String {
     let each: Vec<String> = holes.iter().map(Hole::to_string).collect();
     each.join(", on ")
 }

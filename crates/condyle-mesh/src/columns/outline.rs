@@ -120,7 +120,6 @@ impl Loop {
         Some(Self { points, along_mm })
     }
 
-    /// Returns the line with every point at the mean of its surroundings, which end at corners.
     fn smoothed(&self, edge_mm: f64) -> Option<Self> {
         let corners = self.corners(edge_mm);
         let mean = |n: usize| {
@@ -165,7 +164,6 @@ impl Loop {
         self.along_mm[self.points.len()]
     }
 
-    /// Returns the area inside, mm2; negative for a hole.
     pub(super) fn area_mm2(&self) -> f64 {
         let ends = (0..self.points.len()).map(|n| self.segment(n));
         ends.map(|(a, b)| turn(&a, &b) / 2.0).sum()

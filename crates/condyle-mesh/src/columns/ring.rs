@@ -23,7 +23,6 @@ pub(super) struct Ring<'a> {
 /// A line around the cells, and the places on the outline that belong to it.
 struct Rim<'a> {
     outline: &'a Loop,
-    /// Places on the outline, in the order of the line.
     outer: Vec<u32>,
     inner: Vec<u32>,
     /// Length along the outline to each outer place, mm; it grows, and so beyond one time round.
@@ -225,7 +224,6 @@ const MIN_RING: f64 = 0.5;
 /// Cells of a grid that are connected by their sides, and the closed lines around them.
 #[derive(Clone)]
 pub(super) struct Core {
-    /// Grid points at the corners of each cell.
     pub(super) cells: Vec<[usize; 4]>,
     /// Grid points along each line around the cells, anticlockwise seen from above; clockwise
     /// around a hole.

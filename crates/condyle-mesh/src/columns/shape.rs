@@ -14,7 +14,6 @@ const STEPS: [f64; 4] = [0.3, 0.1, 0.03, 0.01];
 /// Maximum number of rounds; a badly shaped quad takes about ten.
 const MAX_ROUNDS: usize = 40;
 
-/// The range in which a place may be moved.
 #[derive(Clone, Copy)]
 pub(super) enum Freedom<'a> {
     Held,
@@ -23,7 +22,6 @@ pub(super) enum Freedom<'a> {
 }
 
 impl Freedom<'_> {
-    /// Returns trial places about `length_mm` away.
     fn trials(self, place: &Place, length_mm: f64) -> Vec<Place> {
         match self {
             Self::Held => Vec::new(),
@@ -40,7 +38,6 @@ impl Freedom<'_> {
     }
 }
 
-/// Returns the unit vectors every 45 degrees.
 pub(super) fn eight_directions() -> impl Iterator<Item = Place> + Clone {
     (0..8).map(|eighth| {
         let (sine, cosine) = (f64::from(eighth) * FRAC_PI_4).sin_cos();

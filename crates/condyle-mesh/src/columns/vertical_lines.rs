@@ -78,25 +78,14 @@ impl<'a> VerticalLines<'a> {
             self.curved.over(triangle, normals, place.into())
         };
         let bin = self.bins[i * self.counts[1] + k].iter();
-        let through = bin.filter_map(over).fold(None, |through, over: Over| {
-            let Some(Through {
-                bottom,
-                top,
-                upward,
-            }) = through
-            else {
-                return Some(Through {
-                    bottom: over.height,
-                    top: over.height,
-                    upward: over.upward,
-                });
-            };
-            let is_higher = over.height > top;
-            Some(Through {
-                bottom: bottom.min(over.height),
-                top: top.max(over.height),
-                upward: if is_higher { over.upward } else { upward },
-            })
+        let through = bin.filter_map(over).map(|Over { height, upward }| Through {
+            bottom: height,
+            top: height,
+            upward,
+        });
+        let through = through.reduce(|all, one| Through {
+            bottom: all.bottom.min(one.bottom),
+            ..if one.top > all.top { one } else { all }
         });
         // A line that meets a closed surface once only grazes it.
         through.filter(|all| !self.is_closed || all.top > all.bottom)
@@ -114,7 +103,6 @@ const MAX_ROUNDS: usize = 1000;
 const MAX_SETTLED: usize = 2_000_000;
 /// Over-relaxation factor on the motion of a height towards the mean in a round; it reduces the number of rounds.
 const OVER_RELAXED: f64 = 1.8;
-/// Heights that move less than this have settled, mm.
 const SETTLED_MM: f64 = 1e-6;
 
 /// Heights of backside and top at the samples of holes, and at those next to them.

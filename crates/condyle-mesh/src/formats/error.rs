@@ -11,13 +11,11 @@ pub enum MeshFileError {
         /// Path as the caller gave it.
         path: PathBuf,
     },
-    /// The system refuses to read or write the file.
-    #[error("{}: cannot be {action}: {source}", path.display())]
+    /// The system refuses to read the file.
+    #[error("{}: cannot be read: {source}", path.display())]
     Inaccessible {
         /// Path as the caller gave it.
         path: PathBuf,
-        /// The refused action: "read" or "written".
-        action: &'static str,
         /// Error of the system.
         source: std::io::Error,
     },

@@ -3,15 +3,16 @@
 use std::{
     cell::OnceCell,
     collections::{HashMap, HashSet},
+    fmt::Display,
     path::Path,
 };
 
 use condyle_fem::{HEX_FACES, HexMesh};
+use indexmap::IndexMap;
 
 use super::{error::MeshFileError, text::At};
 use crate::Vec3;
 
-/// Nodes, elements and sets by the labels of the file.
 pub(crate) struct HexDraft<'a> {
     path: &'a Path,
     nodes: Vec<Vec3>,
@@ -24,7 +25,6 @@ pub(crate) struct HexDraft<'a> {
     pub(crate) node_sets: NamedLists<u64>,
 }
 
-/// Line and labels of a quad.
 type DraftQuad = (Option<usize>, [u64; 4]);
 
 /// One hexahedron by the labels of its nodes, in VTK order.
@@ -41,36 +41,13 @@ impl DraftHex {
     }
 }
 
-/// Lists in the order of the file, by names that do not depend on case.
-pub(crate) struct NamedLists<T> {
-    lists: Vec<(String, Vec<T>)>,
-    /// By the name in capitals.
-    list_of_name: HashMap<String, usize>,
-}
+/// Lists in the order of the file, each with its name as first written, by the name in capitals.
+pub(crate) type NamedLists<T> = IndexMap<String, (String, Vec<T>)>;
 
-impl<T> NamedLists<T> {
-    pub(crate) fn new() -> Self {
-        Self {
-            lists: Vec::new(),
-            list_of_name: HashMap::new(),
-        }
-    }
-
-    /// Returns the list of that name, which starts empty.
-    pub(crate) fn entry(&mut self, name: &str) -> &mut Vec<T> {
-        let next = self.lists.len();
-        let known = self.list_of_name.entry(name.to_ascii_uppercase());
-        let index = *known.or_insert(next);
-        if index == next {
-            self.lists.push((name.to_string(), Vec::new()));
-        }
-        &mut self.lists[index].1
-    }
-
-    /// Returns the list of a name in capitals.
-    pub(crate) fn get(&self, name: &str) -> Option<&[T]> {
-        Some(&self.lists[*self.list_of_name.get(name)?].1)
-    }
+/// Returns the list of a name in any case, which starts empty.
+pub(crate) fn list_of<'l, T>(lists: &'l mut NamedLists<T>, name: &str) -> &'l mut Vec<T> {
+    let list = lists.entry(name.to_ascii_uppercase());
+    &mut list.or_insert_with(|| (name.to_owned(), Vec::new())).1
 }
 
 impl<'a> HexDraft<'a> {
@@ -82,8 +59,8 @@ impl<'a> HexDraft<'a> {
             hexes: Vec::new(),
             hex_of_label: HashMap::new(),
             uses_of_quad: OnceCell::new(),
-            surfaces: NamedLists::new(),
-            node_sets: NamedLists::new(),
+            surfaces: NamedLists::default(),
+            node_sets: NamedLists::default(),
         }
     }
 
@@ -125,11 +102,11 @@ impl<'a> HexDraft<'a> {
 
     /// Adds a face, turned either way, to the surface of that name.
     pub(crate) fn quad(&mut self, surface: &str, at: At, nodes: [u64; 4]) {
-        self.surfaces.entry(surface).push((at.line, nodes));
+        list_of(&mut self.surfaces, surface).push((at.line, nodes));
     }
 
     pub(crate) fn set_nodes(&mut self, set: &str, nodes: impl IntoIterator<Item = u64>) {
-        self.node_sets.entry(set).extend(nodes);
+        list_of(&mut self.node_sets, set).extend(nodes);
     }
 
     /// Returns the faces of these hexahedra that no other hexahedron of the mesh shares.
@@ -165,7 +142,7 @@ impl<'a> HexDraft<'a> {
             }
         }
         let number = |label: &u64| kept[*self.node_of_label.get(label)?];
-        let node_sets = self.node_sets.lists.iter().map(|(name, members)| {
+        let node_sets = self.node_sets.values().map(|(name, members)| {
             let mut nodes: Vec<u32> = members.iter().filter_map(number).collect();
             nodes.sort_unstable();
             nodes.dedup();
@@ -237,19 +214,27 @@ impl<'a> HexDraft<'a> {
             let name = name.clone();
             Ok(NamedSurface { name, quads })
         };
-        self.surfaces.lists.iter().map(surface).collect()
+        self.surfaces.values().map(surface).collect()
     }
 }
 
-fn sorted<T: Ord>(mut quad: [T; 4]) -> [T; 4] {
+pub(crate) fn sorted<T: Ord>(mut quad: [T; 4]) -> [T; 4] {
     quad.sort_unstable();
     quad
 }
 
-/// Error of a volume element that is not an 8-node hexahedron.
-pub(crate) fn not_hexahedron(at: At, element: u64, kind: &str) -> MeshFileError {
+/// Error of a volume element that is not an 8-node hexahedron; `names`: of other kinds by their numbers.
+pub(crate) fn not_hexahedron(
+    at: At,
+    element: u64,
+    kind: impl Display,
+    names: &[(i64, &str)],
+) -> MeshFileError {
+    let kind = kind.to_string();
+    let name = names.iter().find(|(number, _)| number.to_string() == kind);
+    let name = name.map_or_else(String::new, |(_, name)| format!(" ({name})"));
     at.error(format!(
-        "element {element} is of type {kind}; only 8-node hexahedra can be read, \
+        "element {element} is of type {kind}{name}; only 8-node hexahedra can be read, \
          so mesh the insert with those"
     ))
 }

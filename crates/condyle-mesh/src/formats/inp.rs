@@ -4,7 +4,7 @@ use std::path::Path;
 
 use super::{
     error::MeshFileError,
-    hex_draft::{DraftHex, HexDraft, HexFile, NamedLists, not_hexahedron},
+    hex_draft::{DraftHex, HexDraft, HexFile, NamedLists, list_of, not_hexahedron},
     text::{At, Rows, decode},
 };
 
@@ -33,7 +33,7 @@ pub(crate) fn parse(path: &Path, bytes: &[u8]) -> Result<HexFile, MeshFileError>
     let keywords = keywords(path, &content)?;
     let mut model = Model {
         draft: HexDraft::new(path),
-        element_sets: NamedLists::new(),
+        element_sets: NamedLists::default(),
         max_members: MIN_MEMBERS_LIMIT + MAX_MEMBERS_PER_BYTE * bytes.len() as u64,
         members: 0,
     };
@@ -54,7 +54,15 @@ pub(crate) fn parse(path: &Path, bytes: &[u8]) -> Result<HexFile, MeshFileError>
             "ELEMENT" => model.elements(keyword)?,
             "NSET" => model.node_set(keyword)?,
             "ELSET" => model.element_set(keyword)?,
-            "INSTANCE" => check_unmoved(keyword)?,
+            "INSTANCE" => {
+                for &(at, row) in &keyword.data {
+                    if at.numbers(fields(row))?.iter().any(|&by: &f64| by != 0.0) {
+                        let problem = "an instance that is moved or turned is not followed; \
+                                       move the part itself instead";
+                        return Err(at.error(problem));
+                    }
+                }
+            }
             name if NOT_FOLLOWED.contains(&name) => {
                 let problem = format!("*{name} is not followed; write the mesh out in full");
                 return Err(keyword.at.error(problem));
@@ -79,7 +87,6 @@ struct Keyword<'t> {
 }
 
 impl<'t> Keyword<'t> {
-    /// Parses a keyword line without its asterisk.
     fn new(at: At<'t>, line: &str) -> Self {
         let mut words = line.split(',').map(str::trim);
         let name = words.next().unwrap_or_default().split_whitespace();
@@ -97,7 +104,6 @@ impl<'t> Keyword<'t> {
         }
     }
 
-    /// Returns the value of a parameter, empty for a flag.
     fn value(&self, parameter: &str) -> Option<&str> {
         let found = self.parameters.iter().find(|(key, _)| key == parameter);
         found.map(|(_, value)| value.as_str())
@@ -155,23 +161,11 @@ fn label(at: At, field: &str) -> Result<u64, MeshFileError> {
     })
 }
 
-fn check_unmoved(instance: &Keyword) -> Result<(), MeshFileError> {
-    for &(at, row) in &instance.data {
-        if at.numbers(fields(row))?.iter().any(|&by: &f64| by != 0.0) {
-            let problem = "an instance that is moved or turned is not followed; \
-                           move the part itself instead";
-            return Err(at.error(problem));
-        }
-    }
-    Ok(())
-}
-
 /// The model as far as it has been read.
 struct Model<'a> {
     draft: HexDraft<'a>,
     element_sets: NamedLists<u64>,
     max_members: u64,
-    /// Members of all sets and surfaces.
     members: u64,
 }
 
@@ -220,7 +214,7 @@ impl Model<'_> {
             let label = numbers.first().copied().unwrap_or_default();
             // C3D8 with any suffix for its integration or formulation has the same eight nodes.
             if !kind.starts_with("C3D8") {
-                return Err(not_hexahedron(at, label.cast_unsigned(), &kind));
+                return Err(not_hexahedron(at, label.cast_unsigned(), &kind, &[]));
             }
             // A label and eight nodes may take several rows.
             while numbers.len() < 9
@@ -234,7 +228,7 @@ impl Model<'_> {
             self.draft.hex(at, label.cast_unsigned(), nodes)?;
         }
         if let Some(set) = keyword.value("ELSET") {
-            self.element_sets.entry(set).extend(labels);
+            list_of(&mut self.element_sets, set).extend(labels);
         }
         Ok(())
     }
@@ -243,8 +237,8 @@ impl Model<'_> {
         let name = keyword.required("NSET")?;
         let mut nodes = self.members(keyword, |model| &model.draft.node_sets)?;
         if let Some(elements) = keyword.value("ELSET") {
-            let labels = self.element_sets.get(&plain(elements)).unwrap_or_default();
-            let labels = labels.to_vec();
+            let labels = self.element_sets.get(&plain(elements));
+            let labels = labels.map_or_else(Vec::new, |(_, labels)| labels.clone());
             self.count_members(keyword.at, 8 * labels.len() as u64)?;
             let hexes = labels
                 .iter()
@@ -258,7 +252,7 @@ impl Model<'_> {
     fn element_set(&mut self, keyword: &Keyword) -> Result<(), MeshFileError> {
         let name = keyword.required("ELSET")?;
         let members = self.members(keyword, |model| &model.element_sets)?;
-        self.element_sets.entry(name).extend(members);
+        list_of(&mut self.element_sets, name).extend(members);
         Ok(())
     }
 
@@ -277,10 +271,10 @@ impl Model<'_> {
             }
             for field in fields(row) {
                 let name = plain(field);
-                match sets(self).get(&name).map(<[u64]>::len) {
+                match sets(self).get(&name).map(|(_, own)| own.len()) {
                     Some(count) => {
                         self.count_members(at, count as u64)?;
-                        members.extend(sets(self).get(&name).unwrap_or_default());
+                        members.extend(&sets(self)[&name].1);
                     }
                     None => members.push(label(at, field)?),
                 }
@@ -318,7 +312,7 @@ impl Model<'_> {
             let mut words = fields(row);
             let set = words.next().unwrap_or_default();
             let elements = match self.element_sets.get(&plain(set)) {
-                Some(elements) => elements.to_vec(),
+                Some((_, elements)) => elements.clone(),
                 None => vec![label(at, set)?],
             };
             self.count_members(at, elements.len() as u64)?;

@@ -6,6 +6,7 @@
 use std::collections::HashMap;
 use std::io::{self, Write};
 
+use super::hex_draft::sorted;
 use crate::Vec3;
 use condyle_fem::{HEX_FACES, HexMesh};
 
@@ -112,10 +113,6 @@ fn real(value: f64) -> String {
 /// Returns the element label and face number, 1 to 6, of quads on the boundary of a mesh whose first hexahedron has the
 /// label `first`; quads that are no face of the mesh are left out.
 pub fn element_faces(mesh: &HexMesh, quads: &[[u32; 4]], first: u32) -> Vec<(u32, u8)> {
-    let sorted = |mut quad: [u32; 4]| {
-        quad.sort_unstable();
-        quad
-    };
     let mut faces: HashMap<[u32; 4], (u32, u8)> = HashMap::new();
     for (label, hex) in (first..).zip(mesh.hexes.iter()) {
         for (number, face) in (1..).zip(HEX_FACES) {

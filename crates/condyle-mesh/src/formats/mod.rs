@@ -36,9 +36,6 @@ mod vtu_write;
 
 use std::{io::ErrorKind, path::Path};
 
-#[cfg(feature = "file-system")]
-use condyle_fem::HexMesh;
-
 pub use error::MeshFileError;
 pub use hex_draft::{HexFile, NamedNodes, NamedSurface};
 pub use inp_writer::{InpWriter, element_faces};
@@ -90,11 +87,7 @@ fn read_bytes(files: &dyn Files, path: &Path) -> Result<Vec<u8>, MeshFileError> 
         if source.kind() == ErrorKind::NotFound {
             return MeshFileError::Missing { path };
         }
-        MeshFileError::Inaccessible {
-            path,
-            action: "read",
-            source,
-        }
+        MeshFileError::Inaccessible { path, source }
     })
 }
 
@@ -166,24 +159,4 @@ pub fn read_vtu_points(path: impl AsRef<Path>) -> Result<VtuFile, MeshFileError>
 pub fn read_pvd(path: impl AsRef<Path>) -> Result<Vec<(f64, std::path::PathBuf)>, MeshFileError> {
     let path = path.as_ref();
     parse_pvd(path, &read_bytes(&Disk, path)?)
-}
-
-/// Writes a `.vtu` file of the mesh with its arrays to the disk.
-///
-/// # Errors
-/// [`MeshFileError::ArrayLength`] as for [`vtu_bytes`]; [`MeshFileError::Inaccessible`] if the
-/// system refuses.
-#[cfg(feature = "file-system")]
-pub fn write_vtu(
-    path: impl AsRef<Path>,
-    mesh: &HexMesh,
-    arrays: &[PointArray],
-) -> Result<(), MeshFileError> {
-    let path = path.as_ref();
-    let bytes = vtu_bytes(mesh, arrays)?;
-    std::fs::write(path, bytes).map_err(|source| MeshFileError::Inaccessible {
-        path: path.to_path_buf(),
-        action: "written",
-        source,
-    })
 }

@@ -38,13 +38,25 @@ pub(crate) fn parse(path: &Path, bytes: &[u8]) -> Result<HexFile, MeshFileError>
     file.draft.finish()
 }
 
+/// Gmsh's numbers of other kinds of elements.
+const KINDS: [(i64, &str); 9] = [
+    (2, "3-node triangle"),
+    (4, "4-node tetrahedron"),
+    (6, "6-node prism"),
+    (7, "5-node pyramid"),
+    (9, "6-node triangle"),
+    (11, "10-node tetrahedron"),
+    (12, "27-node hexahedron"),
+    (16, "8-node quadrangle"),
+    (17, "20-node hexahedron"),
+];
+
 #[derive(Clone, Copy)]
 enum Version {
     V2,
     V4,
 }
 
-/// Dimension and number of an entity or a physical group.
 type Key = (i64, i64);
 
 struct Reader<'t> {
@@ -194,7 +206,7 @@ impl<'t> Reader<'t> {
                     self.draft.set_nodes(&self.name(dimension, group), nodes);
                 }
             }
-            other => return Err(not_hexahedron(at, label, &kind_in_words(other))),
+            other => return Err(not_hexahedron(at, label, other, &KINDS)),
         }
         Ok(())
     }
@@ -205,22 +217,6 @@ impl<'t> Reader<'t> {
         let name = self.group_names.get(&(dimension, group));
         name.cloned().unwrap_or_else(|| group.to_string())
     }
-}
-
-fn kind_in_words(kind: i64) -> String {
-    let name = match kind {
-        2 => "3-node triangle",
-        4 => "4-node tetrahedron",
-        6 => "6-node prism",
-        7 => "5-node pyramid",
-        9 => "6-node triangle",
-        11 => "10-node tetrahedron",
-        12 => "27-node hexahedron",
-        16 => "8-node quadrangle",
-        17 => "20-node hexahedron",
-        _ => return kind.to_string(),
-    };
-    format!("{kind} ({name})")
 }
 
 #[cfg(test)]

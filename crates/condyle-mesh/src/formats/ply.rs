@@ -108,7 +108,13 @@ fn check_header(path: &Path, bytes: &[u8], header: &Header) -> Result<(), MeshFi
     let mut left = bytes.len();
     for (name, element) in &header.elements {
         left = left.checked_sub(element.count).ok_or_else(|| {
-            let line = header_line(bytes, name);
+            let announces = |row: &[u8]| {
+                let words = row.split(u8::is_ascii_whitespace);
+                let mut words = words.filter(|word| !word.is_empty());
+                words.next() == Some(b"element") && words.next() == Some(name.as_bytes())
+            };
+            let row = bytes.split(|&byte| byte == b'\n').position(announces);
+            let line = row.map(|row| row + 1);
             At { path, line }.error(format!(
                 "announces {} rows of element {name}, more than a file of {} bytes can hold; \
                  was it cut off?",
@@ -118,17 +124,6 @@ fn check_header(path: &Path, bytes: &[u8], header: &Header) -> Result<(), MeshFi
         })?;
     }
     Ok(())
-}
-
-/// Returns the number of the header's line that announces an element.
-fn header_line(bytes: &[u8], element: &str) -> Option<usize> {
-    let announces = |row: &[u8]| {
-        let words = row.split(u8::is_ascii_whitespace);
-        let mut words = words.filter(|word| !word.is_empty());
-        words.next() == Some(b"element") && words.next() == Some(element.as_bytes())
-    };
-    let row = bytes.split(|&byte| byte == b'\n').position(announces);
-    row.map(|row| row + 1)
 }
 
 /// Returns the parser's error in one line, its line number as the place.

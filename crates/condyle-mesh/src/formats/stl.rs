@@ -25,12 +25,8 @@ pub(crate) fn parse(path: &Path, bytes: &[u8]) -> Result<TriangleMesh, MeshFileE
     }
     let announced = announced
         .ok_or_else(|| At::file(path).error("is too short for an STL file; was it cut off?"))?;
-    parse_binary(path, &bytes[HEADER_BYTES..], announced)
-}
-
-fn parse_binary(path: &Path, data: &[u8], announced: usize) -> Result<TriangleMesh, MeshFileError> {
     let at = At::file(path);
-    let records = data.chunks_exact(TRIANGLE_BYTES);
+    let records = bytes[HEADER_BYTES..].chunks_exact(TRIANGLE_BYTES);
     if records.len() < announced {
         return Err(at.error(format!(
             "announces {announced} triangles but ends after {}; was it cut off?",

@@ -76,11 +76,20 @@ impl<'a> SurfaceDraft<'a> {
         if self.triangles.is_empty() {
             return Err(no_triangles(self.path));
         }
+        let first = self.first_vertex;
+        let last = self.points.len() as i64 + first - 1;
         let mut used = vec![false; self.points.len()];
         for triangle in &self.triangles {
             for &corner in &triangle.corners {
-                let used = used.get_mut(corner);
-                *used.ok_or_else(|| self.no_such_vertex(triangle, corner))? = true;
+                let used = used.get_mut(corner).ok_or_else(|| {
+                    let (path, line) = (self.path, triangle.line);
+                    At { path, line }.no_such_vertex(
+                        format_args!("polygon {}", triangle.polygon),
+                        (corner as i64).wrapping_add(first),
+                        format_args!("from {first} to {last}"),
+                    )
+                })?;
+                *used = true;
             }
         }
         let mut vertices = Vec::new();
@@ -100,23 +109,8 @@ impl<'a> SurfaceDraft<'a> {
             vertices,
         })
     }
-
-    fn no_such_vertex(&self, triangle: &DraftTriangle, corner: usize) -> MeshFileError {
-        let at = At {
-            path: self.path,
-            line: triangle.line,
-        };
-        let first = self.first_vertex;
-        let last = self.points.len() as i64 + first - 1;
-        at.no_such_vertex(
-            format_args!("polygon {}", triangle.polygon),
-            (corner as i64).wrapping_add(first),
-            format_args!("from {first} to {last}"),
-        )
-    }
 }
 
-/// Error of a surface file without a triangle or polygon.
 pub(crate) fn no_triangles(path: &Path) -> MeshFileError {
     At::file(path).error("holds no triangles; export the surface as triangles")
 }

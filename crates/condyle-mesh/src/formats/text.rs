@@ -5,7 +5,6 @@ use std::{borrow::Cow, fmt::Display, iter::Enumerate, path::Path, str::FromStr, 
 use super::error::MeshFileError;
 use crate::Vec3;
 
-/// Content of a text format.
 pub(crate) fn decode(bytes: &[u8]) -> Cow<'_, str> {
     // Bytes that are not UTF-8 can only be in names and comments.
     String::from_utf8_lossy(bytes)
@@ -15,7 +14,6 @@ pub(crate) fn decode(bytes: &[u8]) -> Cow<'_, str> {
 #[derive(Clone, Copy)]
 pub(crate) struct At<'p> {
     pub(crate) path: &'p Path,
-    /// Line number from 1.
     pub(crate) line: Option<usize>,
 }
 

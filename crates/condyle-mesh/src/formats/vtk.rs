@@ -15,6 +15,18 @@ use crate::{TriangleMesh, Vec3};
 
 const HEXAHEDRON: i64 = 12;
 const QUAD: i64 = 9;
+/// VTK's numbers of other kinds of cells.
+const KINDS: [(i64, &str); 9] = [
+    (5, "triangle"),
+    (7, "polygon"),
+    (10, "tetrahedron"),
+    (11, "voxel"),
+    (13, "wedge"),
+    (14, "pyramid"),
+    (24, "quadratic tetrahedron"),
+    (25, "quadratic hexahedron"),
+    (29, "triquadratic hexahedron"),
+];
 /// Cells of points and lines have neither volume nor faces.
 const PASSED_OVER: [i64; 4] = [1, 2, 3, 4];
 
@@ -138,20 +150,16 @@ pub(super) fn parse_vtu(path: &Path, bytes: &[u8]) -> Result<HexFile, MeshFileEr
     for cell in grid.hexahedra() {
         draft.hex(At::file(path), cell as u64, grid.corners(cell)?)?;
     }
-    // Marked quads are a surface; marked hexahedra are a node set.
-    for mark in grid
-        .piece
-        .arrays("CellData")
-        .iter()
-        .filter(|array| is_mark(array))
-    {
-        let is_marked = |cell: usize| mark.values[cell] == 1.0;
-        for (cell, &kind) in grid
-            .kinds
+    let marks = |group| {
+        grid.piece
+            .arrays(group)
             .iter()
-            .enumerate()
-            .filter(|&(cell, _)| is_marked(cell))
-        {
+            .filter(|array| is_mark(array))
+    };
+    // Marked quads are a surface; marked hexahedra are a node set.
+    for mark in marks("CellData") {
+        let cells = grid.kinds.iter().enumerate();
+        for (cell, &kind) in cells.filter(|&(cell, _)| mark.values[cell] == 1.0) {
             match kind {
                 QUAD => draft.quad(&mark.name, At::file(path), grid.corners(cell)?),
                 HEXAHEDRON => draft.set_nodes(&mark.name, grid.corners::<8>(cell)?),
@@ -160,12 +168,7 @@ pub(super) fn parse_vtu(path: &Path, bytes: &[u8]) -> Result<HexFile, MeshFileEr
         }
     }
     // Marked points are a node set, and the outer faces with four marked corners are a surface.
-    for mark in grid
-        .piece
-        .arrays("PointData")
-        .iter()
-        .filter(|array| is_mark(array))
-    {
+    for mark in marks("PointData") {
         let is_marked = |node: u64| mark.values.get(node as usize) == Some(&1.0);
         let nodes = (0..mark.values.len() as u64).filter(|&node| is_marked(node));
         draft.set_nodes(&mark.name, nodes);
@@ -187,7 +190,6 @@ fn is_mark(array: &DataArray) -> bool {
         && array.values.contains(&1.0)
 }
 
-/// An unstructured grid of hexahedra and faces.
 struct Grid<'a> {
     piece: Piece<'a>,
     points: Vec<[f64; 3]>,
@@ -216,8 +218,8 @@ impl<'a> Grid<'a> {
         }
         let is_known = |kind| kind == HEXAHEDRON || kind == QUAD || PASSED_OVER.contains(&kind);
         if let Some(cell) = grid.kinds.iter().position(|&kind| !is_known(kind)) {
-            let kind = kind_in_words(grid.kinds[cell]);
-            return Err(not_hexahedron(At::file(path), cell as u64, &kind));
+            let kind = grid.kinds[cell];
+            return Err(not_hexahedron(At::file(path), cell as u64, kind, &KINDS));
         }
         for (group, rows, of) in [
             ("PointData", grid.points.len(), "points"),
@@ -234,7 +236,6 @@ impl<'a> Grid<'a> {
         Ok(grid)
     }
 
-    /// Returns the numbers of the cells that are hexahedra.
     fn hexahedra(&self) -> impl Iterator<Item = usize> {
         (0..self.kinds.len()).filter(|&cell| self.kinds[cell] == HEXAHEDRON)
     }
@@ -243,20 +244,4 @@ impl<'a> Grid<'a> {
         let at = At::line(self.piece.path, self.cells.line);
         at.corners(format_args!("cell {cell}"), self.cells.get(cell))
     }
-}
-
-fn kind_in_words(kind: i64) -> String {
-    let name = match kind {
-        5 => "triangle",
-        7 => "polygon",
-        10 => "tetrahedron",
-        11 => "voxel",
-        13 => "wedge",
-        14 => "pyramid",
-        24 => "quadratic tetrahedron",
-        25 => "quadratic hexahedron",
-        29 => "triquadratic hexahedron",
-        _ => return kind.to_string(),
-    };
-    format!("{kind} ({name})")
 }

@@ -11,14 +11,12 @@ const TOO_MANY: &str = "an array unpacks to more values than a mesh in a file of
 
 /// Layout of the binary arrays of a file.
 pub(super) struct BinaryLayout {
-    /// Bytes of a count.
     count_bytes: usize,
     big_endian: bool,
     zlib: bool,
 }
 
 impl BinaryLayout {
-    /// Reads the layout from the attributes of the file's root.
     pub(super) fn new(root: Node) -> Result<Self, String> {
         let compressor = root.attribute("compressor");
         if let Some(other) = compressor.filter(|name| *name != "vtkZLibDataCompressor") {
@@ -100,7 +98,6 @@ impl BinaryLayout {
         })
     }
 
-    /// Unpacks all blocks of an array, up to `max` bytes.
     fn inflate(&self, bytes: &[u8], max: usize) -> Result<Vec<u8>, String> {
         let count = |index| self.count(bytes, index).ok_or(CUT_OFF);
         let blocks = count(0)?;
@@ -157,7 +154,6 @@ fn base64_bytes(encoded: &[u8], needed: usize) -> Result<Vec<u8>, String> {
     Ok(bytes)
 }
 
-/// Converts bytes, big-endian or not, to numbers.
 type Decoder = fn(&[u8], bool) -> Vec<f64>;
 
 /// Returns the size of a value of VTK's type `kind` in bytes, and its decoder.

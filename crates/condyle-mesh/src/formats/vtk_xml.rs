@@ -28,7 +28,6 @@ pub(crate) struct DataArray {
 }
 
 impl DataArray {
-    /// Returns the values as numbers of points or cells.
     pub(crate) fn indices(&self) -> impl Iterator<Item = i64> + '_ {
         self.values.iter().map(|&value| value as i64)
     }
@@ -38,10 +37,8 @@ impl DataArray {
     }
 }
 
-/// Cells as lists of points.
 #[derive(Default)]
 pub(crate) struct Cells {
-    /// Line of the connectivity array.
     pub(crate) line: usize,
     points: Vec<i64>,
     /// Start of every cell in `points`, and the end of the last.
@@ -124,7 +121,6 @@ impl<'p> Piece<'p> {
         found.map_or(&[], |(_, arrays)| arrays)
     }
 
-    /// Returns the coordinates of the points.
     pub(crate) fn points(&self) -> Result<Vec<[f64; 3]>, MeshFileError> {
         let points = self.arrays("Points").first();
         let points = points.filter(|array| array.components == 3);
@@ -158,7 +154,6 @@ impl<'p> Piece<'p> {
     }
 }
 
-/// Parses XML, with an error that names the file and the line.
 pub(crate) fn parse_xml<'x>(path: &Path, xml: &'x str) -> Result<Document<'x>, MeshFileError> {
     Document::parse(xml).map_err(|error| {
         let line = error.pos().row as usize;
@@ -216,7 +211,6 @@ fn long_tag(xml: &str) -> Option<usize> {
     None
 }
 
-/// Decodes the arrays of a file.
 struct ArrayReader<'a> {
     path: &'a Path,
     /// Start of each line of the XML; the XML parser's own search for a line starts at the first one.

@@ -31,7 +31,6 @@ impl BoxNode {
     }
 }
 
-/// A hierarchy of boxes around the triangles of a mesh.
 pub(super) struct BoxTree {
     bounds: Vec<Bounds>,
     order: Vec<u32>,

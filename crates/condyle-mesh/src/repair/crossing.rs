@@ -66,7 +66,9 @@ pub(super) fn crossings(mesh: &TriangleMesh) -> Crossings {
     let is_wrinkle = |&(triangles, depth)| depth <= shallow && are_neighbours(triangles);
     let place = |triangles: [usize; 2]| {
         let [one, other] = triangles.map(|triangle| mesh.corners(triangle));
-        meeting_point(&one, &other)
+        // An edge of one pierces the other; by rounding it may just miss, and the crossing is between the two.
+        let pierced = piercing(&one, &other).or_else(|| piercing(&other, &one));
+        pierced.unwrap_or_else(|| (one.iter().sum::<Vec3>() + other.iter().sum::<Vec3>()) / 6.0)
     };
     let deep = pairs.iter().filter(|pair| !is_wrinkle(*pair));
     let mut found: Vec<_> = deep.map(|&(pair, _)| (pair, place(pair))).collect();
@@ -78,11 +80,13 @@ pub(super) fn crossings(mesh: &TriangleMesh) -> Crossings {
     }
 }
 
-/// Returns the depth of the cut of two triangles, if they cross.
 fn crossing_depth(mesh: &TriangleMesh, pair: [usize; 2]) -> Option<f64> {
     let [one, other] = pair.map(|triangle| mesh.triangles[triangle]);
     let [mut first, mut second] = pair.map(|triangle| mesh.corners(triangle));
-    if are_parted_by_a_plane(&first, &second) {
+    // Most pairs end here: the plane of the first triangle has the second on one side.
+    let normal = (first[1] - first[0]).cross(&(first[2] - first[0]));
+    let above = second.map(|corner| normal.dot(&(corner - first[0])));
+    if above.iter().all(|&above| above > 0.0) || above.iter().all(|&above| above < 0.0) {
         return None;
     }
     let [longest, other_longest] = [&first, &second].map(|corners| {
@@ -104,7 +108,6 @@ fn crossing_depth(mesh: &TriangleMesh, pair: [usize; 2]) -> Option<f64> {
     depth_above(min_depth, &first, &second)
 }
 
-/// Moves a corner a little towards the middle of the opposite edge.
 fn cut_corner(corners: &mut Corners, corner: usize) {
     let opposite = (corners[(corner + 1) % 3] + corners[(corner + 2) % 3]) / 2.0;
     corners[corner] += LEFT_OUT * (opposite - corners[corner]);
@@ -149,22 +152,8 @@ fn depth_above(min_depth: f64, first: &Corners, second: &Corners) -> Option<f64>
     Some(depth)
 }
 
-/// Returns whether the plane of the first triangle has the second on one side; most pairs end here.
-fn are_parted_by_a_plane(first: &Corners, second: &Corners) -> bool {
-    let normal = (first[1] - first[0]).cross(&(first[2] - first[0]));
-    let [a, b, c] = second.map(|corner| normal.dot(&(corner - first[0])));
-    (a > 0.0 && b > 0.0 && c > 0.0) || (a < 0.0 && b < 0.0 && c < 0.0)
-}
-
 fn edges([a, b, c]: &Corners) -> [Vec3; 3] {
     [b - a, c - b, a - c]
-}
-
-/// Returns a point that two crossing triangles share: an edge of one pierces the other there.
-fn meeting_point(first: &Corners, second: &Corners) -> Vec3 {
-    let pierced = piercing(first, second).or_else(|| piercing(second, first));
-    // By rounding the edges may just miss: the crossing is between the two.
-    pierced.unwrap_or_else(|| (first.iter().sum::<Vec3>() + second.iter().sum::<Vec3>()) / 6.0)
 }
 
 fn piercing(edges_of: &Corners, plate: &Corners) -> Option<Vec3> {
@@ -349,9 +338,10 @@ mod tests {
     }
 
     #[test]
-    fn the_meeting_point_lies_in_both() {
+    fn an_edge_pierces_where_both_triangles_are() {
         let tip = upright(-0.5, [1.0, 1.0]);
-        let at = meeting_point(&FLOOR, &tip);
+        let at = piercing(&FLOOR, &tip).or_else(|| piercing(&tip, &FLOOR));
+        let at = at.unwrap();
         assert!(
             at.z.abs() < 1e-14 && (at.x - 1.0).abs() < 0.1 && (at.y - 1.0).abs() < 0.1,
             "{at}"

@@ -148,7 +148,6 @@ fn listed(defects: &[Defect]) -> String {
     parts.join("; ")
 }
 
-/// Separates the defects that matter from the others.
 pub(super) struct Judge {
     touching: Touching,
     /// Computed at the first defect.

@@ -7,7 +7,6 @@ use crate::{
     triangle_mesh::{TriangleMesh, bounds},
 };
 
-/// One side of one triangle.
 #[derive(Clone, Copy)]
 pub(super) struct EdgeUse {
     /// Vertices of the edge, the lower number first.
@@ -76,7 +75,14 @@ pub fn edge_report(mesh: &TriangleMesh) -> EdgeReport {
     while let Some((&start, _)) = next.first_key_value() {
         let mut around = vec![start];
         let mut at = start;
-        while let Some(to) = take_next(&mut next, at).filter(|&to| to != start) {
+        while let Some(ends) = next.get_mut(&at) {
+            let to = ends.pop();
+            if ends.is_empty() {
+                next.remove(&at);
+            }
+            let Some(to) = to.filter(|&to| to != start) else {
+                break;
+            };
             around.push(to);
             at = to;
         }
@@ -85,16 +91,6 @@ pub fn edge_report(mesh: &TriangleMesh) -> EdgeReport {
     report
 }
 
-fn take_next(next: &mut BTreeMap<u32, Vec<u32>>, from: u32) -> Option<u32> {
-    let ends = next.get_mut(&from)?;
-    let to = ends.pop();
-    if ends.is_empty() {
-        next.remove(&from);
-    }
-    to
-}
-
-/// Triangles that are connected by edges.
 pub(super) struct Piece {
     pub(super) triangles: Vec<u32>,
     /// The triangles among them that must be reversed for all to agree; never more than half.
@@ -119,7 +115,6 @@ pub(super) struct Oriented {
     pub(super) pieces: Vec<Piece>,
     /// Some closed piece was inside-out.
     pub(super) turned_round: bool,
-    /// Number of triangles that were reversed to agree with their neighbours.
     pub(super) made_consistent: usize,
     /// Middles of edges whose triangles cannot agree.
     pub(super) one_sided: Vec<Vec3>,

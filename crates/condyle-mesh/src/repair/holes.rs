@@ -96,7 +96,6 @@ pub(super) fn fill(mesh: &mut TriangleMesh, loops: &[Vec<u32>], normal: &Vec3) {
     }
 }
 
-/// A loop seen in the plane.
 struct Ring {
     vertices: Vec<u32>,
     places: Vec<[f64; 2]>,
@@ -192,7 +191,6 @@ pub(super) fn join(mesh: &mut TriangleMesh, within: f64) -> Vec<Vec3> {
     places
 }
 
-/// Vertices with their share of the way along the edge.
 type Between = Vec<(f64, u32)>;
 
 /// Returns for each triangle one of its open edges with the vertices of other open edges between its ends.
@@ -248,7 +246,6 @@ fn share_along(mesh: &TriangleMesh, ends: [u32; 2], vertex: u32, within: f64) ->
     is_on.then_some(share)
 }
 
-/// Puts vertices into the edge of a triangle, which becomes a fan.
 fn split(
     mesh: &mut TriangleMesh,
     triangle: usize,

@@ -54,7 +54,6 @@ pub enum WhyLeftOut {
     Speck,
 }
 
-/// Removes the parts that do not belong to the body, and returns them.
 pub(super) fn take_out_parts(mesh: &mut TriangleMesh, pieces: &[Piece]) -> Vec<LeftOut> {
     if pieces.len() < 2 {
         return Vec::new();

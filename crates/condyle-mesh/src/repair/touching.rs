@@ -19,7 +19,6 @@ pub enum Touching {
 }
 
 impl Touching {
-    /// Returns the directions of view, from the body to the eye.
     fn directions(self) -> Vec<Vec3> {
         match self {
             Self::Everywhere => Vec::new(),
@@ -70,7 +69,6 @@ impl TouchMap {
     }
 }
 
-/// The reach of a mesh along parallel lines of sight.
 struct View {
     /// Two directions across the view, and the one to the eye.
     axes: [Vec3; 3],

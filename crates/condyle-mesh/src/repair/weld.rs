@@ -43,7 +43,6 @@ fn rename(mesh: &mut TriangleMesh, replacement: &[u32]) {
     }
 }
 
-/// Removes the vertices that no triangle uses.
 pub(super) fn drop_unused(mesh: &mut TriangleMesh) {
     let mut new_number = vec![u32::MAX; mesh.vertices.len()];
     for &vertex in mesh.triangles.iter().flatten() {

@@ -5,10 +5,8 @@ use condyle_results::Side;
 
 use crate::figure::finite_range;
 
-/// Margin around the bodies, mm.
 const MARGIN_MM: f64 = 4.0;
 
-/// A side from which the bodies are seen, by a parallel projection.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum View {
     Front,
@@ -29,21 +27,17 @@ impl View {
         }
     }
 
-    /// Returns the coordinates of a point along the axes of the view.
     pub(super) fn seen(self, point: &Vec3) -> [f64; 3] {
         self.axes().map(|direction| direction.dot(point))
     }
 }
 
-/// The part of a view that is shown, and its place in the picture.
 pub(super) struct Frame {
     pub(super) view: View,
     /// Ends to the right and up, mm.
     pub(super) right_mm: (f64, f64),
     pub(super) up_mm: (f64, f64),
-    /// The upper left corner, px.
     pub(super) corner: (f64, f64),
-    /// px per mm.
     pub(super) scale: f64,
 }
 
@@ -79,7 +73,6 @@ impl Frame {
         [x, y, width * self.scale, height * self.scale]
     }
 
-    /// Returns the place of a point in the picture, px.
     pub(super) fn place(&self, point: &Vec3) -> (f64, f64) {
         let [right, up, _] = self.view.seen(point);
         (

@@ -49,9 +49,7 @@ pub struct BodiesPicture<'a> {
     pub caption: &'a str,
 }
 
-/// Largest width of the three views together, px.
 const MAX_WIDTH: f64 = 980.0;
-/// Largest scale, px per mm.
 const MAX_SCALE: f64 = 4.5;
 /// Space between two views, for their labels, px.
 const BETWEEN: f64 = 46.0;

@@ -31,7 +31,6 @@ pub(super) struct Raster {
     height: usize,
     /// Nearness of the surface to the viewer, in pixels; minus infinity where it is not visible.
     pub(super) near: Vec<f32>,
-    /// Lightness, 0 to 1.
     light: Vec<f32>,
 }
 

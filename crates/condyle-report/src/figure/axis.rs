@@ -14,7 +14,6 @@ pub(crate) struct Axis {
 }
 
 impl Axis {
-    /// Percent of a cycle.
     pub(crate) const PERCENT: Self = Self {
         low: 0.0,
         high: 100.0,
@@ -61,7 +60,6 @@ impl Axis {
         }
     }
 
-    /// Returns the ticks, smallest first.
     pub(crate) fn ticks(&self) -> impl Iterator<Item = f64> + '_ {
         (0..=self.intervals()).map(|tick| self.low + tick as f64 * self.step)
     }
@@ -90,7 +88,6 @@ impl Axis {
     }
 }
 
-/// Returns the smallest and largest finite value.
 pub(crate) fn finite_range(values: impl Iterator<Item = f64>) -> Option<(f64, f64)> {
     let finite = values.filter(|value| value.is_finite());
     let ends = finite.map(|value| (value, value));

@@ -8,14 +8,12 @@ use crate::results::SurfaceFields;
 
 /// A mesh prepared for contours, seen from above: (x, y) of the picture.
 pub(crate) struct Contours<'a> {
-    /// The nodes, then the centre of each quad.
     points: Vec<(f64, f64)>,
     quads: &'a [[u32; 4]],
     /// The sides of each quad that are on the border.
     borders: Vec<[bool; 4]>,
 }
 
-/// A closed line, px.
 pub(crate) type Loop = Vec<(f64, f64)>;
 
 /// A corner of a loop: on the edge between two vertices, or at one when they are equal.

@@ -18,9 +18,7 @@ use crate::results::{Extreme, Region, SurfaceFields};
 const MAX_BANDS: usize = 12;
 /// Half the width of the text below a marker, px, in the large letters of a narrow screen.
 const HALF_TEXT_WIDTH: f64 = 110.0;
-/// Half the width of the name of a direction, px.
 const HALF_DIRECTION: f64 = 40.0;
-/// Distance between height lines, mm.
 const HEIGHT_STEP_MM: f64 = 1.0;
 /// A largest value below this counts as nothing to show.
 const NOTHING: f64 = 1e-12;
@@ -36,13 +34,11 @@ const BAR_GAP: f64 = 48.0;
 const BAR_WIDTH: f64 = 15.0;
 const BAR_LABELS: f64 = 62.0;
 
-/// The style of the map of a field.
 #[derive(Clone, Copy)]
 pub(crate) struct MapStyle {
     /// Distinguishes the picture on a page.
     pub(crate) id: &'static str,
     pub(crate) title: &'static str,
-    /// The unit; empty for a pure number.
     pub(crate) unit: &'static str,
     /// The word for the largest value of a side.
     pub(crate) largest: &'static str,
@@ -50,10 +46,8 @@ pub(crate) struct MapStyle {
     pub(crate) shades: Gradient,
 }
 
-/// The range of values that the colours cover.
 #[derive(Clone, Copy)]
 pub(crate) enum ColourRange {
-    /// From 0 to the largest value.
     Own,
     /// From 0 to this value, so that two maps can be compared.
     UpTo(f64),
@@ -61,19 +55,15 @@ pub(crate) enum ColourRange {
     BothWays(f64),
 }
 
-/// A map of one field.
 pub(crate) struct Map<'a> {
     pub(crate) style: MapStyle,
     pub(crate) surface: &'a SurfaceFields,
-    /// A value for each node.
     pub(crate) values: &'a [f64],
     pub(crate) side: Side,
     pub(crate) range: ColourRange,
-    /// Scale of the picture.
     pub(crate) px_per_mm: f64,
 }
 
-/// Returns the largest finite absolute value.
 pub(crate) fn largest_size(values: &[f64]) -> f64 {
     let finite = values.iter().filter(|value| value.is_finite());
     finite.fold(0.0, |most, value| value.abs().max(most))
@@ -94,7 +84,6 @@ impl Map<'_> {
         )
     }
 
-    /// Returns the map as content of a larger picture.
     pub(crate) fn body(&self) -> String {
         let (bands, markers) = (self.bands(), self.markers());
         let (_, height) = self.surface_size();
@@ -110,7 +99,6 @@ impl Map<'_> {
         .concat()
     }
 
-    /// Width and height, px.
     pub(crate) fn size(&self) -> (f64, f64) {
         let (width, height) = self.surface_size();
         let bar = BAR_GAP + BAR_WIDTH + BAR_LABELS;

@@ -8,15 +8,11 @@ const ELBOW_BELOW: f64 = 6.0;
 const ABOVE_TEXT: f64 = 13.0;
 /// Distance of a leader's end inside the text, px, which shows whose it is.
 const INSIDE_TEXT: f64 = 24.0;
-/// Radius of a ring, px.
 const RING: f64 = 4.5;
 
-/// A ring on a map with its leader and text, px.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Marker {
-    /// Centre of the ring.
     ring: (f64, f64),
-    /// Middle of the text.
     text_x: f64,
     /// Lines of the text, which are safe SVG.
     lines: [String; 2],
@@ -31,9 +27,7 @@ pub(super) struct Marker {
 pub(super) struct TextRow {
     /// Half the width of the longest text.
     pub(super) half_width: f64,
-    /// The surface's right end.
     pub(super) right: f64,
-    /// The surface's lower end.
     pub(super) bottom: f64,
 }
 
@@ -42,7 +36,12 @@ impl TextRow {
     pub(super) fn markers(self, rings: Vec<((f64, f64), [String; 2])>) -> Vec<Marker> {
         let mut middles: Vec<f64> = rings.iter().map(|((x, _), _)| self.inside(*x)).collect();
         if let [left, right] = middles.as_mut_slice() {
-            (*left, *right) = self.apart(*left, *right);
+            // Two texts move apart by equal distances, or away from the end of the picture.
+            let missing = (2.0 * self.half_width - (*right - *left)).max(0.0);
+            *left = self.inside(*left - missing / 2.0);
+            *right = right.max(*left + 2.0 * self.half_width);
+            let over = (*right - self.right.max(3.0 * self.half_width)).max(0.0);
+            (*left, *right) = (self.inside(*left - over), *right - over);
         }
         let reach = self.half_width - INSIDE_TEXT;
         let marker = |((ring, lines), text_x): (((f64, f64), [String; 2]), f64)| Marker {
@@ -61,19 +60,9 @@ impl TextRow {
     fn inside(self, x: f64) -> f64 {
         x.clamp(self.half_width, self.right.max(self.half_width))
     }
-
-    /// Two texts moved apart by equal distances, or away from the end of the picture.
-    fn apart(self, left: f64, right: f64) -> (f64, f64) {
-        let missing = (2.0 * self.half_width - (right - left)).max(0.0);
-        let left = self.inside(left - missing / 2.0);
-        let right = right.max(left + 2.0 * self.half_width);
-        let over = (right - self.right.max(3.0 * self.half_width)).max(0.0);
-        (self.inside(left - over), right - over)
-    }
 }
 
 impl Marker {
-    /// Ring, leader and text.
     pub(super) fn svg(&self) -> String {
         let ((x, y), [first, second]) = (self.ring, &self.lines);
         let (text_x, text_y) = (self.text_x, self.end_y + ABOVE_TEXT);

@@ -19,10 +19,8 @@ const GAP: f64 = 14.0;
 /// Height of the key below the panels of a sheet, px.
 const KEY: f64 = 26.0;
 
-/// Class of measured values.
 pub(crate) const MEASURED: &str = "specimen";
 
-/// A line of a plot.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Curve {
     /// Its name in the legend of the interactive plot.
@@ -32,7 +30,6 @@ pub(crate) struct Curve {
     /// Points (x, y); a point with NaN breaks the line.
     pub(crate) points: Vec<(f64, f64)>,
     pub(crate) has_dots: bool,
-    /// A label at the last point.
     pub(crate) end: Option<String>,
 }
 
@@ -45,7 +42,6 @@ impl Curve {
         }
     }
 
-    /// With a dot at every point.
     pub(crate) fn dotted(self) -> Self {
         Self {
             has_dots: true,
@@ -58,7 +54,6 @@ impl Curve {
     }
 }
 
-/// A plot with one or more lines.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Panel {
     /// Distinguishes the plot on a page.
@@ -66,11 +61,9 @@ pub(crate) struct Panel {
     /// Interactive plots of one group share their cursor.
     pub(crate) group: String,
     pub(crate) title: String,
-    /// Unit of the vertical axis.
     pub(crate) unit: String,
     /// The positive direction in words; may be empty.
     pub(crate) positive: &'static str,
-    /// The horizontal axis.
     pub(crate) x: Axis,
     /// Ticks of the horizontal axis with their texts; round numbers if empty.
     pub(crate) x_marks: Vec<(f64, String)>,
@@ -80,20 +73,15 @@ pub(crate) struct Panel {
     pub(crate) x_title: String,
     /// Cycles for one unit of the horizontal axis; 0 where it shows no cycles.
     pub(crate) cycles_per_x: f64,
-    /// Width and height, px.
     pub(crate) size: (f64, f64),
-    /// Whether the vertical axis starts at 0.
     pub(crate) from_zero: bool,
-    /// The smallest span of the vertical axis, so that noise does not fill the picture.
     pub(crate) min_span: f64,
-    /// The lines, the lowest first.
     pub(crate) curves: Vec<Curve>,
     /// A sentence for readers who cannot see it.
     pub(crate) desc: String,
 }
 
 impl Panel {
-    /// Returns the panel as an element of a page.
     pub(crate) fn svg(&self) -> String {
         let ((width, height), id) = (self.size, escape(&self.id));
         let (title, desc) = (escape(&self.title), escape(&self.desc));
@@ -103,7 +91,6 @@ impl Panel {
         )
     }
 
-    /// Returns the panel as content of a larger picture.
     fn body(&self) -> String {
         let y = self.y_axis();
         let lines = self.curves.iter().map(|curve| self.line(curve, &y));

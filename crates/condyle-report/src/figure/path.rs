@@ -8,7 +8,6 @@ pub(crate) struct Path {
 }
 
 impl Path {
-    /// Adds a closed loop.
     pub(crate) fn closed(&mut self, points: &[(f64, f64)]) {
         let Some((&first, rest)) = points.split_first() else {
             return;
@@ -34,7 +33,6 @@ impl Path {
         }
     }
 
-    /// Returns the value of the attribute `d`.
     pub(crate) fn data(self) -> String {
         self.data
     }

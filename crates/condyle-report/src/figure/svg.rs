@@ -15,7 +15,6 @@ const COLOURS: [(&str, &str, &str); 8] = [
     ("first", "#f3b562", "#a8701f"),
 ];
 
-/// Margin around a picture in its own file, px.
 const MARGIN: f64 = 16.0;
 
 /// Declarations of the colours as CSS variables: (on white, on black).
@@ -25,25 +24,21 @@ pub(crate) fn colour_variables() -> (String, String) {
     (light.concat(), dark.concat())
 }
 
-/// Returns the style with the colours of white paper filled in: readers of SVG files have no CSS variables.
-fn style_on_white() -> String {
-    let fill = |css: String, (name, light, _): (&str, &str, &str)| {
-        css.replace(&format!("var(--{name})"), light)
-    };
-    COLOURS.into_iter().fold(STYLE.to_owned(), fill)
-}
-
 /// Returns an SVG file of a drawing of `size` (width, height) px, on white.
 pub(crate) fn svg_file(title: &str, desc: &str, size: (f64, f64), body: &str) -> String {
     let (width, height) = (size.0 + 2.0 * MARGIN, size.1 + 2.0 * MARGIN);
-    let (title, desc, style) = (escape(title), escape(desc), style_on_white());
+    let (title, desc) = (escape(title), escape(desc));
+    // The colours of white paper are filled in: readers of SVG files have no CSS variables.
+    let fill = |css: String, (name, light, _): (&str, &str, &str)| {
+        css.replace(&format!("var(--{name})"), light)
+    };
+    let style = COLOURS.into_iter().fold(STYLE.to_owned(), fill);
     format!(
         r##"<svg xmlns="http://www.w3.org/2000/svg" class="fig" role="img" aria-labelledby="t d" viewBox="0 0 {width} {height}" width="{width}" height="{height}"><title id="t">{title}</title><desc id="d">{desc}</desc><style>{style}</style><rect width="{width}" height="{height}" fill="#fff"/><g transform="translate({MARGIN} {MARGIN})">{body}</g></svg>
 "##
     )
 }
 
-/// Escapes text for SVG and HTML.
 pub(crate) fn escape(text: &str) -> String {
     let text = text.replace('&', "&amp;").replace('<', "&lt;");
     text.replace('>', "&gt;").replace('"', "&quot;")
@@ -74,6 +69,6 @@ mod tests {
 
     #[test]
     fn pictures_on_white_need_no_variables() {
-        assert!(!style_on_white().contains("var("));
+        assert!(!svg_file("a", "b", (1.0, 1.0), "").contains("var("));
     }
 }

@@ -5,19 +5,17 @@ use condyle_results::{
     catalogue::{self, Scalar, Section},
 };
 use serde::Serialize;
-use serde_json::Value;
+use serde_json::{Value, json};
 
 use crate::number::{first_letter_large, fixed, in_words, significant, with_powers};
 use crate::results::Results;
 
-/// Numbers under one heading.
 #[derive(Serialize)]
 pub(super) struct Group {
     heading: &'static str,
     rows: Vec<Listed>,
 }
 
-/// A number in the list.
 #[derive(Serialize)]
 struct Listed {
     label: String,
@@ -26,33 +24,21 @@ struct Listed {
     meaning: String,
 }
 
-/// A number in large type.
-#[derive(Serialize)]
-pub(super) struct Tile {
-    label: String,
-    value: String,
-    unit: String,
-    /// Estimated discretisation error, in the unit.
-    error: Option<String>,
-}
-
 /// Parts of names of entries that differ from run to run of one case, or that the page shows as its origin.
 const NOT_LISTED: [&str; 4] = ["wall_s", "version", "hash", "blake3"];
 
-/// Returns the most important numbers.
-pub(super) fn tiles(results: &Results) -> Vec<Tile> {
+pub(super) fn tiles(results: &Results) -> Vec<Value> {
     let Some(summary) = &results.summary else {
         return Vec::new();
     };
     let tile = |number: &'static Scalar| {
-        Some(Tile {
-            label: label_of(number),
-            value: shown(number, summary.get(number)?, 3),
-            unit: unit_of(number),
-            error: summary
-                .total_error(number)
-                .map(|error| significant(error, 2)),
-        })
+        let error = summary.total_error(number);
+        Some(json!({
+            "label": label_of(number),
+            "value": shown(number, summary.get(number)?, 3),
+            "unit": unit_of(number),
+            "error": error.map(|error| significant(error, 2)),
+        }))
     };
     catalogue::headlines().filter_map(tile).collect()
 }
@@ -68,7 +54,15 @@ pub(super) fn groups(results: &Results) -> Vec<Group> {
             .scalars
             .iter()
             .filter(|number| !is_hidden(number.key))
-            .filter_map(|number| listed(number, summary))
+            .filter_map(|number| {
+                let meaning = [number.description(), number.definition()].join(" ");
+                Some(Listed {
+                    label: label_of(number),
+                    value: shown(number, summary.get(number)?, 4),
+                    unit: unit_of(number),
+                    meaning: with_powers(meaning.trim_end()),
+                })
+            })
             .collect(),
     };
     let mut groups: Vec<_> = catalogue::SECTIONS.iter().map(group).collect();
@@ -118,17 +112,6 @@ fn neutral(summary: &Summary) -> Group {
     }
 }
 
-fn listed(number: &Scalar, summary: &Summary) -> Option<Listed> {
-    let meaning = [number.description(), number.definition()].join(" ");
-    Some(Listed {
-        label: label_of(number),
-        value: shown(number, summary.get(number)?, 4),
-        unit: unit_of(number),
-        meaning: with_powers(meaning.trim_end()),
-    })
-}
-
-/// Returns the name of a number as a title.
 pub(crate) fn label_of(number: &Scalar) -> String {
     first_letter_large(number.label)
 }

@@ -3,7 +3,7 @@
 use condyle_results::catalogue::{
     CYCLES, INCREMENTS, MASS_LOSS_MG, Scalar, UPDATES, VOLUME_LOSS_MESH_MM3, VOLUME_LOSS_MM3,
 };
-use serde::Serialize;
+use serde_json::{Value, json};
 
 use crate::number::{
     cycles_in_words, first_letter_large, fixed, in_words, significant, with_powers,
@@ -69,25 +69,17 @@ pub(super) fn unfinished(results: &Results) -> Option<&'static str> {
     )
 }
 
-/// A reason to doubt the numbers, and advice.
-#[derive(Serialize)]
-pub(super) struct Doubt {
-    message: String,
-    advice: String,
-}
-
 /// Returns the plausibility warnings of the summary, and the errors that it could not estimate.
-pub(super) fn doubts(results: &Results) -> Vec<Doubt> {
+pub(super) fn doubts(results: &Results) -> Vec<Value> {
     let summary = results.summary.iter();
     let warnings = summary.flat_map(|summary| &summary.plausibility);
-    let doubtful = warnings.map(|warning| Doubt {
-        message: ended(&first_letter_large(&warning.message)),
-        advice: with_powers(&warning.advice),
+    let doubtful = warnings.map(|warning| {
+        let message = ended(&first_letter_large(&warning.message));
+        json!({ "message": message, "advice": with_powers(&warning.advice) })
     });
-    let unknown = not_estimated(results).into_iter().map(|message| Doubt {
-        message,
-        advice: String::from("The stated discretisation error does not include it."),
-    });
+    let advice = "The stated discretisation error does not include it.";
+    let unknown = not_estimated(results).into_iter();
+    let unknown = unknown.map(|message| json!({ "message": message, "advice": advice }));
     doubtful.chain(unknown).collect()
 }
 
@@ -207,15 +199,8 @@ pub(super) fn volume_check(results: &Results) -> Option<String> {
     ))
 }
 
-/// A version or a hash of the run.
-#[derive(Serialize)]
-pub(super) struct Fact {
-    name: String,
-    value: String,
-}
-
 /// Versions, then hashes, under any key that contains these words.
-pub(super) fn provenance(results: &Results) -> Vec<Fact> {
+pub(super) fn provenance(results: &Results) -> Vec<(String, String)> {
     let is_hash = |name: &str| name.contains("hash") || name.contains("blake3");
     let Some(summary) = &results.summary else {
         return Vec::new();
@@ -229,16 +214,17 @@ pub(super) fn provenance(results: &Results) -> Vec<Fact> {
     let all = own.into_iter().chain(others);
     let named =
         all.filter(|(key, value)| !value.is_empty() && (key.contains("version") || is_hash(key)));
-    let fact = |(key, value): (&str, &str)| Fact {
-        name: in_words(key).0.replace("blake3", "(BLAKE3)"),
-        value: value.to_owned(),
+    let fact = |(key, value): (&str, &str)| {
+        (
+            in_words(key).0.replace("blake3", "(BLAKE3)"),
+            value.to_owned(),
+        )
     };
-    let mut facts: Vec<Fact> = named.map(fact).collect();
-    facts.sort_by_key(|fact| is_hash(&fact.name.to_lowercase()));
+    let mut facts: Vec<_> = named.map(fact).collect();
+    facts.sort_by_key(|(name, _)| is_hash(&name.to_lowercase()));
     facts
 }
 
-/// Returns the files of a results folder that are missing from this one.
 pub(super) fn missing(results: &Results) -> Vec<&'static str> {
     let files = [
         ("summary.json", results.summary.is_none()),

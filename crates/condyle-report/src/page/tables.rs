@@ -6,9 +6,9 @@ use super::numbers::unit_of;
 use super::sentences::{not_estimated, reached};
 use condyle_results::{ErrorParts, Part, Side, catalogue::VOLUME_LOSS_MM3};
 
-use crate::charts::{CHANNELS, Cycle, first_and_last};
+use crate::charts::{CHANNELS, first_and_last};
 use crate::number::{first_letter_large, fixed, significant};
-use crate::results::{Region, Results, SurfaceFields, Table};
+use crate::results::{Region, Results, SurfaceFields};
 
 /// Depth above which a place counts as part of the scar, as a share of the largest depth.
 const SCAR_SHARE: f64 = 0.05;
@@ -42,7 +42,10 @@ pub(super) fn compartments(results: &Results) -> Vec<Comparison> {
     let Some((surface, depth)) = surface.zip(worn) else {
         return Vec::new();
     };
-    let regions = medial_lateral_both(results.side);
+    let regions = match results.side {
+        Side::Right => [Region::Left, Region::Right, Region::Whole],
+        Side::Left => [Region::Right, Region::Left, Region::Whole],
+    };
     let deepest = surface.largest(depth, Region::Whole);
     let scar_mm = SCAR_SHARE * deepest.map_or(0.0, |found| found.value);
     let compare = |name, unit, value: &dyn Fn(Region) -> Option<String>| Comparison {
@@ -59,7 +62,9 @@ pub(super) fn compartments(results: &Results) -> Vec<Comparison> {
     let mut rows = vec![
         largest("Maximum wear depth", "mm", depth),
         compare("at x, z", "mm", &|region| {
-            deepest_place(surface, depth, region)
+            let found = surface.largest(depth, region)?;
+            let (x, z) = (fixed(found.position.x, 1), fixed(found.position.z, 1));
+            (found.value > 0.0).then(|| format!("{x}, {z}"))
         }),
         compare(
             "Volume loss, from depth, shared out by depth and area",
@@ -85,20 +90,6 @@ pub(super) fn compartments(results: &Results) -> Vec<Comparison> {
         }));
     }
     rows
-}
-
-fn medial_lateral_both(side: Side) -> [Region; 3] {
-    match side {
-        Side::Right => [Region::Left, Region::Right, Region::Whole],
-        Side::Left => [Region::Right, Region::Left, Region::Whole],
-    }
-}
-
-/// x and z of the deepest place, mm; none where nothing is worn.
-fn deepest_place(surface: &SurfaceFields, depth: &[f64], region: Region) -> Option<String> {
-    let found = surface.largest(depth, region)?;
-    let (x, z) = (fixed(found.position.x, 1), fixed(found.position.z, 1));
-    (found.value > 0.0).then(|| format!("{x}, {z}"))
 }
 
 /// Returns the thickness under the scar, where thinness matters, and anywhere, where the thinnest place may be the
@@ -136,7 +127,6 @@ fn volume_mm3(results: &Results, surface: &SurfaceFields, depth: &[f64], region:
     }
 }
 
-/// The range of a channel in the first and in the last cycle.
 #[derive(Serialize)]
 pub(super) struct ChannelRange {
     title: &'static str,
@@ -145,14 +135,24 @@ pub(super) struct ChannelRange {
     ends: Vec<[f64; 4]>,
 }
 
-/// Returns the range of every channel that the folder holds.
 pub(super) fn ranges(results: &Results) -> Vec<ChannelRange> {
     let Some(table) = &results.kinematics else {
         return Vec::new();
     };
+    let Some(percent) = table.column("percent") else {
+        return Vec::new();
+    };
     let ends = first_and_last(table);
     let rows = CHANNELS.iter().filter_map(|channel| {
-        let ends = ends.iter().map(|cycle| range(table, channel.column, cycle));
+        let values = table.column(channel.column)?;
+        let by_value = |a: &usize, b: &usize| values[*a].total_cmp(&values[*b]);
+        let ends = ends.iter().map(|cycle| {
+            let rows = cycle.rows.iter().copied();
+            let finite = rows.filter(|&row| values[row].is_finite());
+            let low = finite.clone().min_by(by_value)?;
+            let high = finite.max_by(by_value)?;
+            Some([values[low], percent[low], values[high], percent[high]])
+        });
         Some(ChannelRange {
             title: channel.title,
             unit: channel.unit,
@@ -160,16 +160,6 @@ pub(super) fn ranges(results: &Results) -> Vec<ChannelRange> {
         })
     });
     rows.collect()
-}
-
-fn range(table: &Table, column: &str, cycle: &Cycle) -> Option<[f64; 4]> {
-    let (percent, values) = (table.column("percent")?, table.column(column)?);
-    let rows = cycle.rows.iter().copied();
-    let finite = rows.filter(|&row| values[row].is_finite());
-    let by_value = |a: &usize, b: &usize| values[*a].total_cmp(&values[*b]);
-    let low = finite.clone().min_by(by_value)?;
-    let high = finite.max_by(by_value)?;
-    Some([values[low], percent[low], values[high], percent[high]])
 }
 
 /// The estimated discretisation errors: a row for each quantity, a column for each part.
@@ -190,7 +180,6 @@ struct QuantityError {
     values: Vec<String>,
 }
 
-/// Returns the remedy for a part of the error.
 fn remedy(part: Part) -> &'static str {
     match part {
         Part::Increments => "finer increments of the gait cycle",

@@ -19,7 +19,6 @@ fn has_left(table: &Table) -> bool {
     })
 }
 
-/// The facts of a case that the report states.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(crate) struct CaseFacts {
     /// `title` or `name` at the top of the case.

@@ -3,7 +3,7 @@
 use std::collections::BTreeSet;
 use std::path::Path;
 
-use condyle_fem::{HEX_FACES, HexMesh, Vec3};
+use condyle_fem::{HexMesh, Vec3};
 
 use crate::error::ReportError;
 
@@ -99,7 +99,6 @@ impl SurfaceFields {
         quad.map(|node| self.nodes[node as usize])
     }
 
-    /// Returns the smallest and largest x, then z, of the surface, mm.
     pub(crate) fn bounds(&self) -> [(f64, f64); 2] {
         [0, 2].map(|axis| {
             let values = self.nodes.iter().map(|node| node[axis]);
@@ -169,7 +168,6 @@ fn mean(values: &[f64], quad: [u32; 4]) -> f64 {
     quad.iter().map(|&node| values[node as usize]).sum::<f64>() / 4.0
 }
 
-/// The articulating surface of a hexahedral mesh.
 #[derive(Clone, Debug)]
 pub(crate) struct Articulating {
     /// Its nodes by their numbers in the mesh, in rising order.
@@ -181,7 +179,11 @@ pub(crate) struct Articulating {
 impl Articulating {
     /// Returns the boundary faces whose nodes are all marked 1; none if there are no such faces.
     pub fn of(mesh: &HexMesh, marks: &[f64]) -> Option<Self> {
-        let quads = (marks.len() == mesh.nodes.len()).then(|| marked_boundary(mesh, marks))?;
+        if marks.len() != mesh.nodes.len() {
+            return None;
+        }
+        let is_marked = |quad: &[u32; 4]| quad.iter().all(|&node| marks[node as usize] == 1.0);
+        let quads = mesh.boundary_quads_where(is_marked);
         if quads.is_empty() {
             return None;
         }
@@ -201,28 +203,6 @@ impl Articulating {
         let nodes = self.nodes.iter();
         nodes.map(|&node| values[node as usize]).collect()
     }
-}
-
-/// Returns the marked part of `HexMesh::boundary_quads`; it looks at marked faces only, which is ten times faster.
-fn marked_boundary(mesh: &HexMesh, marks: &[f64]) -> Vec<[u32; 4]> {
-    let is_marked = |quad: &[u32; 4]| quad.iter().all(|&node| marks[node as usize] == 1.0);
-    let faces = |hex: &[u32; 8]| HEX_FACES.map(|face| face.map(|corner| hex[corner]));
-    let faces = mesh.hexes.iter().flat_map(faces);
-    let mut quads: Vec<_> = faces.filter(is_marked).collect();
-    let (mut once, mut twice) = (BTreeSet::new(), BTreeSet::new());
-    for key in quads.iter().copied().map(sorted) {
-        if !once.insert(key) {
-            twice.insert(key);
-        }
-    }
-    // A face of two elements is inside.
-    quads.retain(|&quad| !twice.contains(&sorted(quad)));
-    quads
-}
-
-fn sorted(mut quad: [u32; 4]) -> [u32; 4] {
-    quad.sort_unstable();
-    quad
 }
 
 #[cfg(test)]

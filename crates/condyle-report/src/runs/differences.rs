@@ -309,7 +309,6 @@ pub struct CurveDifference {
     pub rms_percent_of_range: Option<f64>,
 }
 
-/// Points (percent, value) of a curve.
 type Points = Vec<(f64, f64)>;
 
 /// Motions and loads of the first and last cycle that both runs have and that differ, ranked by difference over range.
@@ -433,7 +432,6 @@ fn map_difference(
     })
 }
 
-/// Second minus first at every node.
 pub(super) fn subtracted(
     one: &SurfaceFields,
     two: &SurfaceFields,

@@ -16,7 +16,6 @@ use crate::number::significant;
 use crate::page::{label_of, shown, unit_of};
 use crate::sheets::{Sheets, render, write_text};
 
-/// A picture: its name, caption and text.
 type Sheet = (&'static str, String, String);
 
 /// Writes the page of several runs, compared with the first, and returns its path.
@@ -158,7 +157,6 @@ fn line(run: usize) -> &'static str {
     LINES[run % LINES.len()]
 }
 
-/// The choice of the curve of a run's panel.
 #[derive(Clone, Copy)]
 enum Curves {
     First,
@@ -226,7 +224,6 @@ fn map_rows(runs: &[Run], field: &MappedField) -> Option<String> {
     Some(svg_file(field.style.title, &desc.join(" "), size, &body))
 }
 
-/// A map in a row, with its name above.
 struct Placed {
     name: String,
     size: (f64, f64),

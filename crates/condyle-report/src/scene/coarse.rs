@@ -106,7 +106,6 @@ fn clustered(body: &TriangleMesh, edge: f64, border: &[bool]) -> TriangleMesh {
     }
 }
 
-/// Returns the vertex nearest to the mean of `vertices`.
 fn middle(vertices: &[Vec3]) -> Vec3 {
     let mean = vertices.iter().sum::<Vec3>() / vertices.len() as f64;
     let away = |vertex: &Vec3| (vertex - mean).norm_squared();

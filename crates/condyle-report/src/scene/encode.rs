@@ -5,6 +5,7 @@ use serde_json::{Value, json};
 
 use super::{Scene, SceneCycle, SceneUpdate, coarse::coarser};
 use crate::figure::{Curve, Panel, finite_range};
+use crate::number::in_words;
 use crate::results::ARTICULATING;
 
 /// Triangles of the femur in a picture: with more, a processor does not draw thirty pictures a second.
@@ -71,21 +72,24 @@ impl Scene {
         }
     }
 
-    /// Adds the fields that every update has, and returns their names.
-    fn add_fields(&self, arrays: &mut Arrays) -> Vec<&str> {
+    /// Adds the fields that every update has, and returns their names, labels and units.
+    fn add_fields(&self, arrays: &mut Arrays) -> Vec<Value> {
         let fields = self.updates.last().map(|last| last.fields.as_slice());
         let names = fields.unwrap_or_default().iter();
         let names = names.map(|(name, _)| name.as_str());
         let mut kept = Vec::new();
         for name in names.filter(|name| *name != ARTICULATING) {
-            let of_update = |update: &'_ SceneUpdate| {
+            let of_update = |update: &SceneUpdate| {
                 let mut fields = update.fields.iter();
-                fields
-                    .find(|(known, _)| known == name)
-                    .map(|(_, values)| values.clone())
+                let found = fields.find(|(known, _)| known == name);
+                found.map(|(_, values)| values.clone())
             };
-            let found: Option<Vec<_>> = self.updates.iter().map(of_update).collect();
-            let Some(found) = found else {
+            let Some(found) = self
+                .updates
+                .iter()
+                .map(of_update)
+                .collect::<Option<Vec<_>>>()
+            else {
                 continue;
             };
             // One range for all updates: the colours keep their meaning from one to the next.
@@ -94,7 +98,8 @@ impl Scene {
                 let name = format!("field.{name}.{update}");
                 arrays.quantised(&name, values.into_iter(), of_all);
             }
-            kept.push(name);
+            let (label, unit) = in_words(name);
+            kept.push(json!({ "name": name, "label": label, "unit": unit }));
         }
         kept
     }
@@ -156,10 +161,8 @@ fn range(values: impl Iterator<Item = f64>) -> [f64; 2] {
     finite_range(values).unwrap_or_default().into()
 }
 
-/// The largest quantised value.
 const LEVELS: f64 = 65535.0;
 
-/// Named arrays, one after the other.
 #[derive(Debug, Default)]
 struct Arrays {
     /// For each array: name, kind, offset from the start of the first array in bytes, length, and the values of the
@@ -181,7 +184,6 @@ impl Arrays {
         }
     }
 
-    /// Adds numbers in full precision.
     fn exact(&mut self, name: &str, values: impl Iterator<Item = f64>) {
         let bytes = values.flat_map(f64::to_le_bytes);
         self.add(name, "f64", 8, bytes.collect(), None);

@@ -39,7 +39,6 @@ struct SceneInsert {
     skin: TriangleMesh,
 }
 
-/// The articulating surface after an update.
 #[derive(Clone, Debug)]
 struct SceneUpdate {
     cycles: f64,
@@ -114,7 +113,6 @@ impl Scene {
         !self.updates.is_empty()
     }
 
-    /// Returns whether there is nothing to show.
     pub(crate) fn is_empty(&self) -> bool {
         !self.has_surface() && self.charts.is_empty()
     }

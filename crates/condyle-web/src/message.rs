@@ -1,4 +1,4 @@
-//! Messages to the page while the program works.
+//! Messages to the page while the program runs.
 
 use std::io::{self, Write};
 
@@ -10,7 +10,7 @@ use crate::failure::Failure;
 /// One line on standard output.
 #[derive(Serialize)]
 #[serde(rename_all = "snake_case")]
-pub enum Told {
+pub enum Message {
     /// A correction of the input, or a remark on suspicious input.
     Warning(String),
     /// Progress of a run.
@@ -24,8 +24,8 @@ pub enum Told {
 }
 
 /// Sends a message to the page, which may not be listening.
-pub fn tell(told: &Told) {
-    let line = serde_json::to_string(told).expect("numbers and text always serialise");
+pub fn send(message: &Message) {
+    let line = serde_json::to_string(message).expect("numbers and text always serialise");
     let mut page = io::stdout().lock();
     let _ = writeln!(page, "{line}").and_then(|()| page.flush());
 }
