@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
+from ._condyle import unit_of
 from ._extras import extra
 from .femur import rows_of_cycle
 from .result import check_fields
-from .units import unit_of
 
 if TYPE_CHECKING:
     import numpy as np

@@ -7,9 +7,9 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from ._condyle import unit_of
 from ._extras import extra
 from .errors import BadInput
-from .units import unit_of
 
 if TYPE_CHECKING:
     import os

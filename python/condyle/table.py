@@ -6,9 +6,9 @@ from collections.abc import Iterator, Mapping
 from io import StringIO
 from typing import TYPE_CHECKING
 
+from ._condyle import unit_of
 from ._extras import extra
 from .errors import BadInput
-from .units import unit_of
 
 if TYPE_CHECKING:
     import numpy as np

@@ -13,7 +13,6 @@ mod folder;
 mod knee;
 mod law;
 mod listener;
-mod processor;
 mod record;
 mod run;
 mod study;
@@ -38,9 +37,44 @@ mod _condyle {
 
     #[pymodule_init]
     fn init(_module: &Bound<'_, PyModule>) -> PyResult<()> {
-        super::processor::check()
+        super::check_processor()
+    }
+
+    /// Returns the unit that the name of a quantity ends in; empty for a pure number.
+    #[pyfunction]
+    fn unit_of(name: &str) -> &'static str {
+        match name {
+            "percent" => "%",
+            name => condyle_results::split_unit(name).1.unwrap_or_default(),
+        }
     }
 
     #[pymodule_export]
     const VERSION: &str = env!("CARGO_PKG_VERSION");
+}
+
+/// Returns an ImportError if the processor lacks AVX2 or FMA, before the first such instruction would end the interpreter.
+#[cfg(all(target_arch = "x86_64", target_feature = "avx2"))]
+#[inline(never)]
+fn check_processor() -> PyResult<()> {
+    let features = raw_cpuid::CpuId::new();
+    let has_avx2 = features
+        .get_extended_feature_info()
+        .is_some_and(|features| features.has_avx2());
+    let has_fma = features
+        .get_feature_info()
+        .is_some_and(|features| features.has_fma());
+    if has_avx2 && has_fma {
+        return Ok(());
+    }
+    Err(pyo3::exceptions::PyImportError::new_err(
+        "this condyle was built for x86 processors with AVX2 and FMA, and this one lacks them; install it with \
+         RUSTFLAGS=\"-C target-cpu=x86-64\" pip install ./python, and it runs at about half the speed",
+    ))
+}
+
+/// Builds for other processors need nothing.
+#[cfg(not(all(target_arch = "x86_64", target_feature = "avx2")))]
+fn check_processor() -> PyResult<()> {
+    Ok(())
 }

@@ -79,7 +79,7 @@ def test_bodies_come_from_arrays(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize(
-    ("vertices", "triangles", "said"),
+    ("vertices", "triangles", "message"),
     [
         ([[0.0, 0.0]], [[0, 0, 0]], "shape (1, 2)"),
         ([[0.0, 0.0, 0.0]], [[0, 0, 1]], "name vertices 0 to 1"),
@@ -88,7 +88,7 @@ def test_bodies_come_from_arrays(tmp_path: Path) -> None:
         ([], [], "shape (0,)"),
     ],
 )
-def test_arrays_that_are_no_body_are_refused(vertices: list, triangles: list, said: str) -> None:
+def test_arrays_that_are_no_body_are_refused(vertices: list, triangles: list, message: str) -> None:
     with pytest.raises(condyle.BadInput) as raised:
         condyle.Case.from_text("").with_femur(vertices, triangles)
-    assert said in str(raised.value)
+    assert message in str(raised.value)

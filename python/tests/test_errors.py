@@ -25,14 +25,14 @@ def test_a_wrong_case_names_its_places() -> None:
 def test_the_text_is_that_of_the_command(command: str, tmp_path: Path) -> None:
     case = tmp_path / "wrong.toml"
     case.write_text(WRONG)
-    said = subprocess.run([command, "check", "wrong.toml"], cwd=tmp_path, capture_output=True, text=True, check=False)
+    message = subprocess.run([command, "check", "wrong.toml"], cwd=tmp_path, capture_output=True, text=True, check=False)
     with pytest.raises(condyle.BadInput) as raised:
         condyle.Case.from_text(WRONG, name="wrong.toml")
-    assert said.returncode == 2 and said.stderr.strip() == str(raised.value).strip()
+    assert message.returncode == 2 and message.stderr.strip() == str(raised.value).strip()
 
 
 @pytest.mark.parametrize(
-    ("case", "kind", "said"),
+    ("case", "kind", "message"),
     [
         ("not-there.toml", condyle.BadInput, "not-there.toml cannot be read"),
         ({"femur": {"start_mm": [80.0, 0.0]}}, condyle.BadInput, "femur and insert are apart"),
@@ -42,10 +42,10 @@ def test_the_text_is_that_of_the_command(command: str, tmp_path: Path) -> None:
         ("title = 'a\n", condyle.BadInput, "this is not TOML"),
     ],
 )
-def test_every_refusal_says_why(case: object, kind: type, said: str) -> None:
+def test_every_refusal_has_a_reason(case: object, kind: type, message: str) -> None:
     with pytest.raises(kind) as raised:
         condyle.run(case)  # type: ignore[arg-type]
-    assert said in str(raised.value)
+    assert message in str(raised.value)
 
 
 def test_physics_that_cannot_be_solved_has_its_own_exception() -> None:

@@ -34,7 +34,7 @@ def test_the_sums_are_those_of_the_instants(small: condyle.Case) -> None:
 
 
 @pytest.mark.parametrize(
-    ("law", "kind", "said"),
+    ("law", "kind", "message"),
     [
         (lambda cycle: -1.0, ValueError, "gave -1"),
         (lambda cycle: float("nan"), ValueError, "gave NaN"),
@@ -42,8 +42,8 @@ def test_the_sums_are_those_of_the_instants(small: condyle.Case) -> None:
         (lambda cycle: 1 / 0, ZeroDivisionError, "division"),
     ],
 )
-def test_a_law_that_fails_stops_the_run(small: condyle.Case, law: object, kind: type, said: str) -> None:
-    with pytest.raises(kind, match=said):
+def test_a_law_that_fails_stops_the_run(small: condyle.Case, law: object, kind: type, message: str) -> None:
+    with pytest.raises(kind, match=message):
         condyle.run(small, wear_law=law)  # type: ignore[arg-type]
 
 

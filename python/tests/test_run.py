@@ -64,8 +64,8 @@ def test_ctrl_c_stops_a_run() -> None:
     assert run.poll() is None, "it still runs"
     run.send_signal(signal.SIGINT)
     sent = time.monotonic()
-    _, said = run.communicate(timeout=60)
-    assert "KeyboardInterrupt" in said
+    _, message = run.communicate(timeout=60)
+    assert "KeyboardInterrupt" in message
     assert time.monotonic() - sent < 10.0
 
 

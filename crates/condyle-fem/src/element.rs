@@ -140,31 +140,26 @@ impl Element {
                 volume,
             });
         }
-        let points = points.try_into().ok()?;
-        let mut element = Self { points };
-        element.project_dilatations();
-        Some(element)
-    }
-
-    /// Replaces the divergences by their best fits, the shares of the volume as weights.
-    fn project_dilatations(&mut self) {
+        let mut points: [Point; POINTS] = points.try_into().ok()?;
+        // The divergences become their best fits, with the shares of the volume as weights.
         let base = gauss_points().map(|[x, y, z]| Vector4::new(1.0, x, y, z));
         let mut gram = Matrix4::zeros();
-        for (point, base) in self.points.iter().zip(&base) {
+        for (point, base) in points.iter().zip(&base) {
             gram += base * base.transpose() * point.volume;
         }
         // Four independent functions at eight points of positive volume: the inverse always exists.
         let inverse = gram.try_inverse().unwrap_or_default();
         for function in 0..FUNCTIONS {
             let mut moments = SMatrix::<f64, 4, 3>::zeros();
-            for (point, base) in self.points.iter().zip(&base) {
+            for (point, base) in points.iter().zip(&base) {
                 moments += base * (point.gradients[function] * point.volume).transpose();
             }
             let fit = inverse * moments;
-            for (point, base) in self.points.iter_mut().zip(&base) {
+            for (point, base) in points.iter_mut().zip(&base) {
                 point.dilatations[function] = fit.tr_mul(base);
             }
         }
+        Some(Self { points })
     }
 
     pub(crate) fn stiffness(&self, elastic: &Elastic) -> Stiffness {

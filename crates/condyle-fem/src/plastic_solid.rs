@@ -176,7 +176,12 @@ impl<M: Material> PlasticSolid<M> {
             }
             let (step, more) = self.newton_step(residual, &balance.yielding);
             solves += more;
-            self.follow(&step, &balance, &mut modes);
+            let mut yielding = balance.yielding.iter().peekable();
+            for (e, hex) in self.solid.mesh().hexes.iter().enumerate() {
+                let softened = yielding.next_if(|yielding| yielding.element == e);
+                let stiffness = softened.map_or(&self.stiffnesses[e], |y| &y.stiffness);
+                modes[e] += stiffness.modes(&moved(hex, &step), &-balance.modal[e]);
+            }
             for (displacement, step) in displacements.iter_mut().zip(&step) {
                 *displacement += step;
             }
@@ -289,7 +294,16 @@ impl<M: Material> PlasticSolid<M> {
         let enough = SOLVED * energy;
         let mut step = vec![Vec3::zeros(); residual.len()];
         for solves in 1..=MAX_GRADIENT_STEPS {
-            let forces = self.tangent_forces(&direction, &elastic_forces, yielding);
+            // The forces of the direction with the tangent: the elastic ones less those that yielding elements lose.
+            let mut forces = elastic_forces.clone();
+            for yielding in yielding {
+                let hex = &self.solid.mesh().hexes[yielding.element];
+                let lost = yielding.lost * flat(&moved(hex, &direction));
+                for (corner, &node) in hex.iter().enumerate() {
+                    let lost = lost.fixed_rows::<3>(3 * corner).into_owned();
+                    forces[node as usize] -= self.solid.felt(node, lost);
+                }
+            }
             let length = energy / dot(&direction, &forces);
             // Beyond the limit load the tangent is singular: the step so far is the best there is.
             if !(length > 0.0 && length.is_finite()) {
@@ -307,34 +321,6 @@ impl<M: Material> PlasticSolid<M> {
             energy = next;
         }
         (step, MAX_GRADIENT_STEPS + 1)
-    }
-
-    /// Returns the forces of a direction with the tangent: the elastic ones less those that yielding elements lose.
-    fn tangent_forces(
-        &self,
-        direction: &[Vec3],
-        elastic_forces: &[Vec3],
-        yielding: &[Yielding],
-    ) -> Vec<Vec3> {
-        let mut forces = elastic_forces.to_vec();
-        for yielding in yielding {
-            let hex = &self.solid.mesh().hexes[yielding.element];
-            let lost = yielding.lost * flat(&moved(hex, direction));
-            for (corner, &node) in hex.iter().enumerate() {
-                let lost = lost.fixed_rows::<3>(3 * corner).into_owned();
-                forces[node as usize] -= self.solid.felt(node, lost);
-            }
-        }
-        forces
-    }
-
-    fn follow(&self, step: &[Vec3], balance: &Balance<M::Point>, modes: &mut [Modes]) {
-        let mut yielding = balance.yielding.iter().peekable();
-        for (e, hex) in self.solid.mesh().hexes.iter().enumerate() {
-            let softened = yielding.next_if(|yielding| yielding.element == e);
-            let stiffness = softened.map_or(&self.stiffnesses[e], |y| &y.stiffness);
-            modes[e] += stiffness.modes(&moved(hex, step), &-balance.modal[e]);
-        }
     }
 }
 

@@ -27,13 +27,6 @@ pub(crate) struct Factor {
     pub(crate) fronts: Vec<Front>,
 }
 
-/// The remainder that a group leaves to the group above.
-struct Remainder {
-    triangle: Triangle,
-    /// Number of rows before those of the boundary.
-    columns: usize,
-}
-
 struct Assembly<'a, S> {
     hexes: &'a [[u32; 8]],
     held: &'a [[bool; 3]],
@@ -71,7 +64,7 @@ impl Factor {
             diagonal: vec![0.0; 3 * free],
             spare: Vec::new(),
         };
-        let mut left: Vec<Option<Remainder>> = Vec::new();
+        let mut left: Vec<Option<Triangle>> = Vec::new();
         let mut fronts = Vec::new();
         for group in &dissection.groups {
             let layout = Layout::new(group.own.len(), group.boundary.len());
@@ -86,10 +79,7 @@ impl Factor {
             let pivots = triangle.eliminate(layout.columns, &least);
             pivots.map_err(|column| dissection.order[group.own.start as usize + column / 3])?;
             fronts.push(Front::from_triangle(&triangle, layout.columns, layout.rows));
-            left.push(Some(Remainder {
-                triangle,
-                columns: layout.columns,
-            }));
+            left.push(Some(triangle));
         }
         Ok(Self { dissection, fronts })
     }
@@ -104,12 +94,7 @@ impl Factor {
 }
 
 impl<S: FnMut(usize) -> NodalStiffness> Assembly<'_, S> {
-    fn front(
-        &mut self,
-        group: &Group,
-        layout: &Layout,
-        left: &mut [Option<Remainder>],
-    ) -> Triangle {
+    fn front(&mut self, group: &Group, layout: &Layout, left: &mut [Option<Triangle>]) -> Triangle {
         // There are thousands of fronts of different sizes, so their memory is reused.
         let memory = self.spare.pop().unwrap_or_default();
         let mut triangle = Triangle::zeros(layout.rows, memory);
@@ -119,29 +104,36 @@ impl<S: FnMut(usize) -> NodalStiffness> Assembly<'_, S> {
         for (i, &place) in group.boundary.iter().enumerate() {
             self.rows[place as usize] = layout.columns + 3 * i;
         }
-        // A unit pivot keeps such a row out of all others.
-        for row in self.untouched(group, layout) {
+        // A unit pivot keeps the row of an uncoupled freedom out of all others: of a held one, and of one that pads a tile.
+        let nodes = group.own.clone().map(|p| self.dissection.order[p as usize]);
+        let held = nodes.flat_map(|node| self.held[node as usize]).enumerate();
+        let held = held.filter(|(_, is_held)| *is_held).map(|(row, _)| row);
+        for row in held.chain(3 * group.own.len()..layout.columns) {
             *triangle.at_mut(row, row) = 1.0;
         }
         for &element in &group.elements {
             self.add_element(element as usize, &mut triangle);
         }
         for &child in &group.children {
-            if let Some(remainder) = left[child].take() {
-                let boundary = &self.dissection.groups[child].boundary;
-                self.add_remainder(&remainder, boundary, &mut triangle);
-                self.spare.push(remainder.triangle.into_memory());
+            let Some(remainder) = left[child].take() else {
+                continue;
+            };
+            let child = &self.dissection.groups[child];
+            let rows = child.boundary.iter().flat_map(|&place| {
+                let row = self.rows[place as usize];
+                [row, row + 1, row + 2]
+            });
+            let rows: Vec<usize> = rows.collect();
+            // The rows of the boundary in the front of the child come after those that it eliminated.
+            let first = Layout::new(child.own.len(), 0).columns;
+            for (i, &row) in rows.iter().enumerate() {
+                for (j, &column) in rows[..=i].iter().enumerate() {
+                    *triangle.at_mut(row, column) += remainder.at(first + i, first + j);
+                }
             }
+            self.spare.push(remainder.into_memory());
         }
         triangle
-    }
-
-    /// Returns the rows of uncoupled own freedoms: held ones, and those that pad a tile.
-    fn untouched(&self, group: &Group, layout: &Layout) -> Vec<usize> {
-        let nodes = group.own.clone().map(|p| self.dissection.order[p as usize]);
-        let held = nodes.flat_map(|node| self.held[node as usize]).enumerate();
-        let held = held.filter(|(_, is_held)| *is_held).map(|(row, _)| row);
-        held.chain(3 * group.own.len()..layout.columns).collect()
     }
 
     fn add_element(&mut self, element: usize, triangle: &mut Triangle) {
@@ -162,20 +154,6 @@ impl<S: FnMut(usize) -> NodalStiffness> Assembly<'_, S> {
         for &(row, i) in &freedoms {
             for &(column, j) in freedoms.iter().filter(|(column, _)| *column <= row) {
                 *triangle.at_mut(row, column) += stiffness[(i, j)];
-            }
-        }
-    }
-
-    fn add_remainder(&self, remainder: &Remainder, boundary: &[u32], triangle: &mut Triangle) {
-        let freedoms = boundary.iter().flat_map(|&place| {
-            let row = self.rows[place as usize];
-            [row, row + 1, row + 2]
-        });
-        let rows: Vec<usize> = freedoms.collect();
-        for (i, &row) in rows.iter().enumerate() {
-            let from = remainder.columns + i;
-            for (j, &column) in rows[..=i].iter().enumerate() {
-                *triangle.at_mut(row, column) += remainder.triangle.at(from, remainder.columns + j);
             }
         }
     }

@@ -135,7 +135,7 @@ mod tests {
     }
 
     #[test]
-    fn a_file_that_is_not_there_says_where_it_was_looked_for() {
+    fn a_missing_file_gives_the_path_that_was_tried() {
         let files = MemoryFiles::default();
         let looked_at = files.find("a.stl", Path::new("cases"));
         assert_eq!(looked_at, Err(PathBuf::from("cases/a.stl")));

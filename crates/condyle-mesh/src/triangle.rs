@@ -16,6 +16,7 @@ pub(crate) fn closest_point(corners: &[Vec3; 3], point: &Vec3) -> [f64; 3] {
     let (ab, ac) = (b - a, c - a);
     let from_a = point - a;
     let (d1, d2) = (ab.dot(&from_a), ac.dot(&from_a));
+    // Beyond corner a: both edges lead away from the point.
     if d1 <= 0.0 && d2 <= 0.0 {
         return [1.0, 0.0, 0.0];
     }
@@ -24,6 +25,7 @@ pub(crate) fn closest_point(corners: &[Vec3; 3], point: &Vec3) -> [f64; 3] {
     if d3 >= 0.0 && d4 <= d3 {
         return [0.0, 1.0, 0.0];
     }
+    // The signs of va, vb and vc are the sides of the edges on which the point lies: no root is needed.
     let vc = d1 * d4 - d3 * d2;
     if vc <= 0.0 && d1 >= 0.0 && d3 <= 0.0 {
         let along = d1 / (d1 - d3);
@@ -44,6 +46,7 @@ pub(crate) fn closest_point(corners: &[Vec3; 3], point: &Vec3) -> [f64; 3] {
         let along = (d4 - d3) / ((d4 - d3) + (d5 - d6));
         return [0.0, 1.0 - along, along];
     }
+    // Inside, the areas are the barycentric coordinates.
     let all = va + vb + vc;
     [va / all, vb / all, vc / all]
 }

@@ -117,16 +117,7 @@ impl TriangleMesh {
         self.triangles.extend(triangles);
         self
     }
-}
 
-/// Returns the lowest and highest coordinate of `points` along each axis; of none, infinity and minus infinity.
-pub fn bounds<'a>(points: impl IntoIterator<Item = &'a Vec3>) -> (Vec3, Vec3) {
-    let none = (Vec3::repeat(f64::INFINITY), Vec3::repeat(f64::NEG_INFINITY));
-    let wider = |(low, high): (Vec3, Vec3), point: &Vec3| (low.inf(point), high.sup(point));
-    points.into_iter().fold(none, wider)
-}
-
-impl TriangleMesh {
     /// Returns the highest point of the mesh over every place of a square grid of `step_mm` that begins at its
     /// corner, as seen from above, mm.
     pub fn seen_from_above(&self, step_mm: f64) -> Vec<Vec3> {
@@ -192,6 +183,13 @@ impl TriangleMesh {
                 .collect(),
         }
     }
+}
+
+/// Returns the lowest and highest coordinate of `points` along each axis; of none, infinity and minus infinity.
+pub fn bounds<'a>(points: impl IntoIterator<Item = &'a Vec3>) -> (Vec3, Vec3) {
+    let none = (Vec3::repeat(f64::INFINITY), Vec3::repeat(f64::NEG_INFINITY));
+    let wider = |(low, high): (Vec3, Vec3), point: &Vec3| (low.inf(point), high.sup(point));
+    points.into_iter().fold(none, wider)
 }
 
 #[cfg(test)]

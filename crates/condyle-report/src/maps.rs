@@ -131,28 +131,30 @@ pub(crate) fn drawn(
         })
     };
     let mut maps: Vec<_> = fields.iter().filter_map(map).collect();
-    let paths = results.slip_paths.as_ref().and_then(slip_paths);
     let bare = vec![0.0; surface.nodes.len()];
-    maps.extend(paths.filter(|paths| !paths.is_empty()).map(|paths| {
-        let map = Map {
-            style: style(["map-slip", "Slip paths", "", ""], MAGMA),
-            surface,
-            values: &bare,
-            side: results.side,
-            range: ColourRange::Own,
-            px_per_mm,
-        };
-        let over: String = paths.iter().map(|path| path.svg(&map)).collect();
+    let map = Map {
+        style: style(["map-slip", "Slip paths", "", ""], MAGMA),
+        surface,
+        values: &bare,
+        side: results.side,
+        range: ColourRange::Own,
+        px_per_mm,
+    };
+    let paths = results.slip_paths.as_ref();
+    let paths = paths
+        .and_then(|table| slip_paths(table, &map))
+        .unwrap_or_default();
+    if !paths.is_empty() {
         let desc = format!(
             "Paths of the femur past {} places of the articulating surface from above, anterior up, shortened and widened.",
             paths.len()
         );
-        DrawnMap {
+        maps.push(DrawnMap {
             file: SLIP_PATHS_PICTURE,
             caption: "Slip of the femur past the deepest place of each side and past four places around it, while they are loaded, in one gait cycle, at the last update. Each path is drawn about the dot of its place at 0.4 of its length and 1.6 of its width, so four times as wide as it is: the wider, the more cross-shear.",
-            svg: draw(&map, &desc, &over),
-        }
-    }));
+            svg: draw(&map, &desc, &paths.concat()),
+        });
+    }
     maps
 }
 
@@ -160,56 +162,38 @@ pub(crate) fn drawn(
 const DRAWN: [f64; 2] = [0.4, 1.6];
 const DOT_PX: f64 = 2.2;
 
-struct SlipPath {
-    /// x and z of the place, mm.
-    place: (f64, f64),
-    /// Slip of each increment, anterior and to the right, mm.
-    slips: Vec<(f64, f64)>,
-}
-
-/// Returns the paths of `slip_paths.csv`; `None` if it lacks a column.
-fn slip_paths(table: &Table) -> Option<Vec<SlipPath>> {
+/// Draws each path of `slip_paths.csv` with its middle at its place, and a dot there; `None` if the table lacks a column.
+fn slip_paths(table: &Table, map: &Map<'_>) -> Option<Vec<String>> {
     let column = |name| table.column(name);
     let (numbers, x, z) = (column("path")?, column("x_mm")?, column("z_mm")?);
     let (anterior, right) = (column("slip_anterior_mm")?, column("slip_right_mm")?);
-    let rows = Vec::from_iter(0..table.rows());
-    let paths = rows.chunk_by(|&one, &next| numbers[one] == numbers[next]);
-    let path = |rows: &[usize]| SlipPath {
-        place: (x[rows[0]], z[rows[0]]),
-        slips: rows
-            .iter()
-            .map(|&row| (anterior[row], right[row]))
-            .collect(),
+    let middle = |values: &mut dyn Iterator<Item = f64>| {
+        finite_range(values).map_or(0.0, |(low, high)| f64::midpoint(low, high))
     };
-    Some(paths.map(path).collect())
-}
-
-impl SlipPath {
-    /// Returns the path with its middle at its place, and a dot there.
-    fn svg(&self, map: &Map<'_>) -> String {
+    let path = |rows: &[usize]| {
         let mut at = (0.0, 0.0);
         let mut points = vec![at];
-        for slip in &self.slips {
-            at = (at.0 + DRAWN[0] * slip.0, at.1 + DRAWN[1] * slip.1);
+        for &row in rows {
+            at = (
+                at.0 + DRAWN[0] * anterior[row],
+                at.1 + DRAWN[1] * right[row],
+            );
             points.push(at);
         }
-        let middle = |values: &mut dyn Iterator<Item = f64>| {
-            finite_range(values).map_or(0.0, |(low, high)| f64::midpoint(low, high))
-        };
         let across = middle(&mut points.iter().map(|point| point.0));
         let along = middle(&mut points.iter().map(|point| point.1));
-        let (x, z) = self.place;
+        let (x, z) = (x[rows[0]], z[rows[0]]);
         let mut line = Path::default();
-        line.open(
-            points
-                .iter()
-                .map(|point| map.place()(x + point.0 - across, z + point.1 - along)),
-        );
+        let places = points.iter();
+        line.open(places.map(|point| map.place()(x + point.0 - across, z + point.1 - along)));
         let (line, (x, y)) = (line.data(), map.place()(x, z));
         format!(
             r#"<path class="slip" d="{line}"/><circle class="slip-place" cx="{x:.1}" cy="{y:.1}" r="{DOT_PX}"/>"#
         )
-    }
+    };
+    let rows = Vec::from_iter(0..table.rows());
+    let paths = rows.chunk_by(|&one, &next| numbers[one] == numbers[next]);
+    Some(paths.map(path).collect())
 }
 
 #[cfg(test)]
@@ -221,9 +205,27 @@ mod tests {
         let text = "path,x_mm,z_mm,percent,pressure_mpa,slip_anterior_mm,slip_right_mm\n\
             1,2,3,0.5,4,1,0\n1,2,3,1,4,0,1\n2,5,6,1,4,-1,0\n";
         let table = Table::parse(text, "slip_paths.csv".as_ref()).unwrap();
-        let paths = slip_paths(&table).unwrap();
+        let corner = |at: f64| condyle_mesh::Vec3::new(at, 0.0, at);
+        let surface = SurfaceFields {
+            nodes: vec![corner(-10.0), corner(10.0)],
+            ..SurfaceFields::default()
+        };
+        let map = Map {
+            style: MAPS[0].style,
+            surface: &surface,
+            values: &[0.0; 2],
+            side: Side::Right,
+            range: ColourRange::Own,
+            px_per_mm: 10.0,
+        };
+        let paths = slip_paths(&table, &map).unwrap();
         assert_eq!(paths.len(), 2);
-        assert_eq!(paths[0].slips, [(1.0, 0.0), (0.0, 1.0)]);
-        assert_eq!(paths[1].place, (5.0, 6.0));
+        // Anterior is up and right is to the right; 0.4 mm and 1.6 mm around (2, 3).
+        assert!(
+            paths[0].contains(r#"d="m152 112l0-4l16 0""#),
+            "{}",
+            paths[0]
+        );
+        assert!(paths[1].contains(r#"cx="190.0" cy="80.0""#), "{}", paths[1]);
     }
 }

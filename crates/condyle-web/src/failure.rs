@@ -62,12 +62,12 @@ impl From<&Problems> for Failure {
 
 impl From<&RunError> for Failure {
     fn from(error: &RunError) -> Self {
-        let said = error
+        let failure = error
             .in_case()
             .map_or_else(|| Self::of_words(error), Self::from);
         Self {
             is_physics: error.is_physics(),
-            ..said
+            ..failure
         }
     }
 }

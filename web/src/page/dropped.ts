@@ -59,7 +59,7 @@ export function femurByName<Named extends { name: string }>(one: Named, other: N
   return first ? one : other;
 }
 
-// Asks which of two files is the femur; undefined if the dialog is closed.
+// Shows a dialog to choose which of two files is the femur; undefined if the dialog is closed.
 function askFemur(one: File, other: File): Promise<File | undefined> {
   return new Promise((done) => {
     const dialog = element("dialog", { "aria-label": "Which file is the femoral component?" });

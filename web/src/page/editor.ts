@@ -21,7 +21,7 @@ export class Editor {
   private readonly gutter = element("div", { class: "gutter", "aria-hidden": "true" });
   private readonly help = element("p", { id: "case-help", class: "note", "aria-live": "polite" });
   private readonly list = element("ul", { class: "offers", role: "listbox", hidden: true });
-  private readonly said = element("div", { class: "said", role: "status" });
+  private readonly problems = element("div", { class: "problems", role: "status" });
   private offers: Offer[] = [];
   private chosen = 0;
 
@@ -29,7 +29,7 @@ export class Editor {
     private readonly schema: CaseSchema,
     private readonly changed: (text: string) => void,
   ) {
-    this.box.append(element("div", { class: "lines" }, this.gutter, this.input, this.list), this.help, this.said);
+    this.box.append(element("div", { class: "lines" }, this.gutter, this.input, this.list), this.help, this.problems);
     this.input.addEventListener("input", () => {
       this.number([]);
       this.offer(false);
@@ -60,7 +60,7 @@ export class Editor {
     const problems = failure?.problems ?? [];
     this.number(problems);
     const places = problems.filter(({ line }) => line !== null).map((problem) => this.jump(problem));
-    this.said.replaceChildren(...(failure ? [element("pre", {}, failure.message), ...places] : []));
+    this.problems.replaceChildren(...(failure ? [element("pre", {}, failure.message), ...places] : []));
   }
 
   private jump({ line, column, message }: Wrong): HTMLButtonElement {

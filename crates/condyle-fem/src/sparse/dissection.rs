@@ -195,7 +195,7 @@ mod tests {
                 }
             }
         }
-        // What a group leaves is known to the group above it.
+        // The remainder of a group lies within the group above it.
         for (at, group) in dissection.groups.iter().enumerate() {
             if let Some(parent) = dissection.parents[at] {
                 let parent = &dissection.groups[parent];

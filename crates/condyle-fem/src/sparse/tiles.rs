@@ -78,23 +78,19 @@ impl Triangle {
                 self.factor_tile(tile, &least[column..column + TILE])?;
                 self.solve_tiles(tile);
             }
-            self.update_rest(end / TILE, start..end);
+            // The products over the panel are subtracted from the tiles of all later rows and columns.
+            let first = end / TILE;
+            for t in (first..rows).step_by(TOGETHER) {
+                let together = t..(t + TOGETHER).min(rows);
+                for column in first..together.end {
+                    self.update_column(column, column.max(t)..together.end, start..end);
+                }
+            }
         }
         Ok(())
     }
 
-    /// Subtracts from the tiles of all later rows and columns the products over `over`.
-    fn update_rest(&mut self, first: usize, over: Range<usize>) {
-        let rows = self.size / TILE;
-        for t in (first..rows).step_by(TOGETHER) {
-            let together = t..(t + TOGETHER).min(rows);
-            for column in first..together.end {
-                self.update_column(column, column.max(t)..together.end, over.clone());
-            }
-        }
-    }
-
-    /// Subtracts from tiles of one column those of the products of their rows with that of the column.
+    /// Updates the tiles of one column with the products of earlier columns.
     #[inline]
     fn update_column(&mut self, column: usize, rows: Range<usize>, over: Range<usize>) {
         if over.is_empty() {

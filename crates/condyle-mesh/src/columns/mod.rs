@@ -201,7 +201,8 @@ fn standing(
     Ok((plan, columns))
 }
 
-fn listed_holes(holes: &[Hole]) -> String {
+/// Lists holes in words.
+pub fn listed_holes(holes: &[Hole]) -> String {
     let each: Vec<String> = holes.iter().map(Hole::to_string).collect();
     each.join(", on ")
 }

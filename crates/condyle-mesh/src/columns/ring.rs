@@ -52,7 +52,17 @@ impl<'a> Ring<'a> {
             ring.quads.extend(quads);
             for line in &core.loops {
                 let inner = line.iter().map(|&point| number[point]).collect();
-                ring.add_rim(inner, outline, grid.step_mm.min());
+                let mut rim = Rim::new(outline, inner, &ring.places);
+                rim.hold_corners(grid.step_mm.min());
+                let along = rim.along_mm.iter();
+                let outer = along.map(|&along| ring.add(outline.at(along), outline));
+                rim.outer = outer.collect();
+                for n in 0..rim.inner.len() {
+                    let after = (n + 1) % rim.inner.len();
+                    let (a, b) = (rim.inner[n], rim.inner[after]);
+                    ring.quads.push([b, a, rim.outer[n], rim.outer[after]]);
+                }
+                ring.rims.push(rim);
             }
         }
         ring
@@ -62,21 +72,6 @@ impl<'a> Ring<'a> {
         self.places.push(place);
         self.outlines.push(outline);
         self.places.len() as u32 - 1
-    }
-
-    fn add_rim(&mut self, inner: Vec<u32>, outline: &'a Loop, edge_mm: f64) {
-        let mut rim = Rim::new(outline, inner, &self.places);
-        rim.hold_corners(edge_mm);
-        let along = rim.along_mm.iter();
-        rim.outer = along
-            .map(|&along| self.add(outline.at(along), outline))
-            .collect();
-        for n in 0..rim.inner.len() {
-            let after = (n + 1) % rim.inner.len();
-            let (a, b) = (rim.inner[n], rim.inner[after]);
-            self.quads.push([b, a, rim.outer[n], rim.outer[after]]);
-        }
-        self.rims.push(rim);
     }
 
     /// Moves every place near the rim to the mean of its neighbours, and those on the outline along it; then

@@ -53,7 +53,11 @@ pub(crate) fn parse(path: &Path, bytes: &[u8]) -> Result<HexFile, MeshFileError>
             "NODE" => model.nodes(keyword)?,
             "ELEMENT" => model.elements(keyword)?,
             "NSET" => model.node_set(keyword)?,
-            "ELSET" => model.element_set(keyword)?,
+            "ELSET" => {
+                let name = keyword.required("ELSET")?;
+                let members = model.members(keyword, |model| &model.element_sets)?;
+                list_of(&mut model.element_sets, name).extend(members);
+            }
             "INSTANCE" => {
                 for &(at, row) in &keyword.data {
                     if at.numbers(fields(row))?.iter().any(|&by: &f64| by != 0.0) {
@@ -249,13 +253,6 @@ impl Model<'_> {
         Ok(())
     }
 
-    fn element_set(&mut self, keyword: &Keyword) -> Result<(), MeshFileError> {
-        let name = keyword.required("ELSET")?;
-        let members = self.members(keyword, |model| &model.element_sets)?;
-        list_of(&mut self.element_sets, name).extend(members);
-        Ok(())
-    }
-
     /// Reads the members of a set: numbers, names of earlier `sets`, or with GENERATE first, last, step.
     fn members(
         &mut self,
@@ -266,7 +263,18 @@ impl Model<'_> {
         let mut members = Vec::new();
         for &(at, row) in &keyword.data {
             if generate {
-                members.extend(self.range(at, row)?);
+                let (first, last, step) = match at.numbers::<u64>(fields(row))?[..] {
+                    [first, last] if first <= last => (first, last, 1),
+                    [first, last, step] if first <= last && step > 0 => (first, last, step),
+                    _ => {
+                        let problem =
+                            "GENERATE takes first, last and a step above 0, with first up to last";
+                        return Err(at.error(problem));
+                    }
+                };
+                self.count_members(at, ((last - first) / step).saturating_add(1))?;
+                let step = usize::try_from(step).unwrap_or(usize::MAX);
+                members.extend((first..=last).step_by(step));
                 continue;
             }
             for field in fields(row) {
@@ -281,25 +289,6 @@ impl Model<'_> {
             }
         }
         Ok(members)
-    }
-
-    fn range(
-        &mut self,
-        at: At,
-        row: &str,
-    ) -> Result<impl Iterator<Item = u64> + use<>, MeshFileError> {
-        let (first, last, step) = match at.numbers::<u64>(fields(row))?[..] {
-            [first, last] if first <= last => (first, last, 1),
-            [first, last, step] if first <= last && step > 0 => (first, last, step),
-            _ => {
-                let problem =
-                    "GENERATE takes first, last and a step above 0, with first up to last";
-                return Err(at.error(problem));
-            }
-        };
-        self.count_members(at, ((last - first) / step).saturating_add(1))?;
-        let step = usize::try_from(step).unwrap_or(usize::MAX);
-        Ok((first..=last).step_by(step))
     }
 
     fn surface(&mut self, keyword: &Keyword) -> Result<(), MeshFileError> {
@@ -393,7 +382,7 @@ mod tests {
         parse(Path::new("a.inp"), content.as_bytes())
     }
 
-    fn said(from: &str, to: &str) -> String {
+    fn reported(from: &str, to: &str) -> String {
         assert!(TEXT.contains(from), "{from}");
         message(read(&TEXT.replace(from, to)))
     }
@@ -426,12 +415,12 @@ mod tests {
 
     #[test]
     fn several_parts_or_instances_are_refused() {
-        let part = said("*NODE", "*PART, NAME=A\n*END PART\n*PART, NAME=B\n*NODE");
+        let part = reported("*NODE", "*PART, NAME=A\n*END PART\n*PART, NAME=B\n*NODE");
         assert!(
             part.starts_with("a.inp:5: a second part starts here; give a file with"),
             "{part}"
         );
-        let instance = said(
+        let instance = reported(
             "*STEP",
             "*INSTANCE, NAME=A, PART=P\n*INSTANCE, NAME=B, PART=P\n*STEP",
         );
@@ -443,7 +432,7 @@ mod tests {
 
     #[test]
     fn other_elements_are_named() {
-        let kind = said("type=C3D8R", "type=C3D10");
+        let kind = reported("type=C3D8R", "type=C3D10");
         assert!(
             kind.starts_with("a.inp:19: element 7 is of type C3D10; only"),
             "{kind}"
@@ -452,7 +441,7 @@ mod tests {
 
     #[test]
     fn an_inverted_element_is_named_with_its_line() {
-        let inverted = said(
+        let inverted = reported(
             "7, 1, 2, 12, 11, 21, 22, 32, 31",
             "7, 21, 22, 32, 31, 1, 2, 12, 11",
         );
@@ -462,33 +451,33 @@ mod tests {
 
     #[test]
     fn nodes_that_are_wrong_are_named_with_their_line() {
-        let missing = said("22, 23, 33, 32", "22, 23, 34, 32");
+        let missing = reported("22, 23, 33, 32", "22, 23, 34, 32");
         assert!(
             missing.starts_with("a.inp:20: element 8 names vertex 34"),
             "{missing}"
         );
-        assert!(said(" 2, 1., 0.", " 2, nan, 0.").starts_with("a.inp:5: node 2 has"));
-        assert!(said(" 2, 1.,", " 1, 1.,").contains("a.inp:5: node 1 is given twice"));
-        assert!(said(" 2, 1., 0., 0.", " 2, 1., 0.").starts_with("a.inp:5: a point needs"));
-        assert!(said(" 2, 1., 0., 0.", " 2, 1., O., 0.").contains("\"O.\" is not a number"));
-        assert!(said(" 8, 2,", " 7, 2,").contains("element 7 is given twice"));
-        assert!(said(" 22, 23, 33, 32", " 22, 23").contains("element 8 has 6 corners"));
-        assert!(said(", 33, 32\n", ", 33, 32, 5\n").contains("element 8 has 9 corners"));
+        assert!(reported(" 2, 1., 0.", " 2, nan, 0.").starts_with("a.inp:5: node 2 has"));
+        assert!(reported(" 2, 1.,", " 1, 1.,").contains("a.inp:5: node 1 is given twice"));
+        assert!(reported(" 2, 1., 0., 0.", " 2, 1., 0.").starts_with("a.inp:5: a point needs"));
+        assert!(reported(" 2, 1., 0., 0.", " 2, 1., O., 0.").contains("\"O.\" is not a number"));
+        assert!(reported(" 8, 2,", " 7, 2,").contains("element 7 is given twice"));
+        assert!(reported(" 22, 23, 33, 32", " 22, 23").contains("element 8 has 6 corners"));
+        assert!(reported(", 33, 32\n", ", 33, 32, 5\n").contains("element 8 has 9 corners"));
     }
 
     #[test]
     fn sets_and_surfaces_that_are_wrong_are_named_with_their_line() {
-        assert!(said(" bottom, 33", " botom, 33").contains("\"botom\" is neither"));
-        assert!(said(" 1, 3, 1", " 3, 1, 1").contains("GENERATE takes"));
-        assert!(said(" 1, 3, 1", " 1, 3, 0").contains("GENERATE takes"));
-        assert!(said("Solid, S2", "Solid, S7").contains("\"S7\" is not a face"));
-        assert!(said(" last, S4", " 9, S4").contains("element 9 of this surface"));
-        let inside = said(" last, S4", " last, S6");
+        assert!(reported(" bottom, 33", " botom, 33").contains("\"botom\" is neither"));
+        assert!(reported(" 1, 3, 1", " 3, 1, 1").contains("GENERATE takes"));
+        assert!(reported(" 1, 3, 1", " 1, 3, 0").contains("GENERATE takes"));
+        assert!(reported("Solid, S2", "Solid, S7").contains("\"S7\" is not a face"));
+        assert!(reported(" last, S4", " 9, S4").contains("element 9 of this surface"));
+        let inside = reported(" last, S4", " last, S6");
         assert!(
             inside.contains("face of surface \"Right\" is not on the outside"),
             "{inside}"
         );
-        assert!(said("SURFACE, NAME=Skin", "SURFACE").contains("*SURFACE needs NAME=name"));
+        assert!(reported("SURFACE, NAME=Skin", "SURFACE").contains("*SURFACE needs NAME=name"));
     }
 
     #[test]
@@ -496,13 +485,16 @@ mod tests {
         let expected = "a.inp:23: with the 18446744073709551615 members of this row, the sets of \
             the file have more than 1004744, which a file of its length does not need; name only \
             nodes and elements that there are";
-        assert_eq!(said(" 1, 3, 1", " 1, 18446744073709551615, 1"), expected);
-        let all = said(" 1, 3, 1", " 0, 18446744073709551615");
+        assert_eq!(
+            reported(" 1, 3, 1", " 1, 18446744073709551615, 1"),
+            expected
+        );
+        let all = reported(" 1, 3, 1", " 0, 18446744073709551615");
         assert!(
             all.starts_with("a.inp:23: with the 18446744073709551615 members"),
             "{all}"
         );
-        let elements = said(
+        let elements = reported(
             "ELSET=Last\n 8,",
             "ELSET=Last, GENERATE\n 8, 99999999999, 3",
         );
@@ -525,7 +517,7 @@ mod tests {
         for _ in 0..40 {
             doubling += "*NSET, NSET=D\n D, D\n";
         }
-        let nodes = said("*ELSET,", &format!("{doubling}*ELSET,"));
+        let nodes = reported("*ELSET,", &format!("{doubling}*ELSET,"));
         assert!(
             nodes.contains("the sets of the file have more than"),
             "{nodes}"
@@ -551,9 +543,9 @@ mod tests {
 
     #[test]
     fn what_is_not_followed_is_refused() {
-        let include = said("*STEP", "*INCLUDE, INPUT=more.inp\n*STEP");
+        let include = reported("*STEP", "*INCLUDE, INPUT=more.inp\n*STEP");
         assert!(include.ends_with("*INCLUDE is not followed; write the mesh out in full"));
-        assert!(said("NSET=Everything", "SYSTEM=C").contains("rectangular coordinates"));
+        assert!(reported("NSET=Everything", "SYSTEM=C").contains("rectangular coordinates"));
         assert!(message(read("*NODE\n1, 0, 0, 0\n")).contains("holds no hexahedra"));
         assert!(message(read("1, 2, 3\n*NODE\n")).starts_with("a.inp:1: a data line"));
     }

@@ -351,34 +351,41 @@ $EndPeriodic
 
     #[test]
     fn what_is_wrong_is_named_with_its_line() {
-        let said = |from, to| message(read(&V2.replace(from, to)));
-        assert!(said("2.2 0 8", "2.2 1 8").starts_with("a.msh:2: is Gmsh version 2.2 as binary"));
-        assert!(said("2.2 0 8", "4.0 0 8").contains("save it as version 4.1 or 2.2, ASCII"));
-        assert!(said("2.2 0 8", "2.2").contains("the format line needs"));
-        assert!(said("$MeshFormat\n2.2 0 8\n", "solid\n").starts_with("a.msh:1: does not start"));
-        assert!(said("2 1 0 0", "2 1 0").starts_with("a.msh:13: a point needs"));
-        assert!(said("2 1 0 0", "2 1e999 0 0").starts_with("a.msh:13: node 2 has"));
-        let kind = said("6 5 2 9 1 2 3 6 5 8 9 12 11", "6 4 2 9 1 2 3 6 8");
+        let reported = |from, to| message(read(&V2.replace(from, to)));
+        assert!(
+            reported("2.2 0 8", "2.2 1 8").starts_with("a.msh:2: is Gmsh version 2.2 as binary")
+        );
+        assert!(reported("2.2 0 8", "4.0 0 8").contains("save it as version 4.1 or 2.2, ASCII"));
+        assert!(reported("2.2 0 8", "2.2").contains("the format line needs"));
+        assert!(
+            reported("$MeshFormat\n2.2 0 8\n", "solid\n").starts_with("a.msh:1: does not start")
+        );
+        assert!(reported("2 1 0 0", "2 1 0").starts_with("a.msh:13: a point needs"));
+        assert!(reported("2 1 0 0", "2 1e999 0 0").starts_with("a.msh:13: node 2 has"));
+        let kind = reported("6 5 2 9 1 2 3 6 5 8 9 12 11", "6 4 2 9 1 2 3 6 8");
         assert!(
             kind.starts_with("a.msh:32: element 6 is of type 4 (4-node tetrahedron)"),
             "{kind}"
         );
         assert!(
-            said("8 9 12 11\n$End", "8 9 12\n$End").contains("element 6 has 7 corners; its type")
+            reported("8 9 12 11\n$End", "8 9 12\n$End")
+                .contains("element 6 has 7 corners; its type")
         );
-        assert!(said("9 12 11\n$End", "9 12 77\n$End").contains("element 6 names vertex 77"));
-        let quad = said("7 10 11 8\n", "2 5 11 8\n");
+        assert!(reported("9 12 11\n$End", "9 12 77\n$End").contains("element 6 names vertex 77"));
+        let quad = reported("7 10 11 8\n", "2 5 11 8\n");
         assert!(
             quad.starts_with("a.msh:29: a face of surface \"top side\""),
             "{quad}"
         );
         assert!(
-            said("1 2 5 4 7 8 11 10", "7 8 11 10 1 2 5 4").contains("hexahedron 5 is inverted")
+            reported("1 2 5 4 7 8 11 10", "7 8 11 10 1 2 5 4").contains("hexahedron 5 is inverted")
         );
-        assert!(said("12\n1 0", "40\n1 0").starts_with("a.msh:24: \"$EndNodes\" is not a number"));
+        assert!(
+            reported("12\n1 0", "40\n1 0").starts_with("a.msh:24: \"$EndNodes\" is not a number")
+        );
         let cut = message(read(V2.split("5 5 2").next().unwrap()));
         assert!(cut.contains("ends in the middle of a section"), "{cut}");
-        assert!(said("6\n1 15", "0\n1 15").contains("holds no hexahedra"));
-        assert!(said("1 15 2 4 1 1", "1 15").contains("this row has 2 numbers; it needs 3"));
+        assert!(reported("6\n1 15", "0\n1 15").contains("holds no hexahedra"));
+        assert!(reported("1 15 2 4 1 1", "1 15").contains("this row has 2 numbers; it needs 3"));
     }
 }

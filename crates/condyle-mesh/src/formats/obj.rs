@@ -84,21 +84,21 @@ mod tests {
 
     #[test]
     fn a_vertex_that_is_not_there_is_named_with_its_line() {
-        let said = message(read(&format!("{SQUARE}f 1 2 3\nf 1 2 9\n")));
+        let reported = message(read(&format!("{SQUARE}f 1 2 3\nf 1 2 9\n")));
         let expected =
             "a.obj:9: polygon 2 names vertex 9, but the file numbers its vertices from 1 to 4";
-        assert_eq!(said, expected);
-        let said = message(read(&format!("{SQUARE}f 0 1 2\n")));
-        assert!(said.contains("names vertex 0"), "{said}");
+        assert_eq!(reported, expected);
+        let reported = message(read(&format!("{SQUARE}f 0 1 2\n")));
+        assert!(reported.contains("names vertex 0"), "{reported}");
     }
 
     #[test]
     fn bad_rows_are_named_with_their_line() {
         assert!(message(read("v 0 0\n")).starts_with("a.obj:1: a point needs"));
         assert!(message(read(&format!("{SQUARE}f 1 b 3\n"))).starts_with("a.obj:8: \"b\""));
-        let said = message(read(&format!("{SQUARE}f 1 2\n")));
+        let reported = message(read(&format!("{SQUARE}f 1 2\n")));
         assert_eq!(
-            said,
+            reported,
             "a.obj:8: polygon 1 has 2 corners; it needs three or more"
         );
         assert!(message(read(SQUARE)).contains("holds no triangles"));

@@ -183,24 +183,24 @@ mod tests {
 
     #[test]
     fn what_is_wrong_is_named_with_its_line() {
-        let said = |from, to| message(read(TEXT.replace(from, to).as_bytes()));
-        let parse = said("3 0 1 3", "3 0 one 3");
+        let reported = |from, to| message(read(TEXT.replace(from, to).as_bytes()));
+        let parse = reported("3 0 1 3", "3 0 one 3");
         assert!(
             parse.starts_with("a.ply:17: is not PLY: Couldn't read"),
             "{parse}"
         );
-        let range = said("3 1 2 3", "3 1 2 4");
+        let range = reported("3 1 2 3", "3 1 2 4");
         assert!(
             range.starts_with("a.ply:18: polygon 2 names vertex 4"),
             "{range}"
         );
-        let infinite = said("0 1 0 9", "0 1e999 0 9");
+        let infinite = reported("0 1 0 9", "0 1e999 0 9");
         assert!(infinite.starts_with("a.ply:14: vertex 2 has"), "{infinite}");
-        let short = said("3 2 0 3\n", "");
+        let short = reported("3 2 0 3\n", "");
         assert!(short.contains("end of file"), "{short}");
-        assert!(said("float z", "float w").contains("properties x, y and z"));
-        assert!(said("vertex_indices", "neighbours").contains("holds no triangles"));
-        assert!(said("ply\n", "plywood\n").contains("is not PLY"));
+        assert!(reported("float z", "float w").contains("properties x, y and z"));
+        assert!(reported("vertex_indices", "neighbours").contains("holds no triangles"));
+        assert!(reported("ply\n", "plywood\n").contains("is not PLY"));
     }
 
     #[test]
@@ -220,13 +220,13 @@ mod tests {
             let text = String::from_utf8(bytes[..end].to_vec()).unwrap();
             [text.replace(from, to).as_bytes(), &bytes[end..]].concat()
         };
-        let said = message(read(&header(
+        let reported = message(read(&header(
             "element face",
             "element empty 4000000000\nelement face",
         )));
         let expected = "a.ply:7: announces 4000000000 rows of element empty, more than a file of \
             344 bytes can hold; was it cut off?";
-        assert_eq!(said, expected);
+        assert_eq!(reported, expected);
         let many = message(read(&header("vertex 4", "vertex 4000000000")));
         assert!(
             many.starts_with("a.ply:3: announces 4000000000 rows"),
@@ -250,7 +250,7 @@ mod tests {
     #[test]
     fn a_binary_coordinate_that_is_not_finite_is_an_error() {
         let bytes = binary("little", |v| (v / 0.0).to_le_bytes(), u32::to_le_bytes);
-        let said = message(read(&bytes));
-        assert!(said.starts_with("a.ply: vertex 0 has"), "{said}");
+        let reported = message(read(&bytes));
+        assert!(reported.starts_with("a.ply: vertex 0 has"), "{reported}");
     }
 }

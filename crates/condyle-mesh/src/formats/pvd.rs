@@ -87,7 +87,7 @@ mod tests {
         assert!(message(read_pvd(&path)).contains("pvd:4: a DataSet needs a number"));
         std::fs::write(&path, "<VTKFile>").unwrap();
         assert!(message(read_pvd(&path)).contains("pvd:1: is not XML"));
-        let said = message(read_pvd(folder.path().join("none.pvd")));
-        assert!(said.contains("there is no such file"), "{said}");
+        let reported = message(read_pvd(folder.path().join("none.pvd")));
+        assert!(reported.contains("there is no such file"), "{reported}");
     }
 }

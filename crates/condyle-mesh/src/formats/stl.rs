@@ -142,11 +142,11 @@ mod tests {
     }
 
     #[test]
-    fn a_cut_off_binary_file_says_so() {
+    fn a_truncated_binary_file_is_an_error() {
         let bytes = binary();
-        let said = message(read(&bytes[..bytes.len() - 10]));
+        let reported = message(read(&bytes[..bytes.len() - 10]));
         assert_eq!(
-            said,
+            reported,
             "a.stl: announces 4 triangles but ends after 3; was it cut off?"
         );
         assert!(message(read(&bytes[..40])).contains("too short"));
@@ -154,22 +154,25 @@ mod tests {
 
     #[test]
     fn bad_text_is_named_with_its_line() {
-        let said = |from, to| message(read(TEXT.replace(from, to).as_bytes()));
-        assert_eq!(said("1e0", "one"), "a.stl:5: \"one\" is not a number here");
+        let reported = |from, to| message(read(TEXT.replace(from, to).as_bytes()));
         assert_eq!(
-            said("outer", "inner"),
+            reported("1e0", "one"),
+            "a.stl:5: \"one\" is not a number here"
+        );
+        assert_eq!(
+            reported("outer", "inner"),
             "a.stl:3: \"inner\" is not a word of STL"
         );
-        assert!(said(" 1e0 0", " 1").starts_with("a.stl:5: a point needs three"));
-        assert!(said("vertex 1 0 0", "").starts_with("a.stl:8: a facet ends here with 2"));
+        assert!(reported(" 1e0 0", " 1").starts_with("a.stl:5: a point needs three"));
+        assert!(reported("vertex 1 0 0", "").starts_with("a.stl:8: a facet ends here with 2"));
     }
 
     #[test]
     fn a_coordinate_that_is_not_finite_is_an_error() {
-        let said = message(read(TEXT.replace("1e0", "nan").as_bytes()));
+        let reported = message(read(TEXT.replace("1e0", "nan").as_bytes()));
         assert!(
-            said.starts_with("a.stl:5: vertex 1 has a coordinate"),
-            "{said}"
+            reported.starts_with("a.stl:5: vertex 1 has a coordinate"),
+            "{reported}"
         );
         let mut bytes = binary();
         bytes[96..100].copy_from_slice(&f32::INFINITY.to_le_bytes());
@@ -178,7 +181,10 @@ mod tests {
 
     #[test]
     fn no_triangles_is_an_error() {
-        let said = message(read(b"solid nothing\nendsolid nothing\n"));
-        assert!(said.starts_with("a.stl: holds no triangles"), "{said}");
+        let reported = message(read(b"solid nothing\nendsolid nothing\n"));
+        assert!(
+            reported.starts_with("a.stl: holds no triangles"),
+            "{reported}"
+        );
     }
 }

@@ -282,9 +282,9 @@ mod tests {
             name: "mark",
             values: PointValues::UInt8(&[1, 0]),
         };
-        let said = message(vtu_bytes(&two_cubes(), &[array]));
+        let reported = message(vtu_bytes(&two_cubes(), &[array]));
         assert_eq!(
-            said,
+            reported,
             "array \"mark\" has 2 values for 12 nodes; give one a node"
         );
     }

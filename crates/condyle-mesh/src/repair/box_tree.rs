@@ -40,12 +40,8 @@ pub(super) struct BoxTree {
 }
 
 impl BoxTree {
-    pub(super) fn new(mesh: &TriangleMesh) -> Self {
-        Self::with_margin(mesh, 0.0)
-    }
-
     /// Returns a tree whose boxes reach `margin` farther on every side.
-    pub(super) fn with_margin(mesh: &TriangleMesh, margin: f64) -> Self {
+    pub(super) fn new(mesh: &TriangleMesh, margin: f64) -> Self {
         let count = mesh.triangles.len();
         let wider = |t: usize| {
             let (low, high) = bounds(&mesh.corners(t));
@@ -164,7 +160,7 @@ mod tests {
     #[test]
     fn every_close_pair_is_visited_once() {
         let mesh = strip(40, 0.1);
-        let tree = BoxTree::new(&mesh);
+        let tree = BoxTree::new(&mesh, 0.0);
         let mut pairs = Vec::new();
         tree.for_close_pairs(|a, b| {
             pairs.push((a.min(b), a.max(b)));

@@ -37,7 +37,7 @@ pub struct CheckedMesh {
 }
 
 /// Settings of the check of a triangle mesh as the surface of a body.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Checks {
     /// The part of the surface on which defects matter.
     pub touching: Touching,
@@ -52,12 +52,7 @@ pub struct Checks {
 /// # Errors
 /// As [`Checks::check`].
 pub fn checked_mesh(mesh: TriangleMesh) -> Result<CheckedMesh, RepairError> {
-    let checks = Checks {
-        touching: Touching::Everywhere,
-        parts: Parts::All,
-        clip_below_mm: None,
-    };
-    checks.check(mesh)
+    Checks::default().check(mesh)
 }
 
 impl Checks {
@@ -297,11 +292,11 @@ mod tests {
 
     #[test]
     fn nothing_and_points_only_are_empty() {
-        let said = checked_mesh(TriangleMesh::default())
+        let reported = checked_mesh(TriangleMesh::default())
             .unwrap_err()
             .to_string();
         assert_eq!(
-            said,
+            reported,
             "the mesh has no triangle with an area; check the export"
         );
         let mut mesh = unit_block();
@@ -314,10 +309,10 @@ mod tests {
         let mut mesh = unit_block();
         mesh.vertices.push(Vec3::new(-1.0, -1.0, 0.5));
         mesh.triangles.push([0, 4, 8]);
-        let said = checked_mesh(mesh).unwrap_err().to_string();
+        let reported = checked_mesh(mesh).unwrap_err().to_string();
         let expected = "the surface is not sound where bodies can touch: 1 edge of three or more \
             triangles at (0.00, 0.00, 0.50) mm; repair the mesh there";
-        assert_eq!(said, expected);
+        assert_eq!(reported, expected);
     }
 
     #[test]
@@ -339,10 +334,10 @@ mod tests {
             let [c, d] = if step == 5 { [1, 0] } else { [a + 2, b + 2] };
             mesh.triangles.extend([[a, b, c], [b, d, c]]);
         }
-        let said = checked_mesh(mesh).unwrap_err().to_string();
+        let reported = checked_mesh(mesh).unwrap_err().to_string();
         assert!(
-            said.contains("1 edge of a one-sided surface at ("),
-            "{said}"
+            reported.contains("1 edge of a one-sided surface at ("),
+            "{reported}"
         );
     }
 
@@ -426,10 +421,10 @@ mod tests {
         while mesh.triangles.len() < 100_000 {
             mesh.triangles.extend(once.iter().copied());
         }
-        let said = checked_mesh(mesh).unwrap_err().to_string();
+        let reported = checked_mesh(mesh).unwrap_err().to_string();
         assert!(
-            said.contains("1 tangle of triangles at (0.50, 0.50, 0.50) mm"),
-            "{said}"
+            reported.contains("1 tangle of triangles at (0.50, 0.50, 0.50) mm"),
+            "{reported}"
         );
     }
 
@@ -512,10 +507,10 @@ mod tests {
         assert_eq!(kinds(&shell), expected);
         assert!(shell.closed);
         assert_eq!(shell.mesh.triangles.len(), fine_block(5.0).triangles.len());
-        let said = as_insert(with_wall(10.0)).unwrap_err().to_string();
+        let reported = as_insert(with_wall(10.0)).unwrap_err().to_string();
         assert!(
-            said.contains("1 edge of three or more triangles at (0.00, 10.00, -2.50)"),
-            "{said}"
+            reported.contains("1 edge of three or more triangles at (0.00, 10.00, -2.50)"),
+            "{reported}"
         );
     }
 
@@ -537,8 +532,8 @@ mod tests {
                 .all(|(kind, _)| *kind == DefectKind::Hole)
         );
         assert!((shell.mesh.signed_volume() - 24_000.0).abs() < 1e-9);
-        let said = as_insert(with_hole(10.0)).unwrap_err().to_string();
-        assert!(said.contains("hole"), "{said}");
+        let reported = as_insert(with_hole(10.0)).unwrap_err().to_string();
+        assert!(reported.contains("hole"), "{reported}");
     }
 
     #[test]

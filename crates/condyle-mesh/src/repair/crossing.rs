@@ -40,7 +40,7 @@ const LEFT_OUT: f64 = 0.05;
 /// [`WRINKLE_DEPTH`]: two sheets that cross are not such neighbours everywhere.
 pub(super) fn crossings(mesh: &TriangleMesh) -> Crossings {
     let mut pairs: Vec<([usize; 2], f64)> = Vec::new();
-    let gave_up = BoxTree::new(mesh).for_close_pairs(|one, other| {
+    let gave_up = BoxTree::new(mesh, 0.0).for_close_pairs(|one, other| {
         let triangles = [one.min(other), one.max(other)];
         pairs.extend(crossing_depth(mesh, triangles).map(|depth| (triangles, depth)));
         if pairs.len() == MAX_CROSSINGS {
@@ -186,9 +186,9 @@ mod tests {
 
     #[test]
     fn blocks_that_only_touch_do_not_cross() {
-        let beside = TriangleMesh::block(Vec3::new(1.0, 0.25, 0.25), Vec3::new(2.0, 0.75, 1.75));
+        let adjacent = TriangleMesh::block(Vec3::new(1.0, 0.25, 0.25), Vec3::new(2.0, 0.75, 1.75));
         assert_eq!(
-            crossings(&joined(unit_block(), beside)),
+            crossings(&joined(unit_block(), adjacent)),
             Crossings::default()
         );
         let sunk = TriangleMesh::block(Vec3::new(0.999_9, 0.25, 0.25), Vec3::new(2.0, 0.75, 1.75));
@@ -226,7 +226,7 @@ mod tests {
     }
 
     #[test]
-    fn of_sheets_that_lie_on_one_another_the_search_ends_and_says_where() {
+    fn the_search_ends_at_sheets_that_lie_on_one_another() {
         let mut mesh = TriangleMesh::default();
         for i in 0..19_000 {
             let corners = [[0.0, 0.0], [9.0, 0.0], [0.0, 9.0]];

@@ -196,16 +196,16 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_defect_is_said_with_its_count_and_first_places() {
+    fn a_defect_is_listed_with_its_count_and_first_places() {
         let mut defects = Vec::new();
         add(&mut defects, DefectKind::Hole, Vec3::new(1.0, -0.001, 2.5));
         assert_eq!(defects[0].listed(3), "1 hole at (1.00, 0.00, 2.50) mm");
         for _ in 0..30 {
             add(&mut defects, DefectKind::Hole, Vec3::zeros());
         }
-        let said = defects[0].listed_with_repair(1);
+        let reported = defects[0].listed_with_repair(1);
         assert_eq!(
-            said,
+            reported,
             "31 holes (closed) at (1.00, 0.00, 2.50) mm and 30 more"
         );
         assert_eq!(defects[0].places_mm.len(), Defect::MAX_PLACES);

@@ -214,7 +214,7 @@ fn vertices_on_edges(
         vertices: mesh.vertices.clone(),
         triangles: lines.collect(),
     };
-    BoxTree::with_margin(&lines, within).for_close_pairs(|one, other| {
+    BoxTree::new(&lines, within).for_close_pairs(|one, other| {
         for (edge, other) in [(&open[one], &open[other]), (&open[other], &open[one])] {
             let triangle = mesh.triangles[edge.triangle as usize];
             let ends = other.ends.into_iter().filter(|end| !triangle.contains(end));

@@ -24,9 +24,10 @@ const PEG_SHARE: f64 = 0.25;
 const SPECK_SHARE: f64 = 0.02;
 
 /// The parts of a file that are the body.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Parts {
     /// All.
+    #[default]
     All,
     /// The parts that are visible from above (+y), which carry the articulating surface.
     SeenFromAbove,
@@ -187,7 +188,7 @@ mod tests {
         )
     }
 
-    /// What is left out of a file, and the body.
+    /// The parts that are left out of a file, and the body.
     fn left_out(file: TriangleMesh) -> (Vec<WhyLeftOut>, TriangleMesh) {
         let checks = Checks {
             touching: Touching::FromAbove,
@@ -233,9 +234,9 @@ mod tests {
 
     #[test]
     fn specks_beside_the_body_and_far_from_it_are_left_out() {
-        let beside = TriangleMesh::block(Vec3::new(25.0, 3.0, 0.0), Vec3::new(27.0, 5.0, 2.0));
+        let aside = TriangleMesh::block(Vec3::new(25.0, 3.0, 0.0), Vec3::new(27.0, 5.0, 2.0));
         let far = TriangleMesh::block(Vec3::new(0.0, 3.0, 120.0), Vec3::new(4.0, 5.0, 125.0));
-        let (why, body) = left_out(joined(joined(insert(), beside), far));
+        let (why, body) = left_out(joined(joined(insert(), aside), far));
         assert_eq!(why, [WhyLeftOut::Speck; 2]);
         assert_eq!(body.bounds(), insert().bounds());
     }

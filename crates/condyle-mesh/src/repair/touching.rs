@@ -6,9 +6,10 @@ use crate::{Vec3, triangle_mesh::TriangleMesh};
 ///
 /// A place belongs to it if it lies at most 1 mm below the first surface on the line of sight to it
 /// along one of the directions of view.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Touching {
     /// All of it.
+    #[default]
     Everywhere,
     /// The part seen from above (+y): the articulating side of an insert.
     FromAbove,

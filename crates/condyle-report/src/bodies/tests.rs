@@ -2,9 +2,7 @@
 
 use std::time::Instant;
 
-use condyle_mesh::{TriangleMesh, Vec3};
-
-use super::{raster::Raster, *};
+use super::*;
 
 /// A sheet of `count` by `count` quads, 60 mm wide, bent up by `bend` at its ends.
 fn sheet(count: u32, height_mm: f64, bend: f64) -> TriangleMesh {

@@ -3,11 +3,10 @@
 use colorous::Gradient;
 
 use super::{
-    axis::{Axis, round_step},
+    axis::{Axis, finite_range, round_step},
     contour::{Contours, Loop},
     marker::{Marker, TextRow},
-    path::Path,
-    svg::{escape, scale_bar, titled},
+    svg::{Path, escape, scale_bar, titled},
 };
 use condyle_results::Side;
 
@@ -55,6 +54,7 @@ pub(crate) enum ColourRange {
     BothWays(f64),
 }
 
+#[derive(Clone, Copy)]
 pub(crate) struct Map<'a> {
     pub(crate) style: MapStyle,
     pub(crate) surface: &'a SurfaceFields,
@@ -164,9 +164,25 @@ impl Map<'_> {
         let outline = path(&contours.regions(&flat, &[f64::NEG_INFINITY]).concat());
         let mut out = format!(r#"<path fill="{BARE}" d="{outline}"/>"#);
         if self.largest_value() > NOTHING {
-            out += &self.filled(&contours, bands);
+            // Each band is painted over the one below.
+            let level = |band: usize| match (band, self.is_both_ways()) {
+                (0, true) => f64::NEG_INFINITY,
+                (0, false) => bands.step * NEXT_TO_NOTHING,
+                (band, _) => bands.low + bands.step * band as f64,
+            };
+            let levels: Vec<f64> = (0..bands.intervals()).map(level).collect();
+            let regions = contours.regions(self.values, &levels);
+            for (band, region) in regions.iter().enumerate() {
+                let (fill, shape) = (self.colour(band, bands), path(region));
+                out += &format!(r#"<path class="iso" fill="{fill}" d="{shape}"/>"#);
+            }
         }
-        let heights = self.height_lines(&contours);
+        let heights: Vec<f64> = self.surface.nodes.iter().map(|node| node.y).collect();
+        let (low, high) = finite_range(heights.iter().copied()).unwrap_or_default();
+        let steps = ((high - low) / HEIGHT_STEP_MM).ceil() as usize;
+        let level = |step: usize| low + step as f64 * HEIGHT_STEP_MM;
+        let levels: Vec<f64> = (1..steps).map(level).collect();
+        let heights = path(&contours.regions(&heights, &levels).concat());
         let mut middle = Path::default();
         let [(x_low, x_high), _] = self.surface.bounds();
         middle.open([x_high, x_low].map(|x| self.place()(x, 0.0)));
@@ -174,22 +190,6 @@ impl Map<'_> {
         out + &format!(
             r#"<path class="height" d="{heights}"/><path class="middle" d="{middle}"/><path class="rim" d="{outline}"/>"#
         )
-    }
-
-    /// Each band is painted over the one below.
-    fn filled(&self, contours: &Contours, bands: &Axis) -> String {
-        let level = |band: usize| match (band, self.is_both_ways()) {
-            (0, true) => f64::NEG_INFINITY,
-            (0, false) => bands.step * NEXT_TO_NOTHING,
-            (band, _) => bands.low + bands.step * band as f64,
-        };
-        let levels: Vec<f64> = (0..bands.intervals()).map(level).collect();
-        let regions = contours.regions(self.values, &levels);
-        let shape = |(band, region): (usize, &Vec<Loop>)| {
-            let (fill, shape) = (self.colour(band, bands), path(region));
-            format!(r#"<path class="iso" fill="{fill}" d="{shape}"/>"#)
-        };
-        regions.iter().enumerate().map(shape).collect()
     }
 
     fn colour(&self, band: usize, bands: &Axis) -> String {
@@ -202,16 +202,6 @@ impl Map<'_> {
         // The lightest twentieth is hard to distinguish from paper.
         let colour = self.style.shades.eval_continuous(1.0 - 0.95 * share);
         format!("#{colour:x}")
-    }
-
-    fn height_lines(&self, contours: &Contours) -> String {
-        let heights: Vec<f64> = self.surface.nodes.iter().map(|node| node.y).collect();
-        let low = heights.iter().copied().fold(f64::MAX, f64::min);
-        let high = heights.iter().copied().fold(f64::MIN, f64::max);
-        let steps = ((high - low) / HEIGHT_STEP_MM).ceil() as usize;
-        let level = |step: usize| low + step as f64 * HEIGHT_STEP_MM;
-        let levels: Vec<f64> = (1..steps).map(level).collect();
-        path(&contours.regions(&heights, &levels).concat())
     }
 
     fn directions(&self, markers: &[Marker]) -> String {

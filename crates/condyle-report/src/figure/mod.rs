@@ -5,11 +5,9 @@ mod contour;
 mod map;
 mod marker;
 mod panel;
-mod path;
 mod svg;
 
 pub(crate) use axis::{Axis, finite_range};
 pub(crate) use map::{ColourRange, Map, MapStyle, largest_size};
 pub(crate) use panel::{Curve, MEASURED, Panel, sheet};
-pub(crate) use path::Path;
-pub(crate) use svg::{STYLE, colour_variables, escape, scale_bar, svg_file, titled};
+pub(crate) use svg::{Path, STYLE, colour_variables, escape, scale_bar, svg_file, titled};

@@ -2,8 +2,7 @@
 
 use super::{
     axis::Axis,
-    path::Path,
-    svg::{escape, svg_file, titled},
+    svg::{Path, escape, svg_file, titled},
 };
 
 /// Space around the grid for heading and labels, px.
@@ -92,17 +91,13 @@ impl Panel {
     }
 
     fn body(&self) -> String {
-        let y = self.y_axis();
-        let lines = self.curves.iter().map(|curve| self.line(curve, &y));
-        self.heading() + &self.grid(&y) + &lines.collect::<String>()
-    }
-
-    fn y_axis(&self) -> Axis {
         let values = self.curves.iter().flat_map(|curve| &curve.points);
         let base = self.from_zero.then_some([0.0, self.min_span]);
         let values = values.map(|point| point.1);
         let all = values.chain(base.into_iter().flatten());
-        Axis::over(all, self.min_span, MAX_INTERVALS)
+        let y = Axis::over(all, self.min_span, MAX_INTERVALS);
+        let lines = self.curves.iter().map(|curve| self.line(curve, &y));
+        self.heading() + &self.grid(&y) + &lines.collect::<String>()
     }
 
     fn heading(&self) -> String {
@@ -216,30 +211,20 @@ pub(crate) fn sheet(
         let y = (index / columns) as f64 * pitch;
         format!(r#"<g transform="translate({x} {y})">{}</g>"#, panel.body())
     };
-    let body: String = panels.iter().enumerate().map(place).collect();
+    let mut body: String = panels.iter().enumerate().map(place).collect();
     let height = panels.len().div_ceil(columns) as f64 * pitch;
     let size = (columns as f64 * across, height + KEY);
-    svg_file(
-        title,
-        desc,
-        size,
-        &(body + &key_line(key, height + KEY / 2.0)),
-    )
-}
-
-fn key_line(key: &[(&str, &str)], y: f64) -> String {
-    // Width of a letter, and the least distance from one entry to the next, px.
+    // Width of a letter, and the least distance from one entry of the key to the next, px.
     const LETTER: f64 = 6.2;
     const PITCH: f64 = 130.0;
-    let mut x = LEFT;
-    let mut line = String::new();
+    let (mut x, y) = (LEFT, height + KEY / 2.0);
     for (class, meaning) in key {
         let (end, text, base) = (x + 24.0, x + 32.0, y + 3.8);
         let words = escape(meaning);
-        line += &format!(
+        body += &format!(
             r#"<path class="{class}" d="M{x} {y}H{end}"/><text x="{text}" y="{base}">{words}</text>"#
         );
         x += PITCH.max(56.0 + LETTER * meaning.chars().count() as f64);
     }
-    line
+    svg_file(title, desc, size, &body)
 }

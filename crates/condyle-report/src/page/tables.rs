@@ -1,6 +1,6 @@
 //! The tables of the page that are computed from the results.
 
-use serde::Serialize;
+use serde_json::{Value, json};
 
 use super::numbers::unit_of;
 use super::sentences::{not_estimated, reached};
@@ -27,16 +27,8 @@ const LARGEST_OF_CYCLE: [(&str, &str, &str); 2] = [
     ),
 ];
 
-/// A quantity with its values on the medial side, the lateral side and both.
-#[derive(Serialize)]
-pub(super) struct Comparison {
-    name: &'static str,
-    unit: &'static str,
-    values: [String; 3],
-}
-
 /// Returns the two sides compared on the last mesh; empty without a mesh that has the wear depth.
-pub(super) fn compartments(results: &Results) -> Vec<Comparison> {
+pub(super) fn compartments(results: &Results) -> Vec<Value> {
     let surface = results.surface.as_ref();
     let worn = surface.and_then(|surface| surface.field("wear_depth_mm"));
     let Some((surface, depth)) = surface.zip(worn) else {
@@ -48,12 +40,12 @@ pub(super) fn compartments(results: &Results) -> Vec<Comparison> {
     };
     let deepest = surface.largest(depth, Region::Whole);
     let scar_mm = SCAR_SHARE * deepest.map_or(0.0, |found| found.value);
-    let compare = |name, unit, value: &dyn Fn(Region) -> Option<String>| Comparison {
-        name,
-        unit,
-        values: regions.map(|region| value(region).unwrap_or_default()),
+    // Values on the medial side, on the lateral side and on both.
+    let compare = |name: &str, unit: &str, value: &dyn Fn(Region) -> Option<String>| {
+        let values = regions.map(|region| value(region).unwrap_or_default());
+        json!({ "name": name, "unit": unit, "values": values })
     };
-    let largest = |name, unit, values: &[f64]| {
+    let largest = |name: &str, unit: &str, values: &[f64]| {
         compare(name, unit, &|region| {
             let found = surface.largest(values, region)?;
             Some(significant(found.value, 3))
@@ -127,15 +119,9 @@ fn volume_mm3(results: &Results, surface: &SurfaceFields, depth: &[f64], region:
     }
 }
 
-#[derive(Serialize)]
-pub(super) struct ChannelRange {
-    title: &'static str,
-    unit: &'static str,
-    /// For each cycle: the smallest value, its percent of the cycle, the largest value, its percent.
-    ends: Vec<[f64; 4]>,
-}
-
-pub(super) fn ranges(results: &Results) -> Vec<ChannelRange> {
+/// Returns the range of every channel in the first and in the last cycle: smallest value, its percent of the cycle,
+/// largest value, its percent.
+pub(super) fn ranges(results: &Results) -> Vec<Value> {
     let Some(table) = &results.kinematics else {
         return Vec::new();
     };
@@ -153,77 +139,51 @@ pub(super) fn ranges(results: &Results) -> Vec<ChannelRange> {
             let high = finite.max_by(by_value)?;
             Some([values[low], percent[low], values[high], percent[high]])
         });
-        Some(ChannelRange {
-            title: channel.title,
-            unit: channel.unit,
-            ends: ends.collect::<Option<_>>()?,
-        })
+        let ends: Vec<[f64; 4]> = ends.collect::<Option<_>>()?;
+        Some(json!({ "title": channel.title, "unit": channel.unit, "ends": ends }))
     });
     rows.collect()
 }
 
-/// The estimated discretisation errors: a row for each quantity, a column for each part.
-#[derive(Serialize)]
-pub(super) struct Accuracy {
-    parts: Vec<String>,
-    rows: Vec<QuantityError>,
-    /// The remedy for each part, one sentence each.
-    remedies: String,
-    /// The reasons why parts have no estimate, one sentence each.
-    missing: Vec<String>,
-}
-
-#[derive(Serialize)]
-struct QuantityError {
-    name: String,
-    unit: String,
-    values: Vec<String>,
-}
-
-fn remedy(part: Part) -> &'static str {
-    match part {
-        Part::Increments => "finer increments of the gait cycle",
-        Part::Updates => "more updates of the shape",
-        Part::Mesh => "shorter edges of the mesh",
-        Part::SlipTolerance => "friction that sticks rather than creeps",
-    }
-}
-
 /// Returns the errors that the summary estimates; none if it has no estimate.
-pub(super) fn accuracy(results: &Results) -> Option<Accuracy> {
+pub(super) fn accuracy(results: &Results) -> Option<Value> {
     let error = results.summary.as_ref()?.error.as_ref()?;
     let parts = ErrorParts::default().parts().map(|(part, _)| part);
     let rows = error.quantities().iter().flat_map(|quantity| {
         let name = first_letter_large(quantity.scalar.label);
         [
-            row(name.clone(), "%".to_owned(), &quantity.percent),
-            row(name, unit_of(quantity.scalar), &quantity.in_unit),
+            row(&name, "%", &quantity.percent),
+            row(&name, &unit_of(quantity.scalar), &quantity.in_unit),
         ]
     });
     let name = |part: Part| part.name().replace('_', " ");
     let names = parts
         .map(|part| first_letter_large(&name(part)))
         .into_iter();
-    let remedies = parts.map(|part| format!("{} by {}", name(part), remedy(part)));
-    Some(Accuracy {
-        rows: rows.collect(),
-        parts: names.chain(["Together".to_owned()]).collect(),
-        remedies: remedies.join(", "),
-        missing: not_estimated(results),
-    })
+    let remedies = parts.map(|part| {
+        let remedy = match part {
+            Part::Increments => "finer increments of the gait cycle",
+            Part::Updates => "more updates of the shape",
+            Part::Mesh => "shorter edges of the mesh",
+            Part::SlipTolerance => "friction that sticks rather than creeps",
+        };
+        format!("{} by {remedy}", name(part))
+    });
+    Some(json!({
+        "rows": rows.collect::<Vec<_>>(),
+        "parts": names.chain(["Together".to_owned()]).collect::<Vec<_>>(),
+        "remedies": remedies.join(", "),
+        "missing": not_estimated(results),
+    }))
 }
 
-fn row(name: String, unit: String, error: &ErrorParts) -> QuantityError {
-    let digits = |value: f64| match unit.as_str() {
+fn row(name: &str, unit: &str, error: &ErrorParts) -> Value {
+    let digits = |value: f64| match unit {
         "%" => fixed(value, 2),
         _ => significant(value, 2),
     };
     let parts = error.parts().into_iter().map(|(_, part)| part);
     let values = parts.chain([Some(error.total)]);
     let values = values.map(|value| value.map_or_else(|| String::from("unknown"), digits));
-    QuantityError {
-        name,
-        values: values.collect(),
-        unit,
-    }
+    json!({ "name": name, "values": values.collect::<Vec<_>>(), "unit": unit })
 }

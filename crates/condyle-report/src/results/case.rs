@@ -25,11 +25,9 @@ pub(crate) struct CaseFacts {
     pub title: Option<String>,
     /// Gait cycles of the whole test.
     pub cycles: Option<f64>,
-    /// Whether the insert is a deformable solid rather than a foundation.
+    /// True if the insert is a deformable solid rather than a foundation.
     pub is_deformable: bool,
-    /// Whether the insert yields.
     pub yields: bool,
-    /// Whether the insert creeps.
     pub creeps: bool,
 }
 

@@ -106,6 +106,7 @@ impl Results {
             let table = path.map(|path| part(table(&path), on_damage)).transpose()?;
             activities.push((activity, table.flatten()));
         }
+        let last = part(meshes(folder).map(|mut meshes| meshes.pop()), on_damage)?;
         let mut table = |name: &str| part(table(&folder.join(name)), on_damage);
         let compared = |name| format!("{}/{name}.csv", COMPARED.folder);
         Ok(Self {
@@ -118,7 +119,10 @@ impl Results {
             slip_paths: table("slip_paths.csv")?,
             measured_kinematics: table(&compared(COMPARED_KINEMATICS))?,
             measured_wear: table(&compared(COMPARED_WEAR))?,
-            surface: part(last_surface(folder), on_damage)?,
+            surface: part(
+                last.map(|(_, path)| surface_of(&path)).transpose(),
+                on_damage,
+            )?,
             left_out: Vec::new(),
         })
     }
@@ -140,11 +144,6 @@ fn part<T>(
 /// Returns a message whose paths lack the folder: the same run gives the same page in every folder.
 pub(crate) fn without_folder(message: &str, folder: &Path) -> String {
     message.replace(&format!("{}{MAIN_SEPARATOR}", folder.display()), "")
-}
-
-fn last_surface(folder: &Path) -> Result<Option<SurfaceFields>, ReportError> {
-    let last = meshes(folder)?.pop();
-    last.map(|(_, path)| surface_of(&path)).transpose()
 }
 
 /// Returns the articulating surface before the first cycle; none if it has no mesh.

@@ -265,23 +265,23 @@ mod tests {
     }
 
     #[test]
-    fn what_is_wrong_with_a_mesh_is_said() {
-        let said = |data: &[(String, Vec<f64>)]| {
+    fn an_unusable_mesh_is_an_error_with_its_reason() {
+        let reported = |data: &[(String, Vec<f64>)]| {
             SurfaceFields::of_mesh(&column(), data, Path::new("a.vtu"))
                 .expect_err("is wrong")
                 .to_string()
         };
         assert_eq!(
-            said(&data(&[])),
+            reported(&data(&[])),
             "The file a.vtu has no face whose nodes all have `articulating` = 1."
         );
         assert_eq!(
-            said(&[]),
+            reported(&[]),
             "The file a.vtu has no point data `articulating`."
         );
         let short = [(String::from("depth"), vec![0.0; 3])];
         assert_eq!(
-            said(&short),
+            reported(&short),
             "The file a.vtu has 12 nodes, but 3 values of `depth`."
         );
     }

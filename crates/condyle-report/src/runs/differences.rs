@@ -403,33 +403,27 @@ fn maps(first: &Run, second: &Run) -> Vec<MapDifference> {
     let Some((one, two)) = first.comparable_surfaces(second) else {
         return Vec::new();
     };
-    let map = |map: &MappedField| map_difference(map, one, two);
+    let area = one.integral(&vec![1.0; one.nodes.len()], Region::Whole);
+    let map = |map: &MappedField| {
+        let apart = subtracted(one, two, map.field)?;
+        let largest = one.largest_by(&apart, Region::Whole, f64::abs)?;
+        let sizes: Vec<f64> = apart.iter().map(|value| value.abs()).collect();
+        let of = one.largest(one.field(map.field)?, Region::Whole)?.value;
+        (largest.value != 0.0).then(|| MapDifference {
+            field: map.field,
+            title: map.style.title,
+            unit: map.style.unit,
+            largest: largest.value,
+            x_mm: largest.position.x,
+            z_mm: largest.position.z,
+            mean_absolute: one.integral(&sizes, Region::Whole) / area,
+            largest_percent: (of != 0.0).then(|| 100.0 * largest.value / of),
+        })
+    };
     let mut maps: Vec<_> = MAPS.iter().filter_map(map).collect();
     let rank = |map: &MapDifference| map.largest_percent.map_or(f64::INFINITY, f64::abs);
     maps.sort_by(|one, two| rank(two).total_cmp(&rank(one)));
     maps
-}
-
-fn map_difference(
-    map: &MappedField,
-    one: &SurfaceFields,
-    two: &SurfaceFields,
-) -> Option<MapDifference> {
-    let apart = subtracted(one, two, map.field)?;
-    let largest = one.largest_by(&apart, Region::Whole, f64::abs)?;
-    let sizes: Vec<f64> = apart.iter().map(|value| value.abs()).collect();
-    let area = one.integral(&vec![1.0; sizes.len()], Region::Whole);
-    let of = one.largest(one.field(map.field)?, Region::Whole)?.value;
-    (largest.value != 0.0).then(|| MapDifference {
-        field: map.field,
-        title: map.style.title,
-        unit: map.style.unit,
-        largest: largest.value,
-        x_mm: largest.position.x,
-        z_mm: largest.position.z,
-        mean_absolute: one.integral(&sizes, Region::Whole) / area,
-        largest_percent: (of != 0.0).then(|| 100.0 * largest.value / of),
-    })
 }
 
 pub(super) fn subtracted(

@@ -186,92 +186,62 @@ fn together(of_runs: impl Iterator<Item = Vec<Panel>>, pick: Curves) -> Vec<Pane
     all
 }
 
-/// Returns the maps of all runs in one row, in the same colours, and their differences from the first below.
+/// Returns the maps of all runs in one row, in the same colours, and their differences from the first below, in others.
 fn map_rows(runs: &[Run], field: &MappedField) -> Option<String> {
     // Space between maps, and for the name above one, px.
     const GAP: f64 = 18.0;
     const NAME: f64 = 24.0;
-    let maps = runs.iter().map(|run| map(run, field));
-    let values = maps.flatten().map(|map| largest_size(map.values));
-    let range = ColourRange::UpTo(values.fold(0.0, f64::max));
-    let value = |run: &Run| {
-        let map = map(run, field)?;
-        Some(placed(&Map { range, ..map }, run.name.clone()))
-    };
-    let rows = [runs.iter().map(value).collect(), differences(runs, field)];
-    let all = || rows.iter().flatten().flatten();
-    let widest = all().map(|one| one.size.0).reduce(f64::max)? + GAP;
-    let tallest = all().map(|one| one.size.1).reduce(f64::max)? + NAME + GAP;
-    let mut body = String::new();
-    let (mut width, mut height) = (0.0_f64, 0.0_f64);
-    for (row, maps) in rows.iter().enumerate() {
-        for (column, one) in maps.iter().enumerate() {
-            let Some(Placed {
-                name, body: map, ..
-            }) = one
-            else {
-                continue;
-            };
-            let (x, y, name) = (column as f64 * widest, row as f64 * tallest, escape(name));
-            (width, height) = (width.max(x + widest), height.max(y + tallest));
-            body += &format!(
-                r#"<g transform="translate({x:.1} {y:.1})"><text class="title" x="30" y="12">{name}</text><g transform="translate(0 {NAME})">{map}</g></g>"#
-            );
-        }
-    }
-    let desc: Vec<&str> = all().map(|one| one.desc.as_str()).collect();
-    let size = (width - GAP, height - GAP);
-    Some(svg_file(field.style.title, &desc.join(" "), size, &body))
-}
-
-struct Placed {
-    name: String,
-    size: (f64, f64),
-    body: String,
-    desc: String,
-}
-
-fn placed(map: &Map<'_>, name: String) -> Placed {
-    Placed {
-        size: map.size(),
-        body: map.body(),
-        desc: format!("{name}: {}", map.desc()),
-        name,
-    }
-}
-
-fn map<'a>(run: &'a Run, field: &MappedField) -> Option<Map<'a>> {
-    let surface = run.results.surface.as_ref()?;
-    field.of(surface, run.results.side, 4.6)
-}
-
-/// Returns the difference of each run from the first, all in the same colours.
-fn differences(runs: &[Run], field: &MappedField) -> Vec<Option<Placed>> {
-    let difference = |run: &Run| {
+    let results = runs.iter().map(|run| &run.results);
+    let maps = results.map(|own| field.of(own.surface.as_ref()?, own.side, 4.6));
+    let maps: Vec<Option<Map<'_>>> = maps.collect();
+    let sizes = maps.iter().flatten().map(Map::size);
+    let (width, height) = sizes.reduce(|one, two| (one.0.max(two.0), one.1.max(two.1)))?;
+    let (widest, tallest) = (width + GAP, height + NAME + GAP);
+    let largest = maps.iter().flatten().map(|map| largest_size(map.values));
+    let range = ColourRange::UpTo(largest.fold(0.0, f64::max));
+    // The first has no difference from itself: its place below stays empty.
+    let others = runs[1..].iter().map(|run| {
         let (one, two) = runs[0].comparable_surfaces(run)?;
         subtracted(one, two, field.field)
-    };
-    // The first has no difference from itself: its place below stays empty.
-    let others = runs[1..].iter().map(difference);
-    let values: Vec<Option<Vec<f64>>> = [None].into_iter().chain(others).collect();
-    let sizes = values.iter().flatten().map(|values| largest_size(values));
-    let range = ColourRange::BothWays(sizes.fold(0.0, f64::max));
+    });
+    let apart: Vec<Option<Vec<f64>>> = [None].into_iter().chain(others).collect();
+    let largest = apart.iter().flatten().map(|values| largest_size(values));
+    let both_ways = ColourRange::BothWays(largest.fold(0.0, f64::max));
     let style = MapStyle {
         shades: colorous::RED_BLUE,
         largest: "Largest",
         ..field.style
     };
-    let place = |(run, values): (&Run, &Option<Vec<f64>>)| {
-        let map = Map {
-            values: values.as_deref()?,
-            style,
-            range,
-            ..map(run, field)?
+    let (mut body, mut descs, mut rows) = (String::new(), Vec::new(), 1);
+    for (column, (run, map)) in runs.iter().zip(maps).enumerate() {
+        let Some(map) = map else {
+            continue;
         };
-        Some(placed(
-            &map,
-            format!("{} \u{2212} {}", run.name, runs[0].name),
-        ))
-    };
-    runs.iter().zip(&values).map(place).collect()
+        let difference = apart[column].as_deref().map(|values| {
+            let name = format!("{} \u{2212} {}", run.name, runs[0].name);
+            let (style, range) = (style, both_ways);
+            let map = Map {
+                style,
+                values,
+                range,
+                ..map
+            };
+            (1, name, map)
+        });
+        let own = (0, run.name.clone(), Map { range, ..map });
+        for (row, name, map) in [own].into_iter().chain(difference) {
+            let (x, y) = (column as f64 * widest, f64::from(row) * tallest);
+            let (title, drawn) = (escape(&name), map.body());
+            body += &format!(
+                r#"<g transform="translate({x:.1} {y:.1})"><text class="title" x="30" y="12">{title}</text><g transform="translate(0 {NAME})">{drawn}</g></g>"#
+            );
+            descs.push(format!("{name}: {}", map.desc()));
+            rows = rows.max(row + 1);
+        }
+    }
+    let size = (
+        runs.len() as f64 * widest - GAP,
+        f64::from(rows) * tallest - GAP,
+    );
+    Some(svg_file(field.style.title, &descs.join(" "), size, &body))
 }

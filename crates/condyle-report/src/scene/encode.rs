@@ -231,7 +231,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_list_says_where_each_array_begins() {
+    fn the_list_has_the_offset_of_each_array() {
         let mut arrays = Arrays::default();
         arrays.whole("faces", &[1, 2, 3]);
         arrays.quantised("depth", [0.0, 0.5, 1.0, f64::NAN].into_iter(), [0.0, 1.0]);

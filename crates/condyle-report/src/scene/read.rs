@@ -28,11 +28,28 @@ impl Scene {
     /// Reads the scene of a results folder; parts that are missing, damaged or from another version are left out and
     /// listed in `missing`.
     pub fn read(folder: &Path, results: &Results) -> Self {
-        let mut scene = of_meshes(folder, results);
+        let wear = results.wear.as_ref();
+        let cycles = wear
+            .and_then(|wear| wear.column("cycles"))
+            .unwrap_or_default();
+        let mut scene = Self::default();
+        let meshes = meshes(folder).unwrap_or_default();
+        let gone = not_there(&meshes, results);
+        for (update, path) in meshes {
+            // Row 0 of wear.csv is the first update; the unworn insert has no row.
+            let cycles = match update.checked_sub(1) {
+                None => 0.0,
+                Some(row) => cycles.get(row as usize).copied().unwrap_or(f64::NAN),
+            };
+            if let Err(why) = add_mesh(&mut scene, cycles, &path) {
+                scene.missing.push(why);
+            }
+        }
+        scene.missing.extend(gone);
         scene.femur = femur(folder, &mut scene.missing);
         let summary = results.summary.as_ref();
         scene.neutral_pose = summary.and_then(|summary| summary.neutral_pose);
-        scene.cycles = cycles(folder, &mut scene.missing);
+        scene.cycles = kept_cycles(folder, &mut scene.missing);
         scene.add_charts(results);
         for (name, without) in MOVING_FILES {
             if !folder.join(name).exists() {
@@ -45,28 +62,6 @@ impl Scene {
         }
         scene
     }
-}
-
-/// Returns the insert at every update that can be read.
-fn of_meshes(folder: &Path, results: &Results) -> Scene {
-    let wear = results.wear.as_ref();
-    let cycles = wear.and_then(|wear| wear.column("cycles"));
-    let cycles = cycles.unwrap_or_default();
-    let mut scene = Scene::default();
-    let meshes = meshes(folder).unwrap_or_default();
-    let gone = not_there(&meshes, results);
-    for (update, path) in meshes {
-        // Row 0 of wear.csv is the first update; the unworn insert has no row.
-        let cycles = match update.checked_sub(1) {
-            None => 0.0,
-            Some(row) => cycles.get(row as usize).copied().unwrap_or(f64::NAN),
-        };
-        if let Err(why) = add_mesh(&mut scene, cycles, &path) {
-            scene.missing.push(why);
-        }
-    }
-    scene.missing.extend(gone);
-    scene
 }
 
 /// Returns the meshes that are missing, up to the last update that the summary states.
@@ -115,7 +110,7 @@ fn femur(folder: &Path, missing: &mut Vec<String>) -> Option<TriangleMesh> {
 }
 
 /// Returns the cycles of `femur_pose.csv`, with their pressures where the folder has them.
-fn cycles(folder: &Path, missing: &mut Vec<String>) -> Vec<SceneCycle> {
+fn kept_cycles(folder: &Path, missing: &mut Vec<String>) -> Vec<SceneCycle> {
     let mut read = |name: &str| or_missing(table(&folder.join(name)), missing);
     let poses = read("femur_pose.csv");
     let mut cycles = poses.map_or_else(Vec::new, |poses| SceneCycle::of_poses(&poses));

@@ -27,7 +27,7 @@ fn folder() -> tempfile::TempDir {
 }
 
 #[test]
-fn a_damaged_mesh_before_the_last_is_left_out_and_told() {
+fn a_damaged_mesh_before_the_last_is_left_out_with_a_note() {
     let folder = folder();
     let damaged = folder.path().join("insert_0003.vtu");
     fs::write(damaged, "<VTKFile").expect("can be written");
@@ -72,12 +72,12 @@ fn the_cycles_of_the_poses_have_their_pressures() {
 }
 
 #[test]
-fn poses_cut_off_are_told_and_the_rest_is_shown() {
+fn truncated_poses_are_listed_and_the_rest_is_shown() {
     let folder = folder();
     let cut = format!("{}\n", &POSES[..POSES.len() - 9]);
     fs::write(folder.path().join("femur_pose.csv"), cut).expect("can be written");
     let scene = scene_of(folder.path());
     assert!(scene.cycles.is_empty() && scene.has_surface());
-    let told = "Line 4 of femur_pose.csv has 10 values; its header names 14 columns.";
-    assert!(scene.missing.iter().any(|why| why == told));
+    let reason = "Line 4 of femur_pose.csv has 10 values; its header names 14 columns.";
+    assert!(scene.missing.iter().any(|why| why == reason));
 }

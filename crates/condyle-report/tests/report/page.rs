@@ -11,12 +11,12 @@ fn the_page_stands_alone_and_is_small() {
     let page = write_report(folder).expect("the folder is whole");
     let html = std::fs::read_to_string(page).expect("the page is there");
     assert!(html.len() < 1_500_000, "{} bytes", html.len());
-    for asks in ["<link", "src=", "url(", "@import"] {
-        assert!(!html.contains(asks), "the page holds {asks}");
+    for request in ["<link", "src=", "url(", "@import"] {
+        assert!(!html.contains(request), "the page holds {request}");
     }
     let still = report_html(&Results::read(folder).expect("the folder is whole"));
-    for asks in ["<script", "<link", "src=", "url(", "@import"] {
-        assert!(!still.contains(asks), "the still page holds {asks}");
+    for request in ["<script", "<link", "src=", "url(", "@import"] {
+        assert!(!still.contains(request), "the still page holds {request}");
     }
 }
 
@@ -122,7 +122,7 @@ fn the_thinnest_polyethylene_is_shown_under_the_scar_and_anywhere() {
 }
 
 #[test]
-fn all_that_was_said_of_the_run_stands_before_its_numbers() {
+fn warnings_of_the_run_stand_before_its_numbers() {
     let mut results = fixture::results();
     let text = fixture::SUMMARY.replacen(
         '{',
@@ -133,17 +133,17 @@ fn all_that_was_said_of_the_run_stands_before_its_numbers() {
     results.summary = Some(serde_json::from_str(&text).expect("is JSON"));
     let html = report_html(&results);
     let top = html.split("class=\"tiles\"").next().expect("has a top");
-    for said in [
+    for reported in [
         "<strong>It slides by 1 mm\u{b2}.</strong> Stop it.",
         "tibia.stl: inside out, and turned.",
         "The error from mesh could not be estimated",
     ] {
-        assert!(top.contains(said), "{said}");
+        assert!(top.contains(reported), "{reported}");
     }
 }
 
 #[test]
-fn a_run_that_is_not_finished_says_so_and_how_far_it_is() {
+fn the_page_of_an_unfinished_run_states_its_progress() {
     let mut results = fixture::results();
     results.summary = None;
     results.case = Some(String::from("[march]\ncycles = 8_000_000\n"));
@@ -153,7 +153,7 @@ fn a_run_that_is_not_finished_says_so_and_how_far_it_is() {
 }
 
 #[test]
-fn a_rate_that_does_not_change_is_said_to_be_the_same_and_never_assumed() {
+fn a_constant_rate_is_stated_and_never_assumed() {
     let html = report_html(&fixture::results());
     assert!(html.contains("Wear per cycle stayed the same, 5.04 mg in a million cycles"));
     assert!(!html.contains("taken as constant"));
@@ -177,7 +177,7 @@ fn the_estimated_error_is_shown_by_its_parts() {
 }
 
 #[test]
-fn a_run_without_an_estimate_says_so() {
+fn a_run_without_an_estimate_states_its_lack() {
     let mut results = fixture::results();
     results.summary =
         Some(serde_json::from_str("{\"cycles\": 1, \"error\": null}").expect("is JSON"));
@@ -208,7 +208,7 @@ fn the_case_is_shown_as_text() {
 }
 
 #[test]
-fn an_empty_run_still_makes_a_page_that_says_what_is_missing() {
+fn the_page_of_an_empty_run_lists_the_missing_files() {
     let html = report_html(&Results::default());
     assert!(html.contains(
         "summary.json, wear.csv, kinematics.csv, slip_paths.csv, insert_*.vtu, case.toml"

@@ -18,7 +18,7 @@ pub(crate) fn tetrahedron() -> TriangleMesh {
     }
 }
 
-/// What the error of a reading says.
+/// The message of a failed reading.
 pub(crate) fn message<T>(result: Result<T, MeshFileError>) -> String {
     result
         .err()
@@ -46,7 +46,7 @@ pub(crate) fn two_cubes() -> HexMesh {
 }
 
 #[test]
-fn the_ending_chooses_the_format_whatever_its_case() {
+fn the_extension_in_any_case_chooses_the_format() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("Femur.STL");
     write_stl(std::fs::File::create(&path).unwrap(), &tetrahedron()).unwrap();
@@ -56,16 +56,16 @@ fn the_ending_chooses_the_format_whatever_its_case() {
 }
 
 #[test]
-fn a_missing_file_and_an_unknown_ending_say_so() {
-    let said = message(read_surface(&Disk, "nowhere/femur.stl"));
+fn a_missing_file_and_an_unknown_extension_are_errors() {
+    let reported = message(read_surface(&Disk, "nowhere/femur.stl"));
     assert_eq!(
-        said,
+        reported,
         "nowhere/femur.stl: there is no such file; check the path"
     );
-    let said = message(read_surface(&Disk, "femur.step"));
+    let reported = message(read_surface(&Disk, "femur.step"));
     let expected =
         "femur.step: the ending \"step\" is not a known format; use one of .stl, .obj, .ply, .vtp";
-    assert_eq!(said, expected);
+    assert_eq!(reported, expected);
 }
 
 #[test]
@@ -76,7 +76,7 @@ fn a_folder_is_not_readable_as_a_file() {
     assert!(message(read_surface(&Disk, &path)).contains("cannot be read"));
 }
 
-/// The real implant is data beside the repository, not in it.
+/// The real implant is data next to the repository, not in it.
 fn dm_knee(file: &str) -> Option<TriangleMesh> {
     let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/../../../shared/data/dm-knee");
     let path = Path::new(folder).join(file);
@@ -130,12 +130,12 @@ fn both_dm_shells_pass_every_check_unchanged() {
 }
 
 #[test]
-fn a_missing_volume_file_and_an_unknown_ending_say_so() {
-    let said = message(read_hexahedra(&Disk, "nowhere/insert.inp"));
-    assert!(said.contains("there is no such file"), "{said}");
-    let said = message(read_hexahedra(&Disk, "insert.k"));
+fn a_missing_volume_file_and_an_unknown_extension_are_errors() {
+    let reported = message(read_hexahedra(&Disk, "nowhere/insert.inp"));
+    assert!(reported.contains("there is no such file"), "{reported}");
+    let reported = message(read_hexahedra(&Disk, "insert.k"));
     assert!(
-        said.contains("\"k\" is not a known format; use one of .inp, .msh, .vtu"),
-        "{said}"
+        reported.contains("\"k\" is not a known format; use one of .inp, .msh, .vtu"),
+        "{reported}"
     );
 }

@@ -141,9 +141,9 @@ fn zlib_is_read_and_other_compressors_are_refused() {
     });
     assert_eq!(read(&raw).unwrap(), tetrahedron());
     let lz4 = encoded("compressor=\"vtkLZ4DataCompressor\"", Some("raw"), counted);
-    let said = message(read(&lz4));
+    let reported = message(read(&lz4));
     assert_eq!(
-        said,
+        reported,
         "a.vtp: is compressed by vtkLZ4DataCompressor; save it with zlib or uncompressed"
     );
 }
@@ -165,10 +165,10 @@ fn arrays_that_unpack_to_far_more_than_the_file_are_refused() {
     let zeros = vec![0; 100_000_000];
     let (header, block) = zlib_header_and_block(&zeros);
     let honest = encoded(ZLIB, Some("raw"), |_| [&header[..], &block].concat());
-    let said = message(read(&honest));
+    let reported = message(read(&honest));
     assert!(
-        said.starts_with("a.vtp:1: an array unpacks to more values"),
-        "{said}"
+        reported.starts_with("a.vtp:1: an array unpacks to more values"),
+        "{reported}"
     );
     let data = [&200_000u64.to_le_bytes()[..], &zeros[..200_000]].concat();
     let all_the_same: String = (0..4_000)
@@ -180,10 +180,10 @@ fn arrays_that_unpack_to_far_more_than_the_file_are_refused() {
         .replace("</VTKFile>", "<AppendedData encoding=\"raw\">_")
         .into_bytes();
     overlapping.extend(data);
-    let said = message(read(&overlapping));
+    let reported = message(read(&overlapping));
     assert!(
-        said.starts_with("a.vtp:4: an array unpacks to more values"),
-        "{said}"
+        reported.starts_with("a.vtp:4: an array unpacks to more values"),
+        "{reported}"
     );
 }
 
@@ -230,19 +230,21 @@ fn strips_alternate_their_sense() {
 
 #[test]
 fn what_is_wrong_is_named_with_its_line() {
-    let said = |from, to| message(read(TEXT.replace(from, to).as_bytes()));
+    let reported = |from, to| message(read(TEXT.replace(from, to).as_bytes()));
     assert_eq!(
-        said("0 1 0 0 0 1", "0 x 0 0 0 1"),
+        reported("0 1 0 0 0 1", "0 x 0 0 0 1"),
         "a.vtp:6: \"x\" is not a number here"
     );
-    assert!(said("2 0 3<", "2 0 7<").starts_with("a.vtp:9: polygon 3 names vertex 7"));
-    assert!(said("9 12", "9 13").starts_with("a.vtp:10: offset 13 does not fit"));
-    assert!(said("0 1 0 0 0 1", "0 nan 0 0 0 1").starts_with("a.vtp: vertex 2 has"));
-    assert!(said("\"PolyData\"", "\"ImageData\"").contains("is not a VTKFile of type PolyData"));
-    assert!(said("</Piece>", "</Piece><Piece/>").starts_with("a.vtp:11: has a second Piece"));
-    assert!(said("</Polys>", "").starts_with("a.vtp:11: is not XML"));
-    assert!(said("Polys>", "Lines>").contains("holds no triangles"));
-    assert!(said("format=\"ascii\">3", "format=\"hex\">3").starts_with("a.vtp:10: an array's"));
+    assert!(reported("2 0 3<", "2 0 7<").starts_with("a.vtp:9: polygon 3 names vertex 7"));
+    assert!(reported("9 12", "9 13").starts_with("a.vtp:10: offset 13 does not fit"));
+    assert!(reported("0 1 0 0 0 1", "0 nan 0 0 0 1").starts_with("a.vtp: vertex 2 has"));
+    assert!(
+        reported("\"PolyData\"", "\"ImageData\"").contains("is not a VTKFile of type PolyData")
+    );
+    assert!(reported("</Piece>", "</Piece><Piece/>").starts_with("a.vtp:11: has a second Piece"));
+    assert!(reported("</Polys>", "").starts_with("a.vtp:11: is not XML"));
+    assert!(reported("Polys>", "Lines>").contains("holds no triangles"));
+    assert!(reported("format=\"ascii\">3", "format=\"hex\">3").starts_with("a.vtp:10: an array's"));
 }
 
 #[test]
@@ -258,10 +260,10 @@ fn cut_off_arrays_are_named() {
 fn a_padding_out_of_place_is_named() {
     for stray in ["=", "==", "====", "=AAA"] {
         let stray = |data: &[u8]| [stray.as_bytes(), &base64(&counted(data))].concat();
-        let said = message(read(&encoded("", None, stray)));
+        let reported = message(read(&encoded("", None, stray)));
         assert!(
-            said.starts_with("a.vtp:1: an array's base64 is broken"),
-            "{said}"
+            reported.starts_with("a.vtp:1: an array's base64 is broken"),
+            "{reported}"
         );
     }
 }

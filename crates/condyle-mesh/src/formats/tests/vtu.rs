@@ -89,29 +89,29 @@ fn what_was_written_comes_back() {
 
 #[test]
 fn what_is_wrong_is_named() {
-    let said = |from, to| message(read(TEXT.replace(from, to).as_bytes()));
-    let kind = said("12 9 9 12<", "12 9 9 10<");
+    let reported = |from, to| message(read(TEXT.replace(from, to).as_bytes()));
+    let kind = reported("12 9 9 12<", "12 9 9 10<");
     assert!(
         kind.starts_with("a.vtu: element 3 is of type 10 (tetrahedron)"),
         "{kind}"
     );
-    assert!(said("12 9 9 12<", "12 9 9<").contains("has 4 cells but 3 types"));
-    assert!(said("8 12 16 24", "7 12 16 24").contains("cell 0 has 7 corners"));
-    assert!(said("1 2 5 4 7", "7 8 11 10 1").contains("hexahedron 3 is inverted"));
-    assert!(said("1 2 5 4 7", "1 2 5 4 77").contains("element 3 names vertex 77"));
-    assert!(said("6 9 10 7 7", "1 4 10 7 7").contains("face of surface \"top\" is not"));
-    assert!(said("0 1 1 0<", "0 1 1<").contains("array \"top\" has 3 values for 4 cells"));
-    assert!(said("2 1 1 9 9 9", "2 1 1 9 9 inf").contains("node 12 has a coordinate"));
-    assert!(said("UnstructuredGrid\"", "PolyData\"").contains("of type UnstructuredGrid"));
+    assert!(reported("12 9 9 12<", "12 9 9<").contains("has 4 cells but 3 types"));
+    assert!(reported("8 12 16 24", "7 12 16 24").contains("cell 0 has 7 corners"));
+    assert!(reported("1 2 5 4 7", "7 8 11 10 1").contains("hexahedron 3 is inverted"));
+    assert!(reported("1 2 5 4 7", "1 2 5 4 77").contains("element 3 names vertex 77"));
+    assert!(reported("6 9 10 7 7", "1 4 10 7 7").contains("face of surface \"top\" is not"));
+    assert!(reported("0 1 1 0<", "0 1 1<").contains("array \"top\" has 3 values for 4 cells"));
+    assert!(reported("2 1 1 9 9 9", "2 1 1 9 9 inf").contains("node 12 has a coordinate"));
+    assert!(reported("UnstructuredGrid\"", "PolyData\"").contains("of type UnstructuredGrid"));
 }
 
 #[test]
 fn a_result_with_a_point_out_of_range_is_an_error() {
     let text = TEXT.replace("1 2 5 4 7", "1 2 5 4 77");
-    let said = message(parse_vtu_points(Path::new("a.vtu"), text.as_bytes()));
+    let reported = message(parse_vtu_points(Path::new("a.vtu"), text.as_bytes()));
     let expected =
         "a.vtu:12: cell 3 names vertex 77, but the file numbers its vertices from 0 to 12";
-    assert_eq!(said, expected);
+    assert_eq!(reported, expected);
 }
 
 #[test]
@@ -125,6 +125,6 @@ fn triangles_come_back() {
         (nodes.into(), triangles.into())
     );
     let quads = compact_vtu_bytes(&Grid::quads(&nodes, &[[0, 1, 2, 3]]), &[]).unwrap();
-    let said = message(parse_vtu_triangles(Path::new("a.vtu"), &quads));
-    assert!(said.contains("a cell is no triangle"), "{said}");
+    let reported = message(parse_vtu_triangles(Path::new("a.vtu"), &quads));
+    assert!(reported.contains("a cell is no triangle"), "{reported}");
 }
