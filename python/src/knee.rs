@@ -84,7 +84,7 @@ impl RawKnee {
         let mut contact = law.contact(self.march.bodies(&surface), ContactMemory::default());
         settle(contact.as_mut(), &motion)?;
         let response = contact.respond(&motion);
-        let (wrench, tangent) = (response.wrench, response.tangent().by_pose.matrix);
+        let (wrench, tangent) = (response.wrench, contact.tangent().by_pose.matrix);
         let result = contact.evaluate(&motion);
         let nodes = surface.positions.len();
         let mut pressures = vec![0.0; nodes];

@@ -97,7 +97,7 @@ fn response(insert: &Insert, motion: &RelativeMotion) -> (Vec6, Tangent) {
     };
     let mut contact = contact_of(&law, bodies);
     let response = contact.respond(motion);
-    (response.wrench.numbers(), response.tangent())
+    (response.wrench.numbers(), contact.tangent())
 }
 
 /// The lateral dish, every node placed anew.

@@ -2,7 +2,7 @@
 
 use condyle::{
     Vec3,
-    contact::{ContactModel, ContactResult, Linearization, MAX_REGIONS, Response, Tangent},
+    contact::{ContactModel, ContactResult, MAX_REGIONS, Response, Tangent},
     machine::{
         Chain, Cycle, Drive, JointKind, Machine, MachineState, Simulator, Spring, TimeSettings,
         knee::KNEE,
@@ -14,22 +14,23 @@ use std::ops::ControlFlow;
 /// No contact at all.
 pub(crate) struct Apart;
 
-impl Linearization for Apart {
-    fn tangent(&self) -> Tangent {
-        Tangent {
-            by_pose: WrenchByTwist::zero(),
-            by_twist: WrenchByTwist::zero(),
-        }
-    }
-}
-
 impl ContactModel for Apart {
     fn node_count(&self) -> usize {
         0
     }
 
-    fn respond(&mut self, _: &RelativeMotion) -> Response<'_> {
-        Response::new(Wrench::zero(), [Vec3::zeros(); MAX_REGIONS], self)
+    fn respond(&mut self, _: &RelativeMotion) -> Response {
+        Response {
+            wrench: Wrench::zero(),
+            mean_slip: [Vec3::zeros(); MAX_REGIONS],
+        }
+    }
+
+    fn tangent(&self) -> Tangent {
+        Tangent {
+            by_pose: WrenchByTwist::zero(),
+            by_twist: WrenchByTwist::zero(),
+        }
     }
 
     fn evaluate(&mut self, _: &RelativeMotion) -> ContactResult {

@@ -2,7 +2,8 @@
 
 use condyle::{
     contact::{
-        Bodies, ContactModel, ContactResult, Foundation, PressureLaw, Response, TouchedNode,
+        Bodies, ContactModel, ContactResult, Foundation, PressureLaw, Response, Tangent,
+        TouchedNode,
     },
     spatial::{RelativeMotion, Twist, Wrench},
 };
@@ -60,8 +61,8 @@ impl<'a> Observed<'a> {
         let normal = motion.pose.rotation * sample.normal;
         let velocity = motion.twist.angular.cross(&share.centre) + motion.twist.linear;
         let speed = (velocity - normal * normal.dot(&velocity)).norm();
-        let part = speed / speed.hypot(self.law.slip_tolerance_mm_per_s);
-        self.law.friction * part * node.pressure_mpa * share.area_mm2 * speed
+        let part = speed / speed.hypot(self.law.settings.slip_tolerance_mm_per_s);
+        self.law.settings.friction * part * node.pressure_mpa * share.area_mm2 * speed
     }
 
     /// Normal force times sliding speed of one node.
@@ -69,8 +70,8 @@ impl<'a> Observed<'a> {
     /// A node's force is its normal force N and the friction mu s N across it, s = v/sqrt(v^2 + v0^2).
     fn rubbed_nmm_per_s(&self, node: &TouchedNode) -> f64 {
         let speed = node.sliding_mm_per_s[0].hypot(node.sliding_mm_per_s[1]);
-        let part = speed / speed.hypot(self.law.slip_tolerance_mm_per_s);
-        node.force_n.norm() / 1f64.hypot(self.law.friction * part) * speed
+        let part = speed / speed.hypot(self.law.settings.slip_tolerance_mm_per_s);
+        node.force_n.norm() / 1f64.hypot(self.law.settings.friction * part) * speed
     }
 }
 
@@ -83,8 +84,12 @@ impl ContactModel for Observed<'_> {
         self.inner.begin_increment(increment);
     }
 
-    fn respond(&mut self, motion: &RelativeMotion) -> Response<'_> {
+    fn respond(&mut self, motion: &RelativeMotion) -> Response {
         self.inner.respond(motion)
+    }
+
+    fn tangent(&self) -> Tangent {
+        self.inner.tangent()
     }
 
     fn accept(&mut self, motion: &RelativeMotion) {

@@ -39,11 +39,10 @@ fn built(case: &Case) -> WearTest {
 
 /// Its law of contact without any shortcut.
 fn plain(case: &Case) -> Foundation {
-    Foundation {
-        search: Search::BruteForce,
-        sample_reuse_mm: 0.0,
-        ..case.foundation()
-    }
+    let mut law = case.foundation();
+    law.settings.search = Search::BruteForce;
+    law.settings.sample_reuse_mm = 0.0;
+    law
 }
 
 /// Its test without shortcuts in the contact, with tighter tolerances, and without trust in
@@ -181,7 +180,7 @@ fn jump_n(
     let jump_n = |node: &TouchedNode| {
         let share = &surface.shares[node.node as usize];
         let place = motion.pose.to_femur(&share.centre);
-        let is_passing = (place.x * cosine - place.y * sine).abs() <= law.sample_reuse_mm;
+        let is_passing = (place.x * cosine - place.y * sine).abs() <= law.settings.sample_reuse_mm;
         let slope = law.stiffness_mpa_per_mm(march.insert(), node.node as usize);
         let jump_mm = share.spread_mm2 * change_per_mm;
         f64::from(u8::from(is_passing)) * jump_mm * slope * share.area_mm2

@@ -403,7 +403,7 @@ impl Pose4 {
 
 /// A twist of the femur in its own frame, for four points at a time.
 pub(crate) struct Twist4 {
-    angular: Vector<F64x4>,
+    pub angular: Vector<F64x4>,
     linear: Vector<F64x4>,
 }
 
@@ -414,11 +414,6 @@ impl Twist4 {
             angular: twist.angular.map(F64x4::splat),
             linear: twist.linear.map(F64x4::splat),
         }
-    }
-
-    /// Returns the angular part.
-    pub fn angular(&self) -> &Vector<F64x4> {
-        &self.angular
     }
 
     /// Velocities of the material at points, v + w x p.

@@ -257,7 +257,8 @@ fn sliding(pair: &Pair, law: &dyn ContactLaw) -> RelativeMotion {
 
 /// Holds the tangent by the pose against central differences of the wrench.
 fn assert_tangent_is_the_derivative(contact: &mut dyn ContactModel, motion: &RelativeMotion) {
-    let tangent = contact.respond(motion).tangent().by_pose.matrix;
+    contact.respond(motion);
+    let tangent = contact.tangent().by_pose.matrix;
     let mut by_differences = Mat6::zeros();
     let step = 1e-6;
     for column in 0..6 {

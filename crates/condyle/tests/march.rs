@@ -5,7 +5,7 @@ use std::{ops::ControlFlow, sync::Arc};
 use condyle::{
     contact::{
         Bodies, ContactLaw, ContactMemory, ContactModel, ContactResult, ContactState, Foundation,
-        PressureLaw, Response, StateField,
+        PressureLaw, Response, StateField, Tangent,
     },
     creep::LeePienkowski,
     evolve::{Activity, March, MarchState, Schedule, WearTest},
@@ -60,8 +60,12 @@ impl ContactModel for CountingContact<'_> {
         self.inner.begin_increment(increment);
     }
 
-    fn respond(&mut self, motion: &RelativeMotion) -> Response<'_> {
+    fn respond(&mut self, motion: &RelativeMotion) -> Response {
         self.inner.respond(motion)
+    }
+
+    fn tangent(&self) -> Tangent {
+        self.inner.tangent()
     }
 
     fn accept(&mut self, motion: &RelativeMotion) {

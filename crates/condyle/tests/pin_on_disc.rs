@@ -4,9 +4,7 @@ use std::{f64::consts::TAU, ops::ControlFlow};
 
 use condyle::{
     Vec3,
-    contact::{
-        ContactModel, ContactResult, Linearization, MAX_REGIONS, Response, Tangent, TouchedNode,
-    },
+    contact::{ContactModel, ContactResult, MAX_REGIONS, Response, Tangent, TouchedNode},
     machine::{
         Axis, Chain, Channel, ChannelUnit, Cycle, CycleError, CycleQuantity, Drive, Integration,
         Interpolation, JointDescription, JointIndex, JointKind, Knot, Loading, Machine,
@@ -126,8 +124,19 @@ impl Tip {
     }
 }
 
-impl Linearization for Tip {
-    /// What presses alone, since nothing else is free.
+impl ContactModel for Tip {
+    fn node_count(&self) -> usize {
+        1
+    }
+
+    fn respond(&mut self, motion: &RelativeMotion) -> Response {
+        let force = Self::force_n(motion);
+        let wrench = Wrench::new(motion.pose.translation.cross(&force), force);
+        let mean_slip = [Vec3::zeros(); MAX_REGIONS];
+        Response { wrench, mean_slip }
+    }
+
+    /// The derivative by the pressing motion alone, since nothing else is free.
     fn tangent(&self) -> Tangent {
         let mut matrix = Mat6::zeros();
         matrix[(4, 4)] = STIFFNESS_N_PER_MM;
@@ -135,18 +144,6 @@ impl Linearization for Tip {
             by_pose: WrenchByTwist::new(matrix),
             by_twist: WrenchByTwist::zero(),
         }
-    }
-}
-
-impl ContactModel for Tip {
-    fn node_count(&self) -> usize {
-        1
-    }
-
-    fn respond(&mut self, motion: &RelativeMotion) -> Response<'_> {
-        let force = Self::force_n(motion);
-        let wrench = Wrench::new(motion.pose.translation.cross(&force), force);
-        Response::new(wrench, [Vec3::zeros(); MAX_REGIONS], self)
     }
 
     fn accept(&mut self, _: &RelativeMotion) {

@@ -1,6 +1,6 @@
 //! Model of contact, pressure law, friction, and the search for nodes in contact.
 
-use condyle::contact::{Backside, Foundation, FrictionModel, PressureTable, Search};
+use condyle::contact::{Backside, ContactSettings, FrictionModel, PressureTable, Search};
 use condyle_fem::{Hardening, HardeningError};
 
 use super::pressure_table::StrainTable;
@@ -27,7 +27,7 @@ settings! {
         /// Search for the nodes that may touch; the results are the same, brute force is the slow reference.
         search: Search = Search::Coherent;
         /// Motion up to which a sample of the femur is extrapolated rather than computed again, which changes the force by less than a hundred-thousandth; 0 computes every sample.
-        sample_reuse_mm: f64 = Foundation::SAMPLE_REUSE_MM, in within(0.0, 0.02);
+        sample_reuse_mm: f64 = ContactSettings::SAMPLE_REUSE_MM, in within(0.0, 0.02);
         /// The model of the insert.
         [flat] model: ContactModelChoice;
     }

@@ -40,7 +40,8 @@ pub fn run(name: &str) {
 fn counted_contact_evaluations(contact: &mut dyn ContactModel, asked: &[Asked]) {
     for asked in asked {
         contact.begin_increment(asked.increment);
-        black_box(contact.respond(&asked.motion).tangent());
+        contact.respond(&asked.motion);
+        black_box(contact.tangent());
     }
 }
 

@@ -3,7 +3,9 @@
 use std::ops::ControlFlow;
 
 use condyle::{
-    contact::{ContactCache, ContactMemory, ContactModel, ContactResult, ContactState, Response},
+    contact::{
+        ContactCache, ContactMemory, ContactModel, ContactResult, ContactState, Response, Tangent,
+    },
     evolve::{March, WearTest},
     geometry::ArticulatingSurface,
     machine::{Chain, Drive, Simulator, Waveform, knee},
@@ -42,13 +44,17 @@ impl ContactModel for Recorder<'_> {
         self.contact.begin_increment(increment);
     }
 
-    fn respond(&mut self, motion: &RelativeMotion) -> Response<'_> {
+    fn respond(&mut self, motion: &RelativeMotion) -> Response {
         self.asked.push(Asked {
             motion: *motion,
             increment: self.increment,
             is_first: std::mem::take(&mut self.is_first),
         });
         self.contact.respond(motion)
+    }
+
+    fn tangent(&self) -> Tangent {
+        self.contact.tangent()
     }
 
     fn evaluate(&mut self, motion: &RelativeMotion) -> ContactResult {

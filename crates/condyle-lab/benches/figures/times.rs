@@ -294,7 +294,8 @@ impl Evaluations {
 fn evaluation_time(contact: &mut dyn ContactModel, asked: &Asked) -> Duration {
     let start = Instant::now();
     contact.begin_increment(asked.increment);
-    black_box(contact.respond(&asked.motion).tangent());
+    contact.respond(&asked.motion);
+    black_box(contact.tangent());
     start.elapsed()
 }
 

@@ -221,7 +221,7 @@ impl Recorded {
         let mut law = with_foundation(case).foundation();
         law.pressure = PressureLaw::Linear { modulus_mpa };
         // Forces are balanced more exactly than extrapolated samples of the femur allow.
-        law.sample_reuse_mm = 0.0;
+        law.settings.sample_reuse_mm = 0.0;
         let mut contact = law.contact(bodies, ContactMemory::default());
         let few = self.few_of_stance().into_iter();
         let armed = few.map(|target| target.with_arms(contact.as_mut(), &surface.positions));

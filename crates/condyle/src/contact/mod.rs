@@ -28,11 +28,12 @@ pub use deformable::{Backside, Deformable, FrictionModel};
 pub use foundation::Foundation;
 pub use history::{CycleHistory, Moment, NodeSums, Record, SlipWork};
 pub use law::{
-    BacksideAtRest, Bodies, ContactLaw, KnownCompliance, PlasticUnderSurface, Regime, UnderSurface,
+    BacksideAtRest, Bodies, ContactLaw, ContactSettings, KnownCompliance, PlasticUnderSurface,
+    Regime, UnderSurface,
 };
 pub use model::{
-    ContactCache, ContactMemory, ContactModel, ContactResult, ContactState, Linearization,
-    MAX_REGIONS, NotBorne, Response, Settled, StateField, Tangent, TouchedNode,
+    ContactCache, ContactMemory, ContactModel, ContactResult, ContactState, MAX_REGIONS, NotBorne,
+    Response, Settled, StateField, Tangent, TouchedNode,
 };
 pub use pressure_law::{
     PressureLaw, PressureTable, PressureTableError, confined_modulus, softening_modulus,

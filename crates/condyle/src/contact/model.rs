@@ -21,39 +21,13 @@ pub struct Tangent {
     pub by_twist: WrenchByTwist,
 }
 
-/// Computes the derivatives of a response, which are expensive and not always needed.
-pub trait Linearization {
-    /// Returns the derivatives of the wrench at the response.
-    fn tangent(&self) -> Tangent;
-}
-
 /// The response of a contact to a motion.
-pub struct Response<'a> {
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Response {
     /// Wrench on the insert about its origin, in the insert frame.
     pub wrench: Wrench,
     /// Load-weighted mean velocity of the femur's surface past the insert's in each region, mm/s; in the femoral frame.
     pub mean_slip: [Vec3; MAX_REGIONS],
-    linearization: &'a dyn Linearization,
-}
-
-impl<'a> Response<'a> {
-    /// Creates a response; `linearization` computes its derivatives on demand.
-    pub fn new(
-        wrench: Wrench,
-        mean_slip: [Vec3; MAX_REGIONS],
-        linearization: &'a dyn Linearization,
-    ) -> Self {
-        Self {
-            wrench,
-            mean_slip,
-            linearization,
-        }
-    }
-
-    /// Returns the derivatives of the wrench at this response.
-    pub fn tangent(&self) -> Tangent {
-        self.linearization.tangent()
-    }
 }
 
 /// A surface node in contact; vectors in the insert frame.
@@ -132,7 +106,10 @@ pub trait ContactModel {
     ///
     /// It depends on the motion and on the accepted history, not on the responses before, except for a model's documented
     /// round-off.
-    fn respond(&mut self, motion: &RelativeMotion) -> Response<'_>;
+    fn respond(&mut self, motion: &RelativeMotion) -> Response;
+
+    /// Returns the derivatives of the wrench at the last response. They are expensive, and not every response needs them.
+    fn tangent(&self) -> Tangent;
 
     /// Updates the trial history for a step that ends at a motion, that of the last response or very near it; further
     /// responses are with that history.

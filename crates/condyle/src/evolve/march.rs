@@ -1,7 +1,7 @@
 //! The march over millions of cycles: solve one cycle of every activity, wear the insert by an interval of
 //! such cycles, repeat on the new surface.
 
-use std::ops::{ControlFlow, Range};
+use std::ops::ControlFlow;
 
 use super::{
     Activity, CreepRecord, CreepState, DepthField, DepthFields, MarchError, MarchState, NodeFields,
@@ -19,7 +19,7 @@ use super::{
 };
 use crate::{
     Vec3,
-    contact::{Bodies, ContactCache, ContactMemory, ContactState, CycleHistory, UnderSurface},
+    contact::{Bodies, ContactCache, ContactMemory, ContactState, UnderSurface},
     geometry::{ArticulatingSurface, FemoralSurface, Insert},
     machine::{Chain, MachineState, SolverCounters},
     spatial::Pose,
@@ -40,18 +40,9 @@ pub struct March {
     /// Fields of the insert before the first update.
     unworn_fields: NodeFields,
     /// The last solved cycles; none before the first, or after an update that was stopped.
-    last: Option<LastCycles>,
+    last: Option<SolvedCycles>,
     /// Speeds up the contact of the next update.
     cache: ContactCache,
-}
-
-/// The histories of the last cycles, one per activity, and the surface that they loaded.
-struct LastCycles {
-    surface: ArticulatingSurface,
-    /// The next cycles reuse their memory.
-    histories: Vec<CycleHistory>,
-    /// The recorded moments of each increment, for every activity.
-    instants: Vec<Vec<Range<usize>>>,
 }
 
 /// The insert before a step, and the quality of the mesh after it.
@@ -180,13 +171,12 @@ impl March {
     /// Returns the last solved cycle of the first activity; `None` before the first update of this march.
     pub fn last_cycle(&self) -> Option<SolvedCycle<'_>> {
         let last = self.last.as_ref()?;
-        let (_, last_record) = self.state.activities[0].first_and_last.as_ref()?;
+        let cycle = &last.cycles[0];
         Some(SolvedCycle {
-            rows: &last_record.rows,
+            rows: &cycle.rows,
             surface: &last.surface,
             chain: &self.chains[0],
-            history: &last.histories[0],
-            instants: &last.instants[0],
+            cycle,
         })
     }
 
@@ -294,10 +284,8 @@ impl March {
         &mut self,
         watch: &mut dyn FnMut(Progress) -> ControlFlow<()>,
     ) -> Result<ControlFlow<(), SolvedCycles>, MarchError> {
-        let spent = self
-            .last
-            .take()
-            .map_or_else(Vec::new, |last| last.histories);
+        let spent = self.last.take().map_or_else(Vec::new, |last| last.cycles);
+        let spent = spent.into_iter().map(|cycle| cycle.history).collect();
         let memory = ContactMemory {
             state: self.state.contact.clone(),
             cache: std::mem::take(&mut self.cache),
@@ -465,29 +453,32 @@ impl March {
     }
 
     /// Keeps the data that the next update and a resumed march require.
-    fn remember(&mut self, solved: SolvedCycles, step: WearStep, rates: Rates, before: Lowered) {
+    fn remember(
+        &mut self,
+        mut solved: SolvedCycles,
+        step: WearStep,
+        rates: Rates,
+        before: Lowered,
+    ) {
         let update = self.state.updates.len() - 1;
         let cycles_before = self.state.cycles_before(update);
         self.state.counters = solved.counters;
+        let memory = std::mem::take(&mut solved.memory);
+        self.cache = memory.cache;
         let snapshot = Snapshot {
             update,
             step: step.record(rates),
             mesh_nodes: before.mesh_nodes,
             depths: before.depths,
-            contact: std::mem::replace(&mut self.state.contact, solved.memory.state),
+            contact: std::mem::replace(&mut self.state.contact, memory.state),
             machines: solved.cycles.iter().map(|cycle| cycle.end).collect(),
         };
         let part = cycles_before / self.test.schedule.cycles;
         self.state.pass(part, snapshot);
-        self.cache = solved.memory.cache;
-        let activities = self.state.activities.iter_mut().zip(solved.cycles);
-        let kept = activities.map(|(activity, cycle)| activity.keep(cycles_before, cycle));
-        let (histories, instants) = kept.unzip();
-        self.last = Some(LastCycles {
-            surface: solved.surface,
-            histories,
-            instants,
-        });
+        for (activity, cycle) in self.state.activities.iter_mut().zip(&solved.cycles) {
+            activity.keep(cycles_before, cycle);
+        }
+        self.last = Some(solved);
     }
 }
 

@@ -1,6 +1,6 @@
 //! The solution of one repeating cycle of every activity, from which the wear of an update is computed.
 
-use std::ops::{ControlFlow, Range};
+use std::ops::ControlFlow;
 
 use super::{
     Activity, MarchError, MarchState, Progress, Updates, WearTest,
@@ -31,8 +31,7 @@ pub struct SolvedCycle<'a> {
     /// The articulating surface that it loaded.
     pub surface: &'a ArticulatingSurface,
     pub(super) chain: &'a Chain,
-    pub(super) history: &'a CycleHistory,
-    pub(super) instants: &'a [Range<usize>],
+    pub(super) cycle: &'a Cycle,
 }
 
 impl SolvedCycle<'_> {
@@ -43,7 +42,7 @@ impl SolvedCycle<'_> {
 
     /// Returns pressure and slip of a surface node in an increment, or `None` where it was not touched.
     pub fn moment(&self, increment: usize, node: usize) -> Option<&Moment> {
-        let touched = self.history.instant(&self.instants[increment]);
+        let touched = self.cycle.history.instant(&self.cycle.instants[increment]);
         let own = touched.iter().find(|record| record.node as usize == node);
         own.map(|record| &record.moment)
     }
@@ -52,14 +51,14 @@ impl SolvedCycle<'_> {
     /// share, MPa.
     pub fn pressures_mpa(&self, increment: usize) -> Vec<f64> {
         let mut pressures_mpa = vec![0.0; self.surface.positions.len()];
-        for record in self.history.instant(&self.instants[increment]) {
+        for record in self.cycle.history.instant(&self.cycle.instants[increment]) {
             pressures_mpa[record.node as usize] = record.moment.pressure_mpa;
         }
         pressures_mpa
     }
 }
 
-/// One solved cycle of every activity, and the surface that it loaded.
+/// One solved cycle of every activity, and the surface that it loaded. The next cycles reuse the memory of its histories.
 pub(super) struct SolvedCycles {
     pub surface: ArticulatingSurface,
     pub cycles: Vec<Cycle>,

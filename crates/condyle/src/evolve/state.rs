@@ -1,7 +1,5 @@
 //! The state of a march, from which it resumes.
 
-use std::ops::Range;
-
 use serde::{Deserialize, Serialize};
 
 use super::{
@@ -10,7 +8,7 @@ use super::{
 };
 use crate::{
     Vec3,
-    contact::{ContactState, CycleHistory, UnderSurface},
+    contact::{ContactState, UnderSurface},
     geometry::Insert,
     machine::{Cycle, MachineState, SolverCounters, WarmStart},
 };
@@ -85,17 +83,14 @@ impl ActivityState {
         }
     }
 
-    /// Keeps a cycle as the last one, and the first of all as the first; returns the history and its instants.
-    pub(super) fn keep(&mut self, cycles: f64, cycle: Cycle) -> (CycleHistory, Vec<Range<usize>>) {
+    /// Keeps a cycle as the last one, and the first of all as the first.
+    pub(super) fn keep(&mut self, cycles: f64, cycle: &Cycle) {
         self.machine = cycle.end;
-        self.warm_starts = cycle.warm_starts;
-        let last = CycleRecord {
-            cycles,
-            rows: cycle.rows,
-        };
+        self.warm_starts.clone_from(&cycle.warm_starts);
+        let rows = cycle.rows.clone();
+        let last = CycleRecord { cycles, rows };
         let first = self.first_and_last.take().map(|(first, _)| first);
         self.first_and_last = Some((first.unwrap_or_else(|| last.clone()), last));
-        (cycle.history, cycle.instants)
     }
 }
 

@@ -63,7 +63,7 @@ impl FemoralSurface {
     /// Returns the spread over which all its samples are averaged, mm2; see [`FemoralSurface::prepared_for`].
     pub(crate) fn prepared_spread_mm2(&self) -> f64 {
         match self {
-            Self::Mesh(field) => field.spread_mm2(),
+            Self::Mesh(field) => field.spread_mm2,
             Self::Generic(_) | Self::Placed(_) | Self::Sphere(_) | Self::Cylinder(_) => 0.0,
         }
     }

@@ -35,7 +35,7 @@ pub struct SmoothField {
     curvature: CurvatureGrid,
     /// Spread of the shares over which it is averaged, mm2; a stored field is averaged over none.
     #[serde(skip)]
-    spread_mm2: f64,
+    pub(super) spread_mm2: f64,
 }
 
 impl SmoothField {
@@ -66,15 +66,11 @@ impl SmoothField {
         }
     }
 
-    pub(super) fn spread_mm2(&self) -> f64 {
-        self.spread_mm2
-    }
-
     /// Returns the field averaged over flat shares of surface: g + `spread_mm2` div n.
     ///
     /// The bounds of the curvature remain valid: a mean is no sharper.
     pub(super) fn averaged_over(&self, spread_mm2: f64) -> Self {
-        let grid = self.gap.grid();
+        let grid = &self.gap.grid;
         let averaged = |to: &mut [f64], from: &[f64]| {
             add_laplacian(grid, &self.is_far, to, from, spread_mm2);
         };
@@ -102,7 +98,7 @@ impl SmoothField {
 
     /// Returns the largest distance of the grid from the femoral frame's origin, mm.
     pub fn reach_mm(&self) -> f64 {
-        self.gap.grid().reach_mm()
+        self.gap.grid.reach_mm()
     }
 
     /// Returns the gap at a point, mm.

@@ -18,28 +18,13 @@ pub(super) fn move_by(positions: &mut [f64; 6], motions: &Vec6) {
     moved.for_each(|(position, motion)| *position += motion);
 }
 
-/// The derivatives of rates and accelerations by the positions within a step, 1/s and 1/s2.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct StepSlopes {
-    pub rate: f64,
-    pub acceleration: f64,
-}
-
-impl StepSlopes {
-    /// Positions that change without a rate.
-    pub const STILL: Self = Self {
-        rate: 0.0,
-        acceleration: 0.0,
-    };
-}
-
 /// A machine and its contact at one instant.
 pub(super) struct Balance<'a> {
     machine: &'a Machine,
     configuration: Configuration,
     kinematics: Kinematics,
-    /// Response of the contact to the motion.
-    pub response: Response<'a>,
+    contact: &'a dyn ContactModel,
+    pub response: Response,
 }
 
 impl<'a> Balance<'a> {
@@ -56,6 +41,7 @@ impl<'a> Balance<'a> {
             machine,
             configuration,
             kinematics,
+            contact,
             response,
         }
     }
@@ -94,11 +80,12 @@ impl<'a> Balance<'a> {
     }
 
     /// Returns the derivative of the residual by the positions, as exact as the contact's own; the identity on rows
-    /// that are not loaded.
-    pub fn tangent(&self, slopes: StepSlopes) -> Mat6 {
-        let mut tangent = self.contact_tangent(slopes);
+    /// that are not loaded. `by_rate` and `by_acceleration` are the derivatives of rates and accelerations by the
+    /// positions within a step, 1/s and 1/s2.
+    pub fn tangent(&self, by_rate: f64, by_acceleration: f64) -> Mat6 {
+        let mut tangent = self.contact_tangent(by_rate);
         for (j, joint) in self.machine.joints.iter().enumerate() {
-            tangent[(j, j)] += joint.inertia * slopes.acceleration + joint.damping * slopes.rate;
+            tangent[(j, j)] += joint.inertia * by_acceleration + joint.damping * by_rate;
         }
         for spring in &self.machine.springs {
             spring.subtract_stiffness(&self.kinematics.positions, &mut tangent);
@@ -113,8 +100,8 @@ impl<'a> Balance<'a> {
     }
 
     /// Returns the derivative of the contact's part of the residual, -W . s_j, by the position of every joint k.
-    fn contact_tangent(&self, slopes: StepSlopes) -> Mat6 {
-        let contact = self.response.tangent();
+    fn contact_tangent(&self, by_rate: f64) -> Mat6 {
+        let contact = self.contact.tangent();
         let on_femur = self.response.wrench.reaction();
         let screws = &self.configuration.screws;
         let carried = self.configuration.carried_twists(&self.kinematics.rates);
@@ -122,7 +109,7 @@ impl<'a> Balance<'a> {
         for k in 0..6 {
             // The twist is the sum of s_i v_i. Moving joint k changes its own rate v_k by the slope of
             // the step, and it turns every screw s_i that it carries, so that s_i v_i turns too.
-            let twist_change = screws[k] * slopes.rate + screws[k].bracket(&carried[k]);
+            let twist_change = screws[k] * by_rate + screws[k].bracket(&carried[k]);
             // The wrench changes because the pose moves along s_k, and because the twist changes.
             let by_pose = &contact.by_pose * &screws[k];
             let change = (by_pose + &contact.by_twist * &twist_change).reaction();

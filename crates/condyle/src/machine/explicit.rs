@@ -1,9 +1,7 @@
 //! Explicit steps of time by central differences: the balance of the implicit method with nothing to solve.
 
 use super::{
-    CycleError, Kinematics, Machine, MachineState, Simulator,
-    balance::{Balance, StepSlopes},
-    simulator::Stepped,
+    CycleError, Kinematics, Machine, MachineState, Simulator, balance::Balance, simulator::Stepped,
 };
 use crate::spatial::{Mat6, RelativeMotion};
 
@@ -139,12 +137,8 @@ impl Quickness {
             diagonal[j] = machine.joints[j].inertia.sqrt().recip();
         }
         let scale = Mat6::from_diagonal(&diagonal.into());
-        let slopes = |rate| StepSlopes {
-            rate,
-            ..StepSlopes::STILL
-        };
-        let stiffness = balance.tangent(slopes(0.0));
-        let damping = balance.tangent(slopes(1.0)) - stiffness;
+        let stiffness = balance.tangent(0.0, 0.0);
+        let damping = balance.tangent(1.0, 0.0) - stiffness;
         let drag = scale * (damping + damping.transpose()) * scale / 2.0;
         Self {
             frequency_per_s: (scale * stiffness * scale).norm().sqrt(),
@@ -176,7 +170,7 @@ mod tests {
     use super::*;
     use crate::{
         Vec3,
-        contact::{ContactModel, ContactResult, Linearization, MAX_REGIONS, Response, Tangent},
+        contact::{ContactModel, ContactResult, MAX_REGIONS, Response, Tangent},
         machine::{
             Chain, Drive, SolverCounters, TimeSettings, Waveform,
             knee::{IS, KNEE},
@@ -202,7 +196,19 @@ mod tests {
         }
     }
 
-    impl Linearization for Support {
+    impl ContactModel for Support {
+        fn node_count(&self) -> usize {
+            0
+        }
+
+        fn respond(&mut self, motion: &RelativeMotion) -> Response {
+            let (height, speed) = (motion.pose.translation.y, motion.twist.linear.y);
+            let force = Vec3::y() * (self.stiffness * height + self.drag * speed);
+            let wrench = Wrench::new(Vec3::zeros(), force);
+            let mean_slip = [Vec3::zeros(); MAX_REGIONS];
+            Response { wrench, mean_slip }
+        }
+
         fn tangent(&self) -> Tangent {
             let along_y = |value| {
                 let mut matrix = Mat6::zeros();
@@ -213,19 +219,6 @@ mod tests {
                 by_pose: along_y(self.stiffness),
                 by_twist: along_y(self.drag),
             }
-        }
-    }
-
-    impl ContactModel for Support {
-        fn node_count(&self) -> usize {
-            0
-        }
-
-        fn respond(&mut self, motion: &RelativeMotion) -> Response<'_> {
-            let (height, speed) = (motion.pose.translation.y, motion.twist.linear.y);
-            let force = Vec3::y() * (self.stiffness * height + self.drag * speed);
-            let wrench = Wrench::new(Vec3::zeros(), force);
-            Response::new(wrench, [Vec3::zeros(); MAX_REGIONS], self)
         }
 
         fn accept(&mut self, _: &RelativeMotion) {

@@ -1,10 +1,8 @@
 //! One implicit step of time: second-order backward differences (BDF2), solved by Newton's iteration.
 
 use super::{
-    CycleError, Kinematics, Machine, MachineState, Simulator, WarmStart,
-    balance::{Balance, StepSlopes},
-    newton::NewtonIteration,
-    simulator::Stepped,
+    CycleError, Kinematics, Machine, MachineState, Simulator, WarmStart, balance::Balance,
+    newton::NewtonIteration, simulator::Stepped,
 };
 use crate::spatial::RelativeMotion;
 
@@ -110,10 +108,6 @@ impl Simulator<'_> {
         watch: &mut dyn FnMut(f64),
     ) -> Result<Stepped, CycleError> {
         let step = BackwardStep::new(self.machine, from, step);
-        let slopes = StepSlopes {
-            rate: step.slope,
-            acceleration: step.slope.powi(2),
-        };
         let (levers, tolerance_n) = (self.machine.levers(), self.time.force_tolerance_n);
         let may_leave_n = self.time.trusts_prediction.then_some(tolerance_n);
         let start = step.predicted(warm_start);
@@ -129,7 +123,8 @@ impl Simulator<'_> {
                 return Ok(step.ended(kinematics, balance.motion(), &iteration));
             }
             let mean_slip = balance.response.mean_slip;
-            if !iteration.improve(&residual, mean_slip, || balance.tangent(slopes)) {
+            let tangent = || balance.tangent(step.slope, step.slope.powi(2));
+            if !iteration.improve(&residual, mean_slip, tangent) {
                 break;
             }
             self.counters.newton_iterations += 1;

@@ -2,7 +2,7 @@
 
 use super::{
     Chain, Drive, Joint, JointKind, Kinematics, Machine, Settling, SolverCounters, Waveform,
-    balance::{Balance, StepSlopes, correction, move_by},
+    balance::{Balance, correction, move_by},
 };
 use crate::{contact::ContactModel, spatial::Mat6};
 
@@ -70,7 +70,7 @@ pub fn settle(
             JointKind::Translation => damping,
         };
         let dampings = machine.joints.each_ref().map(of_joint);
-        let damped = balance.tangent(StepSlopes::STILL) + Mat6::from_diagonal(&dampings.into());
+        let damped = balance.tangent(0.0, 0.0) + Mat6::from_diagonal(&dampings.into());
         let Some(correction) = correction(&damped, &residual) else {
             break;
         };

@@ -136,7 +136,7 @@ impl Rolling {
             let motion = RelativeMotion::at_rest(Pose::new(Mat3::identity(), centre));
             let response = contact.respond(&motion);
             let over_n = -response.wrench.force.y - force_n;
-            let stiffness = response.tangent().by_pose.matrix[(4, 4)];
+            let stiffness = contact.tangent().by_pose.matrix[(4, 4)];
             if over_n.abs() > 1e-6 * force_n {
                 height_mm += (over_n / stiffness.max(1.0)).clamp(-0.05, 0.05);
             } else if contact.settle(&motion).unwrap() == Settled::Yes {

@@ -3,8 +3,8 @@
 use std::sync::Arc;
 
 use condyle::contact::{
-    ContactLaw, Deformable, Foundation, FrictionModel, PressureLaw, confined_modulus,
-    softening_modulus,
+    ContactLaw, ContactSettings, Deformable, Foundation, FrictionModel, PressureLaw,
+    confined_modulus, softening_modulus,
 };
 use condyle::evolve::{Schedule, Updates, WearTest};
 use condyle::geometry::Insert;
@@ -139,18 +139,16 @@ impl Case {
         }
         self.check_backside(model, insert)?;
         let elastic = self.material.elastic();
-        let contact = &self.contact;
-        let (coefficient, slip) = (contact.friction, contact.slip_tolerance_mm_per_s);
+        let settings = self.contact_settings();
+        let (friction, slip) = (settings.friction, settings.slip_tolerance_mm_per_s);
         let backside = model.backside.backside();
         let inputs = (self.insert_inputs(), elastic);
         let (shared, _) = bodies.elastic.found_or_made(inputs, |_| {
-            Deformable::new(elastic, coefficient, slip, backside, insert)
+            Deformable::new(elastic, friction, slip, backside, insert)
         })?;
         let mut law = Deformable::clone(&shared);
         // The shared law has the compliance, which depends on insert and elasticity alone; all else is that of this case.
-        (law.friction, law.slip_tolerance_mm_per_s) = (coefficient, slip);
-        law.search = contact.search;
-        law.sample_reuse_mm = contact.sample_reuse_mm;
+        law.settings = settings;
         law.friction_model = model.friction_model;
         let law = match model.plasticity.hardening() {
             Some(hardening) => law.with_material(ElasticPlastic { elastic, hardening }),
@@ -203,8 +201,7 @@ impl Case {
     pub fn foundation(&self) -> Foundation {
         let material = &self.material;
         let modulus_mpa = confined_modulus(material.youngs_modulus_mpa, material.poissons_ratio);
-        let contact = &self.contact;
-        let pressure = match contact.law().unwrap_or(&PressureLawChoice::Linear) {
+        let pressure = match self.contact.law().unwrap_or(&PressureLawChoice::Linear) {
             PressureLawChoice::Linear => PressureLaw::Linear { modulus_mpa },
             PressureLawChoice::Logarithmic => PressureLaw::Logarithmic { modulus_mpa },
             PressureLawChoice::Softening(curve) => PressureLaw::Softening {
@@ -222,6 +219,13 @@ impl Case {
         };
         Foundation {
             pressure,
+            settings: self.contact_settings(),
+        }
+    }
+
+    fn contact_settings(&self) -> ContactSettings {
+        let contact = &self.contact;
+        ContactSettings {
             friction: contact.friction,
             slip_tolerance_mm_per_s: contact.slip_tolerance_mm_per_s,
             search: contact.search,

@@ -2,21 +2,18 @@
 //!
 //! `near_blocks` finds the blocks near the femur and samples it there. `traction` holds the tractions on a block and the
 //! sum of their derivatives. `peak` interpolates between the nodes and looks for the highest pressure there.
-//! `settings` holds what the contacts of all laws have in common.
 
 mod near_blocks;
 mod peak;
-mod settings;
 mod traction;
 
 pub(crate) use near_blocks::{CachedSample, NearBlock, NearBlocks};
 pub(crate) use peak::{MIN_NODES, Quadratic, highest_mpa};
-pub(crate) use settings::{ContactSettings, Coulomb};
 pub(crate) use traction::{Sliding, Tractions4};
 
 use super::{
     broad_phase::ShareBlock,
-    law::Bodies,
+    law::{Bodies, ContactSettings},
     model::{ContactCache, MAX_REGIONS, Tangent, TouchedNode},
 };
 use crate::{
@@ -35,7 +32,7 @@ pub(crate) struct ContactPatch<'a> {
     pub near: Vec<NearBlock>,
     tractions: Vec<Tractions4>,
     pub pose: Pose,
-    friction: Coulomb,
+    settings: ContactSettings,
     /// The surface's own directions at the nodes of every block, anterior and lateral.
     directions: Vec<[Vector<F64x4>; 2]>,
 }
@@ -65,7 +62,7 @@ impl<'a> ContactPatch<'a> {
             near: Vec::new(),
             tractions: Vec::new(),
             pose: Pose::identity(),
-            friction: settings.friction,
+            settings,
             directions: blocks.iter().map(directions).collect(),
             nearby: NearBlocks::new(cache.into_inner(), bodies.femur, blocks, settings),
         }
@@ -85,7 +82,7 @@ impl<'a> ContactPatch<'a> {
             let shares = &self.nearby.blocks[near.block as usize];
             let tractions = traction(number, near, shares);
             let CachedSample { place, sample } = &near.cached;
-            let force = tractions.force_n(&sample.normal, self.friction.coefficient);
+            let force = tractions.force_n(&sample.normal, self.settings.friction);
             let moment = cross(place, &force);
             let own = [moment.x, moment.y, moment.z, force.x, force.y, force.z];
             for (sum, own) in wrench.iter_mut().zip(&own) {
@@ -118,7 +115,7 @@ impl<'a> ContactPatch<'a> {
             let one = (&near[0].cached, &tractions[0]);
             let nothing = (one.0, &Tractions4::none());
             let other = near.get(1).map(|near| (&near.cached, &tractions[1]));
-            sum.add(one, other.unwrap_or(nothing), self.friction.coefficient);
+            sum.add(one, other.unwrap_or(nothing), self.settings.friction);
         }
         let (by_pose, by_twist) = sum.total();
         let change = FrameChange::to_femur(&self.pose);
@@ -147,13 +144,13 @@ impl<'a> ContactPatch<'a> {
             // Unused lanes have no area.
             let area_mm2 = Number::max(tractions.area_mm2, F64x4::splat(f64::MIN_POSITIVE));
             let pressure_mpa = tractions.pressure_mpa + change_n / area_mm2;
-            let tolerance = self.friction.slip_tolerance_mm_per_s;
+            let tolerance = self.settings.slip_tolerance_mm_per_s;
             let there = Tractions4 {
                 pressure_mpa: Number::max(pressure_mpa, F64x4::splat(0.0)),
                 sliding: Sliding::new(&twist.velocity(place), &sample.normal, tolerance),
                 ..*tractions
             };
-            let force = there.force_n(&sample.normal, self.friction.coefficient);
+            let force = there.force_n(&sample.normal, self.settings.friction);
             let force = pose.turn_to_insert(&force);
             let sliding = pose.turn_to_insert(&there.sliding.velocity_mm_per_s);
             let sliding = [dot(&sliding, anterior), dot(&sliding, lateral)];

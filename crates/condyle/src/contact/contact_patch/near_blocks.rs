@@ -1,9 +1,11 @@
 //! The blocks of shares near the femur, each with its sample of it.
 
-use super::settings::ContactSettings;
 use crate::{
     Vector,
-    contact::broad_phase::{BroadPhase, SeparationBound, ShareBlock},
+    contact::{
+        broad_phase::{BroadPhase, SeparationBound, ShareBlock},
+        law::ContactSettings,
+    },
     geometry::{FemoralSurface, SurfaceSample},
     number::{F64x4, Number, dot},
     spatial::{Pose, Pose4},

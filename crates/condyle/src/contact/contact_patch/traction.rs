@@ -82,7 +82,7 @@ impl Tractions4 {
     #[inline(always)]
     pub fn load_change_n(&self, place: &Vector<F64x4>, motion: &Twist4) -> F64x4 {
         dot(&self.load_by_motion, &motion.velocity(place))
-            + dot(&self.load_by_turn, motion.angular())
+            + dot(&self.load_by_turn, &motion.angular)
     }
 
     /// Returns the forces on the insert under a femur with `normal`, N.

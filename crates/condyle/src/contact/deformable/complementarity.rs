@@ -259,7 +259,7 @@ impl Clearances {
     }
 
     fn take(&mut self, nodes: &[u32], loads_n: &[f64], compliance: &NearMatrix) {
-        let reaches = compliance.reaches();
+        let reaches = &compliance.reaches;
         self.tiles.resize(reaches.len(), TileClearance::default());
         for tile in &mut self.tiles {
             (tile.less_n, tile.more_n, tile.pressing_n) = (0.0, 0.0, 0.0);

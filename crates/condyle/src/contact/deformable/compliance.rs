@@ -130,7 +130,7 @@ pub(crate) struct NearMatrix {
     room: usize,
     /// The place of every node's tile among those that were added, and the largest displacements between any two of these.
     slots: Vec<u32>,
-    reaches: Vec<Vec<Reach>>,
+    pub reaches: Vec<Vec<Reach>>,
 }
 
 /// The largest displacement of a node by a newton on another node, of the same or another tile, mm/N.
@@ -184,11 +184,6 @@ impl NearMatrix {
     /// Returns the place of a node's tile among those that were added.
     pub fn slot(&self, node: u32) -> usize {
         self.slots[node as usize] as usize
-    }
-
-    /// Returns for every added tile the largest displacement of its nodes by a newton on each added tile, mm/N.
-    pub fn reaches(&self) -> &[Vec<Reach>] {
-        &self.reaches
     }
 
     /// Returns the pairs of the tiles that were added, the lower number first.

@@ -17,11 +17,11 @@ use crate::{
     Vector,
     contact::{
         broad_phase::ShareBlock,
-        contact_patch::{ContactPatch, ContactSettings, Coulomb, NearBlock, Sliding, Tractions4},
-        law::Bodies,
+        contact_patch::{ContactPatch, NearBlock, Sliding, Tractions4},
+        law::{Bodies, ContactSettings},
         model::{
-            ContactCache, ContactMemory, ContactModel, ContactResult, Linearization, NotBorne,
-            Response, Settled, StateField, Tangent,
+            ContactCache, ContactMemory, ContactModel, ContactResult, NotBorne, Response, Settled,
+            StateField, Tangent,
         },
     },
     number::{F64x4, LANES, Number, cross, dot, vector_from_lanes},
@@ -39,7 +39,7 @@ const MAX_BULGE_MM: f64 = 0.1;
 /// accurate to six digits.
 pub(crate) struct DeformableContact<'a> {
     bodies: Bodies<'a>,
-    friction: Coulomb,
+    settings: ContactSettings,
     patch: ContactPatch<'a>,
     compliance: Arc<Compliance>,
     contact_set: ContactSet,
@@ -56,6 +56,8 @@ pub(crate) struct DeformableContact<'a> {
     /// The loads of the last response, and the parts of the state that depend on the load history.
     node_loads: Vec<NodeLoad>,
     histories: Vec<Box<dyn LoadHistory + 'a>>,
+    /// The present increment of the cycle.
+    increment: usize,
 }
 
 /// The loads on a block of nodes along the inward normals, N, followed by their derivatives by six motions.
@@ -87,8 +89,9 @@ impl<'a> DeformableContact<'a> {
             fields: memory.state.fields,
             node_loads: Vec::new(),
             histories,
+            increment: 0,
             bodies,
-            friction: settings.friction,
+            settings,
             patch: ContactPatch::new(bodies, blocks, settings, memory.cache),
         }
     }
@@ -158,19 +161,6 @@ impl<'a> DeformableContact<'a> {
     }
 }
 
-impl Linearization for DeformableContact<'_> {
-    fn tangent(&self) -> Tangent {
-        let mut tangent = self.patch.tangent();
-        let histories = self.histories.iter();
-        for along_surface in histories.filter_map(|history| history.tangent()) {
-            let change = FrameChange::to_femur(&self.patch.pose);
-            let by_pose = change.derivative_back(&WrenchByTwist::new(along_surface));
-            tangent.by_pose.matrix += by_pose.matrix;
-        }
-        tangent
-    }
-}
-
 impl ContactModel for DeformableContact<'_> {
     fn node_count(&self) -> usize {
         self.bodies.surface.positions.len()
@@ -183,29 +173,42 @@ impl ContactModel for DeformableContact<'_> {
     }
 
     fn begin_increment(&mut self, increment: usize) {
+        self.increment = increment;
         self.patch.nearby.broad_phase.begin_increment(increment);
         for history in &mut self.histories {
             history.begin_increment(increment);
         }
     }
 
-    fn respond(&mut self, motion: &RelativeMotion) -> Response<'_> {
+    fn respond(&mut self, motion: &RelativeMotion) -> Response {
         self.patch.pose = motion.pose;
         let change = FrameChange::to_femur(&motion.pose);
         let pose = Pose4::new(&motion.pose);
         let twist = Twist4::new(&change.twist(&motion.twist));
         self.find_candidates(&motion.pose, &pose);
-        let (loads, friction) = (self.find_loads(), self.friction);
+        let (loads, settings) = (self.find_loads(), self.settings);
         let along = &self.along;
         let (mut wrench, mean_slip) = self.patch.evaluate(|place, near, shares| {
-            along[place].tractions(&loads[place], near, shares.area_mm2, &twist, friction)
+            along[place].tractions(&loads[place], near, shares.area_mm2, &twist, settings)
         });
         for history in &mut self.histories {
             if let Some(along_surface) = history.respond(&self.patch) {
                 wrench = wrench + along_surface;
             }
         }
-        Response::new(change.wrench_back(&wrench), mean_slip, self)
+        let wrench = change.wrench_back(&wrench);
+        Response { wrench, mean_slip }
+    }
+
+    fn tangent(&self) -> Tangent {
+        let mut tangent = self.patch.tangent();
+        let histories = self.histories.iter();
+        for along_surface in histories.filter_map(|history| history.tangent()) {
+            let change = FrameChange::to_femur(&self.patch.pose);
+            let by_pose = change.derivative_back(&WrenchByTwist::new(along_surface));
+            tangent.by_pose.matrix += by_pose.matrix;
+        }
+        tangent
     }
 
     fn settle(&mut self, _motion: &RelativeMotion) -> Result<Settled, NotBorne> {
@@ -248,7 +251,7 @@ impl ContactModel for DeformableContact<'_> {
     fn evaluate(&mut self, motion: &RelativeMotion) -> ContactResult {
         let mut touched = self.patch.touched(motion);
         for history in &mut self.histories {
-            history.evaluate(&mut touched);
+            history.evaluate(self.increment, &mut touched);
         }
         let pressures = NodePressures::new(self.bodies, &touched);
         for node in &mut touched {
@@ -337,7 +340,7 @@ impl AlongNormal {
         near: &NearBlock,
         area_mm2: F64x4,
         twist: &Twist4,
-        friction: Coulomb,
+        settings: ContactSettings,
     ) -> Tractions4 {
         let place = &near.cached.place;
         let [load_n, by_motion @ ..] = loads.map(F64x4::new);
@@ -359,7 +362,7 @@ impl AlongNormal {
             sliding: Sliding::new(
                 &twist.velocity(place),
                 &near.cached.sample.normal,
-                friction.slip_tolerance_mm_per_s,
+                settings.slip_tolerance_mm_per_s,
             ),
         }
     }

@@ -35,14 +35,14 @@ const FELT_PER_ROOT: f64 = 6.0;
 ///
 /// The stiffness is factored once. Everything else is computed when it is first needed, and kept.
 pub(crate) struct ElasticSurface {
-    solid: Arc<ElasticSolid>,
+    pub solid: Arc<ElasticSolid>,
     /// Mesh nodes of the surface.
     nodes: Vec<u32>,
     /// The surface's own directions at its nodes, anterior and lateral.
     tangents: Vec<[Vec3; 2]>,
     /// Unit loads along the inward normals, and the compliance between them.
     loads: Arc<UnitLoads>,
-    normal: Arc<Compliance>,
+    pub normal: Arc<Compliance>,
     known_at_first: AtomicUsize,
     /// The compliance along the surface, if nodes stick and slip.
     tangential: OnceLock<Arc<Compliance>>,
@@ -109,10 +109,6 @@ impl ElasticSurface {
             rests,
             tray: Mutex::default(),
         })
-    }
-
-    pub fn normal(&self) -> &Arc<Compliance> {
-        &self.normal
     }
 
     pub fn know(&self, known: KnownCompliance) {
@@ -222,10 +218,6 @@ impl ElasticSurface {
             && mesh.hexes == insert.mesh().hexes
             && mesh.nodes == mesh_nodes
             && self.nodes == insert.surface_nodes()
-    }
-
-    pub fn solid(&self) -> &Arc<ElasticSolid> {
-        &self.solid
     }
 
     pub fn influence(&self) -> &Influence {

@@ -9,7 +9,7 @@ use super::{
     cholesky::{Eight, get, set, zero},
     complementarity::by_panel,
     compliance::{Compliance, NearMatrix, along_surface},
-    history::{ByActivity, ByIncrement, LoadHistory, field},
+    history::{ByActivity, LoadHistory, field},
     stick_slip::{ByMotion, FrictionNode, Pair, StickSlip},
 };
 use crate::{
@@ -37,8 +37,8 @@ pub(crate) struct ElasticFriction<'a> {
     compliance: Arc<Compliance>,
     surface: &'a ArticulatingSurface,
     activities: ByActivity<Held>,
-    /// The loads at the end of each increment.
-    ends: ByIncrement<LoadsAlong>,
+    /// The loads at the end of each increment of the cycle, kept until the same increment of the next cycle.
+    ends: BTreeMap<usize, LoadsAlong>,
     /// The state at the start of the increment, and the displacements of some nodes by its loads, mm, by unit load;
     /// NaN where not computed yet.
     start: Held,
@@ -74,7 +74,7 @@ impl<'a> ElasticFriction<'a> {
         let mut friction = Self {
             coefficient,
             activities,
-            ends: ByIncrement::new(),
+            ends: BTreeMap::new(),
             start: Held::default(),
             start_mm: vec![f64::NAN; compliance.node_count()],
             last_end: LoadsAlong::new(),
@@ -200,12 +200,8 @@ impl<'a> ElasticFriction<'a> {
 impl LoadHistory for ElasticFriction<'_> {
     fn begin_cycle(&mut self) {
         let start = self.activities.begin_cycle(std::mem::take(&mut self.start));
-        self.ends.begin_cycle();
+        self.ends.clear();
         self.resume(start);
-    }
-
-    fn begin_increment(&mut self, increment: usize) {
-        self.ends.begin_increment(increment);
     }
 
     fn respond(&mut self, patch: &ContactPatch<'_>) -> Option<Wrench<body::Insert, body::Femur>> {
@@ -282,7 +278,7 @@ impl LoadHistory for ElasticFriction<'_> {
         }
     }
 
-    fn evaluate(&mut self, touched: &mut [TouchedNode]) {
+    fn evaluate(&mut self, increment: usize, touched: &mut [TouchedNode]) {
         let now = self.loads_now();
         let compliance = Arc::clone(&self.compliance);
         let compliance = compliance.near(self.asked());
@@ -311,7 +307,7 @@ impl LoadHistory for ElasticFriction<'_> {
             let [x, y] = own.map(|row| compliance.at(row, row));
             (x * by_n[0]).hypot(y * by_n[1])
         };
-        let before = self.ends.end(now.clone());
+        let before = self.ends.insert(increment, now.clone());
         self.moved_in_a_cycle_mm = before.map_or(f64::INFINITY, |before| {
             let changes = differences(&now, &before);
             changes.iter().map(moved_mm).fold(0.0, f64::max)

@@ -1,7 +1,5 @@
 //! The states of a deformable insert that depend on the load history: one interface for yield, friction and backside.
 
-use std::collections::BTreeMap;
-
 use crate::{
     contact::{
         contact_patch::ContactPatch,
@@ -37,7 +35,7 @@ pub(crate) trait LoadHistory {
     /// Begins the cycle of the next activity.
     fn begin_cycle(&mut self);
 
-    fn begin_increment(&mut self, increment: usize);
+    fn begin_increment(&mut self, _increment: usize) {}
 
     /// Subtracts from the overclosures of the candidates the displacement of the surface in the trial state.
     fn displace(&mut self, _candidates: &mut [Candidate]) {}
@@ -70,8 +68,8 @@ pub(crate) trait LoadHistory {
 
     fn reject(&mut self) {}
 
-    /// Ends an increment, and adds to the nodes in contact what the history contributes.
-    fn evaluate(&mut self, touched: &mut [TouchedNode]);
+    /// Ends an increment of the cycle, and adds to the nodes in contact what the history contributes.
+    fn evaluate(&mut self, increment: usize, touched: &mut [TouchedNode]);
 
     /// See [`ContactModel::moved_in_a_cycle_mm`](crate::contact::ContactModel::moved_in_a_cycle_mm).
     fn moved_in_a_cycle_mm(&self) -> f64;
@@ -129,45 +127,6 @@ impl<S: Clone + Default> ByActivity<S> {
         let count = self.left.len().max(activity + 1);
         self.left.resize_with(count, S::default);
         self.left[activity] = state;
-    }
-}
-
-/// A record of each increment of the present activity's cycle, kept until the same increment of the next cycle.
-pub(crate) struct ByIncrement<T> {
-    records: BTreeMap<usize, T>,
-    present: usize,
-}
-
-impl<T> ByIncrement<T> {
-    pub fn new() -> Self {
-        Self {
-            records: BTreeMap::new(),
-            present: 0,
-        }
-    }
-
-    pub fn begin_cycle(&mut self) {
-        self.records.clear();
-    }
-
-    pub fn begin_increment(&mut self, increment: usize) {
-        self.present = increment;
-    }
-
-    /// Records the end of the present increment, and returns the record of a cycle before.
-    pub fn end(&mut self, record: T) -> Option<T> {
-        self.records.insert(self.present, record)
-    }
-
-    pub fn iter(&self) -> impl DoubleEndedIterator<Item = &T> {
-        self.records.values()
-    }
-}
-
-impl<T: Default> ByIncrement<T> {
-    /// Returns the record of the present increment, to be changed.
-    pub fn present(&mut self) -> &mut T {
-        self.records.entry(self.present).or_default()
     }
 }
 

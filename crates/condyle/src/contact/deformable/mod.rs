@@ -38,10 +38,7 @@ use std::{
 use condyle_fem::{Elastic, Material, SolidError, Stress};
 
 use super::{
-    broad_phase::Search,
-    contact_patch::{ContactSettings, Coulomb},
-    foundation::Foundation,
-    law::{Bodies, ContactLaw, KnownCompliance, UnderSurface},
+    law::{Bodies, ContactLaw, ContactSettings, KnownCompliance, UnderSurface},
     model::{ContactMemory, ContactModel, ContactState},
 };
 use crate::{Vec3, geometry::Insert};
@@ -101,16 +98,10 @@ pub enum Backside {
 pub struct Deformable {
     elastic: Elastic,
     material: Arc<dyn InsertMaterial>,
-    /// Coulomb's coefficient of friction, mu.
-    pub friction: f64,
+    /// Friction and search.
+    pub settings: ContactSettings,
     /// The model of friction: with or without elastic deflection along the surface.
     pub friction_model: FrictionModel,
-    /// Speed at which regularised friction has reached 71 % of its full value, v0, mm/s, > 0.
-    pub slip_tolerance_mm_per_s: f64,
-    /// The search for the nodes that may touch; no result depends on it.
-    pub search: Search,
-    /// Motion up to which a sample of the femur is extrapolated, mm; with 0 every sample is recomputed.
-    pub sample_reuse_mm: f64,
     backside: Backside,
     /// Compliances of inserts, the one that was used last at the end; clones of a law share them.
     kept: Arc<Mutex<Vec<Arc<ElasticSurface>>>>,
@@ -131,11 +122,8 @@ impl Deformable {
         let law = Self {
             elastic: material.elastic(),
             material: Arc::new(material),
-            friction,
+            settings: ContactSettings::new(friction, slip_tolerance_mm_per_s),
             friction_model: FrictionModel::default(),
-            slip_tolerance_mm_per_s,
-            search: Search::default(),
-            sample_reuse_mm: Foundation::SAMPLE_REUSE_MM,
             backside,
             kept: Arc::default(),
         };
@@ -229,7 +217,7 @@ impl Deformable {
         } else {
             // Room for one as large as the newest is made before, so that old and new are not in memory at once.
             let bytes = |surface: &Arc<ElasticSurface>| {
-                surface.bytes(surface.normal().known_count() as f64, [1.0, 0.0])
+                surface.bytes(surface.normal.known_count() as f64, [1.0, 0.0])
             };
             while let Some(newest) = kept.last()
                 && kept.iter().map(bytes).sum::<f64>() + bytes(newest) > MAX_KEPT_BYTES
@@ -300,10 +288,7 @@ impl ContactLaw for Deformable {
     ) -> Box<dyn ContactModel + 'a> {
         let ContactMemory { state, cache } = memory;
         let (surface, nodes) = self.surface_after(bodies.insert, &state);
-        let mut friction = Coulomb {
-            coefficient: self.friction,
-            slip_tolerance_mm_per_s: self.slip_tolerance_mm_per_s,
-        };
+        let mut settings = self.settings;
         let mut histories: Vec<Box<dyn LoadHistory + 'a>> = Vec::new();
         if self.material.yields() {
             let plastic = self.material.history(Arc::clone(&surface), &state);
@@ -311,10 +296,10 @@ impl ContactLaw for Deformable {
         }
         if self.friction_model == FrictionModel::StickSlip {
             let along = Arc::clone(surface.tangential());
-            let history = ElasticFriction::new(&state, self.friction, bodies.surface, along);
+            let history = ElasticFriction::new(&state, settings.friction, bodies.surface, along);
             histories.push(Box::new(history));
             // The history exerts friction in place of the regularised law.
-            friction.coefficient = 0.0;
+            settings.friction = 0.0;
         }
         if let Backside::Resting {
             friction,
@@ -333,12 +318,7 @@ impl ContactLaw for Deformable {
             },
             cache,
         };
-        let settings = ContactSettings {
-            friction,
-            search: self.search,
-            sample_reuse_mm: self.sample_reuse_mm,
-        };
-        let compliance = Arc::clone(surface.normal());
+        let compliance = Arc::clone(&surface.normal);
         let contact = DeformableContact::new(memory, bodies, settings, compliance, histories);
         Box::new(contact)
     }
@@ -393,7 +373,7 @@ impl ContactLaw for Deformable {
                 under.plastic = plastic;
                 let strains = strains.unwrap_or_default();
                 let moved_mm = surface.moved_by(loads, &strains);
-                surface.solid().stresses_with(&moved_mm, &strains)
+                surface.solid.stresses_with(&moved_mm, &strains)
             }
             Backside::Resting {
                 friction,
@@ -407,7 +387,7 @@ impl ContactLaw for Deformable {
                 let found = tray.rest(friction, &left_mm, &forces_n, &left_mm.clone().into());
                 let moved_mm = found.map_or(left_mm, |rest| rest.moved_mm);
                 let moved_mm = surface.moved_with_tray(loads, &tray, &moved_mm);
-                surface.solid().stresses(&moved_mm)
+                surface.solid.stresses(&moved_mm)
             }
         };
         under.von_mises_mpa = stresses.iter().map(Stress::von_mises).collect();
@@ -422,7 +402,7 @@ impl ContactLaw for Deformable {
 
     fn with_slip_tolerance_times(&self, factor: f64) -> Arc<dyn ContactLaw> {
         let mut law = self.clone();
-        law.slip_tolerance_mm_per_s *= factor;
+        law.settings.slip_tolerance_mm_per_s *= factor;
         Arc::new(law)
     }
 }

@@ -11,12 +11,11 @@ mod peak;
 use std::sync::Arc;
 
 use super::{
-    broad_phase::{Search, ShareBlock},
-    contact_patch::{CachedSample, ContactPatch, ContactSettings, Coulomb, Sliding, Tractions4},
-    law::{Bodies, ContactLaw},
+    broad_phase::ShareBlock,
+    contact_patch::{CachedSample, ContactPatch, Sliding, Tractions4},
+    law::{Bodies, ContactLaw, ContactSettings},
     model::{
-        ContactCache, ContactMemory, ContactModel, ContactResult, ContactState, Linearization,
-        Response, Tangent,
+        ContactCache, ContactMemory, ContactModel, ContactResult, ContactState, Response, Tangent,
     },
     pressure_law::PressureLaw,
 };
@@ -42,38 +41,15 @@ use peak::PeakSearch;
 pub struct Foundation {
     /// Pressure from overclosure.
     pub pressure: PressureLaw,
-    /// Coulomb's coefficient of friction, mu.
-    pub friction: f64,
-    /// Speed at which friction has reached 71 % of its full value, v0, mm/s, > 0.
-    ///
-    /// A smaller value is closer to stick and slip; a larger one lets parts that should stick creep, and is easier to
-    /// solve.
-    pub slip_tolerance_mm_per_s: f64,
-    /// The search for the nodes that may touch; no result depends on it.
-    pub search: Search,
-    /// Motion up to which a sample of the femur is extrapolated to second order rather than recomputed, mm; with 0 every
-    /// sample is recomputed.
-    ///
-    /// This is the only approximation of the search. The second derivatives of a mesh's field vary by about 0.003/mm
-    /// from cell to cell: at 0.02 mm the gap errs by less than a millionth of a millimetre, and the force by a
-    /// hundred-thousandth.
-    pub sample_reuse_mm: f64,
+    /// Friction and search.
+    pub settings: ContactSettings,
 }
 
 impl Foundation {
-    /// The default motion up to which samples are extrapolated, mm. Most Newton corrections are shorter, so a mesh's field
-    /// is mostly sampled once per increment.
-    pub const SAMPLE_REUSE_MM: f64 = 0.02;
-
     /// Creates a foundation with the fast search.
     pub fn new(pressure: PressureLaw, friction: f64, slip_tolerance_mm_per_s: f64) -> Self {
-        Self {
-            pressure,
-            friction,
-            slip_tolerance_mm_per_s,
-            search: Search::default(),
-            sample_reuse_mm: Self::SAMPLE_REUSE_MM,
-        }
+        let settings = ContactSettings::new(friction, slip_tolerance_mm_per_s);
+        Self { pressure, settings }
     }
 }
 
@@ -83,19 +59,11 @@ impl ContactLaw for Foundation {
         bodies: Bodies<'a>,
         memory: ContactMemory,
     ) -> Box<dyn ContactModel + 'a> {
-        let settings = ContactSettings {
-            friction: Coulomb {
-                coefficient: self.friction,
-                slip_tolerance_mm_per_s: self.slip_tolerance_mm_per_s,
-            },
-            search: self.search,
-            sample_reuse_mm: self.sample_reuse_mm,
-        };
         let blocks = ShareBlock::from_shares(bodies.insert, bodies.surface);
         Box::new(FoundationContact {
             law: self,
             bodies,
-            patch: ContactPatch::new(bodies, blocks, settings, memory.cache),
+            patch: ContactPatch::new(bodies, blocks, self.settings, memory.cache),
             slopes: Vec::new(),
         })
     }
@@ -106,7 +74,7 @@ impl ContactLaw for Foundation {
 
     fn with_slip_tolerance_times(&self, factor: f64) -> Arc<dyn ContactLaw> {
         let mut law = self.clone();
-        law.slip_tolerance_mm_per_s *= factor;
+        law.settings.slip_tolerance_mm_per_s *= factor;
         Arc::new(law)
     }
 }
@@ -114,7 +82,7 @@ impl ContactLaw for Foundation {
 /// The contact of a femur with an insert as it is now, by a [`Foundation`].
 ///
 /// Invariant: a response depends on the motion alone, except for extrapolated samples
-/// ([`Foundation::sample_reuse_mm`]), which change the force by less than a hundred-thousandth. The tangent is the
+/// ([`ContactSettings::sample_reuse_mm`]), which change the force by less than a hundred-thousandth. The tangent is the
 /// derivative of the response, summed in single precision: accurate to six digits.
 struct FoundationContact<'a> {
     law: &'a Foundation,
@@ -123,12 +91,6 @@ struct FoundationContact<'a> {
     patch: ContactPatch<'a>,
     /// The edge slopes of their shares.
     slopes: Vec<EdgeSlopes<F64x4>>,
-}
-
-impl Linearization for FoundationContact<'_> {
-    fn tangent(&self) -> Tangent {
-        self.patch.tangent()
-    }
 }
 
 impl ContactModel for FoundationContact<'_> {
@@ -140,7 +102,7 @@ impl ContactModel for FoundationContact<'_> {
         self.patch.nearby.broad_phase.begin_increment(increment);
     }
 
-    fn respond(&mut self, motion: &RelativeMotion) -> Response<'_> {
+    fn respond(&mut self, motion: &RelativeMotion) -> Response {
         self.patch.pose = motion.pose;
         let change = FrameChange::to_femur(&motion.pose);
         let pose = Pose4::new(&motion.pose);
@@ -167,7 +129,12 @@ impl ContactModel for FoundationContact<'_> {
         let (wrench, mean_slip) = self.patch.evaluate(|place, near, shares| {
             law.tractions(&near.cached, &slopes[place], shares, &pose, &twist)
         });
-        Response::new(change.wrench_back(&wrench), mean_slip, self)
+        let wrench = change.wrench_back(&wrench);
+        Response { wrench, mean_slip }
+    }
+
+    fn tangent(&self) -> Tangent {
+        self.patch.tangent()
     }
 
     fn evaluate(&mut self, motion: &RelativeMotion) -> ContactResult {
@@ -230,7 +197,7 @@ impl Foundation {
             sliding: Sliding::new(
                 &twist.velocity(place),
                 &sample.normal,
-                self.slip_tolerance_mm_per_s,
+                self.settings.slip_tolerance_mm_per_s,
             ),
         }
     }

@@ -93,9 +93,9 @@ impl CurvatureGrid {
     pub fn new(gap: &GapSpline) -> Self {
         let margin_mm = HALF_DIAGONAL * SPACING_MM;
         let near = NEAR_MM.start - margin_mm..NEAR_MM.end + margin_mm;
-        let mut cells = vec![CellBounds::UNKNOWN; gap.grid().node_count()];
+        let mut cells = vec![CellBounds::UNKNOWN; gap.grid.node_count()];
         let mut known = Vec::new();
-        for (node, middle) in gap.grid().inner_nodes() {
+        for (node, middle) in gap.grid.inner_nodes() {
             if near.contains(&gap.gap_mm(&middle)) {
                 known.push(node);
                 cells[node] = in_cell(gap, &middle);
@@ -103,7 +103,7 @@ impl CurvatureGrid {
         }
         // A point anywhere in a cell is within one spacing of the neighbours only, so bounds widen cell by cell.
         for _ in 0..CELLS_AROUND {
-            cells = with_neighbours(&cells, &known, gap.grid().strides());
+            cells = with_neighbours(&cells, &known, gap.grid.strides());
         }
         Self {
             cells: cells.into(),

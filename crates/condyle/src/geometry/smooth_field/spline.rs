@@ -18,7 +18,7 @@ const OUTSIDE_MM: f64 = BAND_MM + SPACING_MM;
 /// A quadratic B-spline over a grid: a gap with its derivatives anywhere.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub(super) struct GapSpline {
-    grid: NodeGrid,
+    pub grid: NodeGrid,
     /// One per node, mm, and one more number: a row is read as four, of which three are used.
     coefficients: Arc<[f64]>,
 }
@@ -40,10 +40,6 @@ impl GapSpline {
             grid,
             coefficients: coefficients.into(),
         }
-    }
-
-    pub fn grid(&self) -> &NodeGrid {
-        &self.grid
     }
 
     /// Returns the spline with its coefficients changed by `change`, which receives the new and the old ones.

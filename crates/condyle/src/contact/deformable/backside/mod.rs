@@ -12,14 +12,14 @@ mod tray;
 pub(crate) use floor::Floor;
 pub(crate) use tray::Tray;
 
-use std::sync::Arc;
+use std::{collections::BTreeMap, sync::Arc};
 
 use nalgebra::DVector;
 
 use super::{
     complementarity::Candidate,
     elastic_surface::ElasticSurface,
-    history::{ByActivity, ByIncrement, LoadHistory, SETTLED_MM, SurfaceLoads, farthest_mm, field},
+    history::{ByActivity, LoadHistory, SETTLED_MM, SurfaceLoads, farthest_mm, field},
 };
 use crate::{
     contact::{
@@ -59,7 +59,8 @@ pub(crate) struct RestingInsert {
     searched_mm: DVector<f64>,
     turns: Turns,
     activities: ByActivity<Vec<f64>>,
-    ends: ByIncrement<IncrementEnd>,
+    /// The end of each increment of the cycle, kept until the same increment of the next cycle.
+    ends: BTreeMap<usize, IncrementEnd>,
     /// The extremes of the cycles of the activities before.
     before: BacksideAtRest,
     moved_in_a_cycle_mm: f64,
@@ -82,7 +83,7 @@ impl RestingInsert {
         let activities = stored_positions(state);
         let left_mm = of_points(activities.start_of(0), &tray);
         Self {
-            set_mm: vec![None; surface.normal().node_count()],
+            set_mm: vec![None; surface.normal.node_count()],
             searched_mm: left_mm.clone().into(),
             tried_mm: left_mm.clone(),
             left_mm,
@@ -90,7 +91,7 @@ impl RestingInsert {
             found: None,
             turns: Turns::default(),
             activities,
-            ends: ByIncrement::new(),
+            ends: BTreeMap::new(),
             before: BacksideAtRest::default(),
             moved_in_a_cycle_mm: 0.0,
             surface,
@@ -104,7 +105,7 @@ impl RestingInsert {
         if let Some(set_mm) = self.set_mm[node as usize] {
             return set_mm;
         }
-        let tile = self.surface.normal().tile_of(node) as usize;
+        let tile = self.surface.normal.tile_of(node) as usize;
         let rows = self.surface.by_tray(&self.tray, tile);
         let rows = rows.chunks_exact(self.tried_mm.len());
         for (&node, row) in self.surface.nodes_of_tile(tile).iter().zip(rows) {
@@ -125,7 +126,7 @@ impl RestingInsert {
     }
 
     fn most(&self) -> BacksideAtRest {
-        let most = self.ends.iter().map(|end| &end.most);
+        let most = self.ends.values().map(|end| &end.most);
         let most = most.fold(self.before, or_more);
         let slip_mm = self.slip_mm();
         let slip = BacksideAtRest {
@@ -139,8 +140,8 @@ impl RestingInsert {
     fn slip_mm(&self) -> f64 {
         let mut slips_mm: Vec<f64> = Vec::new();
         // The cycle is closed: the first increment follows the last.
-        let before = self.ends.iter().next_back().into_iter();
-        for (before, end) in before.chain(self.ends.iter()).zip(self.ends.iter()) {
+        let before = self.ends.values().next_back().into_iter();
+        for (before, end) in before.chain(self.ends.values()).zip(self.ends.values()) {
             slips_mm.resize(end.in_contact.len(), 0.0);
             let from = before.moved_mm.as_chunks::<3>().0.iter();
             let to = end.moved_mm.as_chunks::<3>().0;
@@ -161,13 +162,9 @@ impl LoadHistory for RestingInsert {
         let left_mm = std::mem::take(&mut self.left_mm);
         self.left_mm = of_points(self.activities.begin_cycle(left_mm), &self.tray);
         self.before = self.most();
-        self.ends.begin_cycle();
+        self.ends.clear();
         self.searched_mm = self.left_mm.clone().into();
         self.reject();
-    }
-
-    fn begin_increment(&mut self, increment: usize) {
-        self.ends.begin_increment(increment);
     }
 
     fn displace(&mut self, candidates: &mut [Candidate]) {
@@ -223,7 +220,7 @@ impl LoadHistory for RestingInsert {
         self.reset_trial(None);
     }
 
-    fn evaluate(&mut self, _: &mut [TouchedNode]) {
+    fn evaluate(&mut self, increment: usize, _: &mut [TouchedNode]) {
         let Some(rest) = &self.found else {
             return;
         };
@@ -244,11 +241,12 @@ impl LoadHistory for RestingInsert {
             lock_moment_nmm,
         };
         let moved_mm = rest.moved_mm.clone();
-        let before = self.ends.end(IncrementEnd {
+        let end = IncrementEnd {
             moved_mm,
             in_contact,
             most,
-        });
+        };
+        let before = self.ends.insert(increment, end);
         // In the first cycle nothing has repeated itself yet.
         self.moved_in_a_cycle_mm = before.map_or(f64::INFINITY, |before| {
             farthest_mm(&before.moved_mm, &rest.moved_mm)

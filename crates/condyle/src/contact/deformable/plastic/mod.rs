@@ -17,7 +17,7 @@ use condyle_fem::{Material, MaterialPoint, Strain};
 use super::{
     complementarity::Candidate,
     elastic_surface::ElasticSurface,
-    history::{ByIncrement, LoadHistory, NodeLoad, SETTLED_MM, SurfaceLoads, farthest_mm, field},
+    history::{LoadHistory, NodeLoad, SETTLED_MM, SurfaceLoads, farthest_mm, field},
 };
 use crate::{
     Vec3,
@@ -96,9 +96,9 @@ impl<M: Material + Clone + Debug + Send + Sync + 'static> InsertMaterial for M {
             points,
             flow_in_cycle,
         } = StoredPlasticity::<M::Point>::from_stored(state);
-        let elements = surface.solid().mesh().hexes.len();
+        let elements = surface.solid.mesh().hexes.len();
         let mut under = PlasticUnderSurface {
-            permanent_set_mm: vec![0.0; surface.normal().node_count()],
+            permanent_set_mm: vec![0.0; surface.normal.node_count()],
             plastic_strain: vec![0.0; elements],
             regime: vec![Regime::Elastic; elements],
         };
@@ -133,7 +133,9 @@ struct PlasticInsert<M: Material> {
     set_mm: Vec<f64>,
     turns: Turns,
     /// The flow of each increment, and the permanent set at its end.
-    increments: ByIncrement<Increment>,
+    increments: BTreeMap<usize, Increment>,
+    /// The number of the present increment.
+    increment: usize,
     /// The flow in the cycles of the activities before.
     before: BTreeMap<u32, Flow>,
     moved_in_a_cycle_mm: f64,
@@ -151,8 +153,8 @@ struct Increment {
 
 impl<M: Material> PlasticInsert<M> {
     fn new(stored: StoredPlasticity<M::Point>, surface: Arc<ElasticSurface>, material: M) -> Self {
-        let nodes = surface.solid().mesh().nodes.len();
-        let surface_nodes = surface.normal().node_count();
+        let nodes = surface.solid.mesh().nodes.len();
+        let surface_nodes = surface.normal.node_count();
         let mut insert = Self {
             material,
             moved_mm: vec![Vec3::zeros(); nodes],
@@ -161,7 +163,8 @@ impl<M: Material> PlasticInsert<M> {
             turns: Turns::default(),
             committed: stored.points,
             trial: Points::new(),
-            increments: ByIncrement::new(),
+            increments: BTreeMap::new(),
+            increment: 0,
             before: BTreeMap::new(),
             moved_in_a_cycle_mm: 0.0,
             residual_use: 0.0,
@@ -223,7 +226,8 @@ impl<M: Material> PlasticInsert<M> {
             if points != before {
                 let flow = |p: usize| points[p].accumulated() - before[p].accumulated();
                 let flow = (element, std::array::from_fn(flow));
-                self.increments.present().flows.push(flow);
+                let increment = self.increments.entry(self.increment);
+                increment.or_default().flows.push(flow);
                 changed = true;
             }
             if points.iter().any(|point| point.accumulated() > 0.0) {
@@ -249,7 +253,7 @@ impl<M: Material> PlasticInsert<M> {
     /// Returns the plastic strain accumulated in the last cycle of every activity, by elements.
     fn flow_in_cycle(&self) -> BTreeMap<u32, Flow> {
         let mut sums = self.before.clone();
-        let increments = self.increments.iter();
+        let increments = self.increments.values();
         for (element, flow) in increments.flat_map(|increment| &increment.flows) {
             let sum = sums.entry(*element).or_default();
             for (sum, flow) in sum.iter_mut().zip(flow) {
@@ -273,7 +277,7 @@ impl<M: Material> PlasticInsert<M> {
         let set_mm = self.surface.along_normals(&self.moved_mm);
         self.set_mm.clone_from(&set_mm);
         self.committed_set_mm = Arc::new(set_mm);
-        let (solid, influence) = (self.surface.solid(), self.surface.influence());
+        let (solid, influence) = (&self.surface.solid, self.surface.influence());
         let yield_mpa = self.material.initial_yield_stress();
         let use_of = |element: usize| {
             let nodes = solid.mesh().hexes[element].map(|node| self.moved_mm[node as usize]);
@@ -327,7 +331,7 @@ impl<M: Material> PlasticInsert<M> {
         let surface = Arc::clone(&self.surface);
         let mut is_needed = vec![false; self.loaded_mm.len()];
         for &element in elements {
-            for node in surface.solid().mesh().hexes[element as usize] {
+            for node in surface.solid.mesh().hexes[element as usize] {
                 is_needed[node as usize] = true;
             }
         }
@@ -350,14 +354,14 @@ impl<M: Material> PlasticInsert<M> {
 
     /// Returns the displacements of the nodes of an element, with `more_mm` of some.
     fn nodes_of(&self, element: u32, more_mm: &ByTile) -> [Vec3; 8] {
-        let hex = self.surface.solid().mesh().hexes[element as usize];
+        let hex = self.surface.solid.mesh().hexes[element as usize];
         let influence = self.surface.influence();
         hex.map(|node| self.loaded_mm[node as usize] + influence.of_node(more_mm, node))
     }
 
     /// Returns the elements that flow, flowed in the trial state, or are near it; none if none flows.
     fn searched(&self, evaluated: &[u32]) -> Vec<u32> {
-        let (solid, influence) = (self.surface.solid(), self.surface.influence());
+        let (solid, influence) = (&self.surface.solid, self.surface.influence());
         let mut flows = !self.trial.is_empty();
         let mut searched = Vec::new();
         for &element in evaluated {
@@ -378,7 +382,7 @@ impl<M: Material> PlasticInsert<M> {
     /// The displacements under the flow and the flow under the displacements are found in turns, accelerated by Anderson's
     /// mixing of the plastic strains.
     fn sweep(&mut self, elements: &[u32]) -> Result<ByTile, NotBorne> {
-        let hexes = &self.surface.solid().mesh().hexes;
+        let hexes = &self.surface.solid.mesh().hexes;
         let nodes = elements.iter().flat_map(|&element| hexes[element as usize]);
         let mut tiles: Vec<u32> = nodes
             .map(|node| self.surface.influence().tile_of(node))
@@ -427,7 +431,7 @@ impl<M: Material> PlasticInsert<M> {
     /// Updates the flow of an element whose nodes are displaced by the flow around it, and returns how far that is from the
     /// plastic strain tried.
     fn flow_element(&mut self, element: u32, moved_mm: &ByTile) -> f64 {
-        let (solid, before) = (self.surface.solid(), self.committed_points(element));
+        let (solid, before) = (&self.surface.solid, self.committed_points(element));
         let trial = self.trial[&element];
         let nodes = self.nodes_of(element, moved_mm);
         let own = self.surface.influence().element(solid, element);
@@ -445,7 +449,7 @@ impl<M: Material> PlasticInsert<M> {
 
     /// Returns the forces of the flow in the present increment.
     fn forces(&self) -> ByTile {
-        let (solid, influence) = (self.surface.solid(), self.surface.influence());
+        let (solid, influence) = (&self.surface.solid, self.surface.influence());
         let mut forces = ByTile::new();
         for (&element, points) in &self.trial {
             let before = self.committed_points(element);
@@ -466,9 +470,7 @@ impl<M: Material> PlasticInsert<M> {
     /// surface node as far as a unit load there moves the node of the force.
     fn add_set(&self, forces: &ByTile, near: impl Iterator<Item = u32>, set_mm: &mut [f64]) {
         let influence = self.surface.influence();
-        let mut tiles: Vec<u32> = near
-            .map(|node| self.surface.normal().tile_of(node))
-            .collect();
+        let mut tiles: Vec<u32> = near.map(|node| self.surface.normal.tile_of(node)).collect();
         tiles.sort_unstable();
         tiles.dedup();
         let mut loaded: BTreeMap<u32, Vec3> = BTreeMap::new();
@@ -497,12 +499,12 @@ impl<M: Material> PlasticInsert<M> {
 impl<M: Material> LoadHistory for PlasticInsert<M> {
     fn begin_cycle(&mut self) {
         self.before = self.flow_in_cycle();
-        self.increments.begin_cycle();
+        self.increments.clear();
     }
 
     fn begin_increment(&mut self, increment: usize) {
-        self.increments.begin_increment(increment);
-        self.increments.present().flows.clear();
+        self.increment = increment;
+        self.increments.entry(increment).or_default().flows.clear();
     }
 
     fn displace(&mut self, candidates: &mut [Candidate]) {
@@ -526,9 +528,9 @@ impl<M: Material> LoadHistory for PlasticInsert<M> {
         self.set_mm.clone_from(&self.committed_set_mm);
     }
 
-    fn evaluate(&mut self, _: &mut [TouchedNode]) {
+    fn evaluate(&mut self, increment: usize, _: &mut [TouchedNode]) {
         let set_mm = &self.committed_set_mm;
-        let end = self.increments.present();
+        let end = self.increments.entry(increment).or_default();
         let moved_mm = match end.set_mm.replace(Arc::clone(set_mm)) {
             // In the first cycle nothing has repeated itself yet.
             None => f64::INFINITY,

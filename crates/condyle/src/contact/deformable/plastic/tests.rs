@@ -83,11 +83,11 @@ fn verify_flow_and_permanent_set_against_newton_on_all_elements() {
     // Pressed, let go, and pressed beside.
     for (peak_mpa, x) in [(38.0, 0.0), (0.1, 0.0), (42.0, 1.5), (0.1, 1.5)] {
         let loads = block.loads(peak_mpa, x);
-        let all = 0..block.surface.normal().node_count() as u32;
+        let all = 0..block.surface.normal.node_count() as u32;
         insert
             .flow(&loads, f64::INFINITY, all, block.insert.faces_around())
             .unwrap();
-        let tried_mm: Vec<f64> = (0..block.surface.normal().node_count() as u32)
+        let tried_mm: Vec<f64> = (0..block.surface.normal.node_count() as u32)
             .map(|node| insert.set_mm[node as usize])
             .collect();
         insert.commit();
