@@ -6,16 +6,14 @@
 //! wider than long, cut out behind, and has the higher lip in front. A symmetric shape leaves orientations open.
 //! The flanges of a femoral component's trochlea, where they differ, show the side.
 
-mod femur;
-mod insert;
-mod orientation;
 mod recognition;
+mod signs;
 mod start;
 #[cfg(test)]
 mod tests;
 mod views;
 
-pub use femur::flange_lead_mm;
-pub use orientation::Orientation;
 pub use recognition::{Recognition, Sureness};
+pub use signs::flange_lead_mm;
 pub use start::start_over_the_dishes_mm;
+pub use views::Orientation;

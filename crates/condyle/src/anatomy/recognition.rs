@@ -1,6 +1,9 @@
 //! The recognition of a body's orientation from its shape.
 
-use super::{femur, insert, orientation::Orientation, views::Views};
+use super::{
+    signs::{fit_femur, fit_insert},
+    views::{Orientation, Views},
+};
 use crate::geometry::TriangleMesh;
 
 /// Lead in score of another orientation that makes the given one likely wrong. The right orientation of
@@ -31,12 +34,12 @@ pub enum Sureness {
 impl Recognition {
     /// Recognises a femoral component; none if the shape is not a whole component.
     pub fn of_femur(mesh: &TriangleMesh) -> Option<Self> {
-        Self::new(mesh, femur::fit)
+        Self::new(mesh, fit_femur)
     }
 
     /// Recognises an insert, closed or an open articulating surface; none if the shape does not have two dishes.
     pub fn of_insert(mesh: &TriangleMesh) -> Option<Self> {
-        Self::new(mesh, insert::fit)
+        Self::new(mesh, fit_insert)
     }
 
     /// Scores all orientations; none if the best is not plausible.

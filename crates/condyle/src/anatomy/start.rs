@@ -1,9 +1,6 @@
 //! The start position of the femur over the insert.
 
-use super::{
-    orientation::Orientation,
-    views::{Picture, Views, mean, median, part},
-};
+use super::views::{Orientation, Picture, Views, mean, median, part};
 use crate::{Mat3, geometry::TriangleMesh};
 
 /// Height above the lowest row of a dish or a condyle within which rows are averaged, as a share of the

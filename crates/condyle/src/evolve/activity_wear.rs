@@ -2,10 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::{
-    rates::{mean_cycles, volume_mm3, worn},
-    step::SolvedStep,
-};
+use super::rates::{SolvedStep, mean_cycles, volume_mm3, worn};
 use crate::wear::{SharedCycle, WearLaw};
 
 /// Wear and contact of an activity so far.

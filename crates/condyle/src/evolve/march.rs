@@ -13,9 +13,8 @@ use super::{
     error::WornAndCrept,
     next_step::next_step,
     placement::place,
-    rates::{Rates, mean_cycles, volume_mm3, worn},
+    rates::{Rates, SolvedStep, StepStart, WearStep, mean_cycles, volume_mm3, worn},
     solved_cycles::{SolvedCycles, solve},
-    step::{SolvedStep, StepStart, WearStep},
 };
 use crate::{
     Vec3,

@@ -6,15 +6,13 @@
 //! | `placement` | lowers the femur onto the insert and lets it settle |
 //! | `march` | the loop over updates: cycles solved, rates, a step, the new surface |
 //! | `solved_cycles` | the solution of the cycles of an update |
-//! | `rates` | the wear per cycle, and the rate at which wear changes it |
-//! | `step`, `next_step`, `step_rules` | the interval of a step, and the wear over it |
-//! | `accumulated_error` | the error that the length of the steps causes |
+//! | `rates` | the wear per cycle, the rate at which wear changes it, and a step of the march |
+//! | `next_step`, `step_rules` | the interval of a step, the wear over it, and the error that its length causes |
 //! | `comparison_laws`, `activity_wear` | the wear by other laws, and by each activity |
 //! | `depth` | the depth of the surface by cause |
 //! | `creep` | the depth by creep, and the load that causes it |
 //! | `records`, `state` | the results of an update, and the state from which a march resumes |
 
-mod accumulated_error;
 mod activity_wear;
 mod comparison_laws;
 mod creep;
@@ -27,22 +25,20 @@ mod rates;
 mod records;
 mod solved_cycles;
 mod state;
-mod step;
 mod step_rules;
 mod wear_test;
 
-pub use accumulated_error::AccumulatedError;
 pub use activity_wear::ActivityWear;
 pub use comparison_laws::ComparisonLaw;
 pub use creep::CreepState;
 pub use depth::{DepthField, DepthFields};
 pub use error::{MarchError, PlacementError, WornAndCrept};
 pub use march::March;
-pub use rates::{mean_over_volume, weight_of_depth};
+pub use rates::{StepRecord, mean_over_volume, weight_of_depth};
 pub use records::{
     CreepRecord, CycleRecord, NodeFields, PlasticRecord, Progress, UnderSurfaceRecord, UpdateRecord,
 };
 pub use solved_cycles::SolvedCycle;
 pub use state::{ActivityState, MarchState, SNAPSHOT_PARTS, Snapshot};
-pub use step::StepRecord;
+pub use step_rules::AccumulatedError;
 pub use wear_test::{Activity, Schedule, Updates, WearTest};

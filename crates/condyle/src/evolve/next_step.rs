@@ -2,9 +2,8 @@
 
 use super::{
     Schedule, Updates,
-    accumulated_error::accumulated_error_mm,
-    step::{StepRecord, StepStart, WearStep},
-    step_rules::{exponential, extrapolated},
+    rates::{StepRecord, StepStart, WearStep},
+    step_rules::{accumulated_error_mm, exponential, extrapolated},
 };
 
 /// Largest share of the test that the first step takes, since the change of the rates is not known yet, ...

@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::{DepthFields, step::SolvedStep};
+use super::{DepthFields, rates::SolvedStep};
 use crate::{
     Vec3,
     contact::{BacksideAtRest, PlasticUnderSurface, Regime, UnderSurface},

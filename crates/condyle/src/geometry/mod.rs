@@ -27,9 +27,7 @@ mod generic_femur;
 mod generic_insert;
 mod insert;
 mod landmarks;
-mod share;
 mod smooth_field;
-mod surface_regions;
 mod surface_sample;
 mod torus;
 
@@ -38,15 +36,13 @@ pub(crate) use surface_sample::{CurvatureBounds, MAX_GAP_SLOPE};
 
 pub use condyle_mesh::{CurvedMesh, TriangleMesh, bounds, columns::Meshing};
 
-pub use articulating_surface::ArticulatingSurface;
+pub use articulating_surface::{ArticulatingSurface, Share};
 pub use construct::Underside;
 pub use femoral_surface::FemoralSurface;
 pub use generic_femur::{GenericFemur, GenericFemurShape, PlacedFemur};
 pub use generic_insert::{GenericInsertShape, flat_insert};
-pub use insert::{Insert, InsertError};
+pub use insert::{Insert, InsertError, SurfaceRegions};
 pub use landmarks::{Dishes, posterior_arc_centre_mm};
-pub use share::Share;
 pub use smooth_field::SmoothField;
-pub use surface_regions::SurfaceRegions;
 pub use surface_sample::{Curvature, SurfaceSample};
 pub use torus::{Cylinder, Torus};

@@ -1,9 +1,228 @@
-//! A mechanism as a table: its joints, the regions of its surface, and the columns of a cycle.
+//! A mechanism as a table: its joints with the waveforms that can drive them, the regions of its surface, and the
+//! columns of a cycle.
 
 use serde::{Deserialize, Serialize};
 
-use super::{Channel, JointDescription, JointIndex, JointKind};
 use crate::contact::{ContactResult, MAX_REGIONS};
+
+/// The kind of motion of a joint.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum JointKind {
+    /// It rotates: rad and N mm in the solver, degrees in files.
+    Rotation,
+    /// It translates: mm and N everywhere.
+    Translation,
+}
+
+impl JointKind {
+    /// Returns the unit of positions in files, which ends their names.
+    pub const fn unit(self) -> &'static str {
+        match self {
+            Self::Rotation => "deg",
+            Self::Translation => "mm",
+        }
+    }
+
+    /// Returns the unit of files in the solver's unit, rad or mm.
+    pub const fn file_unit_in_solver(self) -> f64 {
+        match self {
+            Self::Rotation => 1f64.to_radians(),
+            Self::Translation => 1.0,
+        }
+    }
+
+    /// Converts a position of the solver, rad or mm, to the unit of files.
+    pub const fn in_files(self, position: f64) -> f64 {
+        match self {
+            Self::Rotation => position.to_degrees(),
+            Self::Translation => position,
+        }
+    }
+}
+
+/// The place of a joint in its chain.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub struct JointIndex(usize);
+
+impl JointIndex {
+    /// The six places, from the insert to the femur.
+    pub const ALL: [Self; 6] = [Self(0), Self(1), Self(2), Self(3), Self(4), Self(5)];
+
+    /// Returns the place as a number, from 0 at the insert.
+    pub const fn place(self) -> usize {
+        self.0
+    }
+
+    /// Returns the value of this joint from one value per joint.
+    pub const fn of(self, values: &[f64; 6]) -> f64 {
+        values[self.0]
+    }
+}
+
+/// The unit of a waveform's values in files.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum ChannelUnit {
+    /// N.
+    Newton,
+    /// N m.
+    NewtonMetre,
+    /// mm.
+    Millimetre,
+    /// Degrees.
+    Degree,
+}
+
+impl ChannelUnit {
+    /// Returns the ending of names with this unit, such as the `n` of `knots_n`.
+    pub const fn suffix(self) -> &'static str {
+        match self {
+            Self::Newton => "n",
+            Self::NewtonMetre => "nm",
+            Self::Millimetre => JointKind::Translation.unit(),
+            Self::Degree => JointKind::Rotation.unit(),
+        }
+    }
+}
+
+/// A waveform that moves or loads a joint, as it stands in files.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Channel {
+    /// Name in files, such as `ap_force`.
+    pub name: &'static str,
+    /// Description with the positive direction.
+    pub about: &'static str,
+    /// Unit of the values.
+    pub unit: ChannelUnit,
+    /// 1 if positive values act in the joint's positive direction, -1 otherwise.
+    pub sign: f64,
+    /// Smallest permitted value.
+    pub least: f64,
+    /// Largest permitted value.
+    pub most: f64,
+}
+
+impl Channel {
+    /// Returns the factor from a value in a file to the joint's load or motion: sign and unit.
+    pub const fn factor(&self) -> f64 {
+        let unit_in_solver = match self.unit {
+            ChannelUnit::Newton => 1.0,
+            ChannelUnit::NewtonMetre => 1e3,
+            ChannelUnit::Millimetre => JointKind::Translation.file_unit_in_solver(),
+            ChannelUnit::Degree => JointKind::Rotation.file_unit_in_solver(),
+        };
+        self.sign * unit_in_solver
+    }
+}
+
+/// The line that a joint moves along or about, as a unit vector in the insert frame.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Axis {
+    /// Along a direction.
+    Along([f64; 3]),
+    /// About a direction, through the point of the insert frame that the machine sets in
+    /// [`Joint::axis_point_mm`](super::Joint).
+    About([f64; 3]),
+    /// About a direction, through the femur's own axis point; the joints nearer to the insert carry it.
+    AboutFemur([f64; 3]),
+}
+
+/// The body that a joint moves. A joint of the insert moves the femur the opposite way relative to it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum MovedBody {
+    /// The insert.
+    Insert,
+    /// The femur.
+    Femur,
+}
+
+/// The state of a joint while the machine settles under the load at the start of the cycle.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Settling {
+    /// Free and without load, whatever drives it in the cycle.
+    Free,
+    /// Held at zero.
+    HeldAtZero,
+    /// Driven as at the start of the cycle, by motion or load.
+    Driven,
+    /// Driven as at the start of the cycle, but free and without load if a load drives it.
+    DrivenWithoutLoad,
+}
+
+/// Whether a joint can be free under a load, and the waveform of that load.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Loading {
+    /// It cannot be free.
+    None,
+    /// It can be free, always without load.
+    Free,
+    /// It can be free under a waveform.
+    By(&'static Channel),
+}
+
+/// A joint of a mechanism: its names, its axis, how it settles, and the waveforms that can drive it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct JointDescription {
+    /// Name in files, such as `ap`.
+    pub name: &'static str,
+    /// Column in files of motions: the name and the unit.
+    pub column: &'static str,
+    /// Short name in messages, such as `AP`.
+    pub symbol: &'static str,
+    /// Long name in messages, such as `AnteroPosterior`.
+    pub long_name: &'static str,
+    /// Heading on pages.
+    pub title: &'static str,
+    /// Positive direction in words.
+    pub positive: &'static str,
+    /// Decimals of its position in messages, in the unit of files.
+    pub decimals: usize,
+    /// Smallest range of a plotted curve, in the unit of files: smaller motions are not enlarged.
+    pub least_span: f64,
+    /// Axis of the motion.
+    pub axis: Axis,
+    /// Body that it moves, which fixes the sign.
+    pub moves: MovedBody,
+    /// State while the machine settles.
+    pub settling: Settling,
+    /// Whether it reads zero where the machine has settled.
+    pub is_zeroed: bool,
+    /// Default mass in tonne, or moment of inertia in tonne mm2.
+    pub inertia: f64,
+    /// Default viscous damping, N s/mm or N mm s/rad.
+    pub damping: f64,
+    /// Waveform that can prescribe its motion.
+    pub motion: Option<&'static Channel>,
+    /// Waveform that can load it.
+    pub load: Loading,
+}
+
+impl JointDescription {
+    /// Returns the kind of motion, which follows from the axis.
+    pub const fn kind(&self) -> JointKind {
+        match self.axis {
+            Axis::Along(_) => JointKind::Translation,
+            Axis::About(_) | Axis::AboutFemur(_) => JointKind::Rotation,
+        }
+    }
+
+    /// Returns the waveform that can load it, if there is one.
+    pub const fn load_channel(&self) -> Option<&'static Channel> {
+        match self.load {
+            Loading::By(channel) => Some(channel),
+            Loading::None | Loading::Free => None,
+        }
+    }
+
+    /// Returns whether it can be free.
+    pub const fn can_be_free(&self) -> bool {
+        !matches!(self.load, Loading::None)
+    }
+
+    /// Returns whether it stands at zero once the machine has settled.
+    pub fn settles_at_zero(&self) -> bool {
+        self.is_zeroed || self.settling == Settling::HeldAtZero
+    }
+}
 
 /// A region of the articulating surface whose load is reported separately.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -9,24 +9,22 @@ mod chain;
 mod cycle;
 mod explicit;
 mod implicit;
-mod joint;
 pub mod knee;
 mod mechanism;
-mod newton;
 mod settle;
 mod simulator;
-mod state;
 mod waveform;
 
 pub use assembly::{Drive, Joint, Machine, Spring};
 pub use chain::{Chain, Configuration};
-pub use cycle::{Cycle, CycleError, Integration, TimeSettings};
-pub use joint::{
-    Axis, Channel, ChannelUnit, JointDescription, JointIndex, JointKind, Loading, MovedBody,
-    Settling,
+pub use cycle::{
+    Cycle, CycleError, Integration, Kinematics, MachineState, SolverCounters, TimeSettings,
+    WarmStart,
 };
-pub use mechanism::{CycleQuantity, CycleRow, Mechanism, Region};
+pub use mechanism::{
+    Axis, Channel, ChannelUnit, CycleQuantity, CycleRow, JointDescription, JointIndex, JointKind,
+    Loading, Mechanism, MovedBody, Region, Settling,
+};
 pub use settle::{NotSettled, settle};
 pub use simulator::Simulator;
-pub use state::{Kinematics, MachineState, SolverCounters, WarmStart};
 pub use waveform::{Interpolation, Knot, Waveform, WaveformError, low_passed, without_drift};
