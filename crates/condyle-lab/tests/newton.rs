@@ -67,7 +67,7 @@ fn in_motion(march: &March) -> MachineState {
     let mut state = march.state().activities[0].machine;
     for to in ends(test.time.increments) {
         state = simulator
-            .step(&state, to, &mut |_| ())
+            .step(&state, to)
             .expect("a shipped case is solved");
     }
     MachineState {
@@ -90,12 +90,10 @@ fn near_the_solution_every_residual_is_the_square_of_the_one_before() {
     let mut state = in_motion(&march);
     let (mut worst_per_n, mut pairs) = (0.0_f64, 0);
     for to in ends(time.increments) {
-        let mut lengths_n = Vec::new();
         state = simulator
-            .step(&state, to, &mut |length_n| {
-                lengths_n.push(length_n);
-            })
+            .step(&state, to)
             .expect("it converges to the last digits");
+        let lengths_n = &simulator.residuals_n;
         assert_eq!(simulator.counters.halvings, 0, "at {to}: {lengths_n:?}");
         for pair in lengths_n.windows(2).filter(|pair| pair[0] < NEAR_N) {
             let [before, after] = [pair[0], pair[1]];
@@ -125,7 +123,7 @@ impl Solved {
         for to in ends(simulator.time.increments) {
             let before = simulator.counters;
             state = simulator
-                .step(&state, to, &mut |_| ())
+                .step(&state, to)
                 .expect("a shipped case is solved");
             let counters = simulator.counters;
             let corrections = counters.newton_iterations - before.newton_iterations;

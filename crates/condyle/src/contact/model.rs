@@ -160,6 +160,14 @@ pub struct ContactState {
     pub fields: Vec<StateField>,
 }
 
+impl ContactState {
+    /// Returns the numbers of every field of this name, in order.
+    pub(crate) fn named(&self, name: &str) -> impl Iterator<Item = &Vec<f64>> {
+        let fields = self.fields.iter().filter(move |field| field.name == name);
+        fields.map(|field| &field.values)
+    }
+}
+
 /// A field of a contact's history.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct StateField {

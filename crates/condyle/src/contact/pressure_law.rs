@@ -152,32 +152,25 @@ fn root_of_cube(y: f64) -> (f64, f64) {
 }
 
 /// An error in the points of a pressure table.
+#[expect(missing_docs, reason = "the messages describe the fields")]
 #[derive(Clone, Debug, PartialEq, Error)]
 pub enum PressureTableError {
     /// Fewer than two points.
     #[error("a pressure table needs two points or more, it has {count}")]
-    TooShort {
-        /// Their count.
-        count: usize,
-    },
+    TooShort { count: usize },
     /// The first point is not the origin.
     #[error(
         "a pressure table starts at overclosure 0 mm and pressure 0 MPa, this one at {overclosure_mm} mm and {pressure_mpa} MPa"
     )]
     NotFromZero {
-        /// First overclosure.
         overclosure_mm: f64,
-        /// First pressure.
         pressure_mpa: f64,
     },
     /// A point is not above the one before, or not finite.
     #[error(
         "point {index} of the pressure table does not rise: overclosure and pressure must both grow from point to point"
     )]
-    NotRising {
-        /// The number of the point, from 0.
-        index: usize,
-    },
+    NotRising { index: usize },
 }
 
 /// Pressure against overclosure, linear between points and beyond the last.

@@ -20,7 +20,6 @@ pub struct ComparisonLaw {
     last: Option<CycleByLaw>,
 }
 
-/// Wear per cycle by a law.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 struct CycleByLaw {
     interval: f64,

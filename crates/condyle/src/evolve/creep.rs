@@ -25,7 +25,6 @@ pub struct CreepState {
     deepest_mm: Vec<f64>,
     /// Recoverable depth now, by the predicted pressures, mm.
     foreseen_mm: Vec<f64>,
-    /// Depth of creep, mm.
     depth_mm: Vec<f64>,
 }
 
@@ -243,7 +242,6 @@ pub(super) struct CreepContact {
 struct Pressing {
     /// Number of the instant and side of the femur.
     side: u32,
-    /// Loaded area of the node's share, mm2.
     pressed_mm2: f32,
 }
 

@@ -1,7 +1,5 @@
 //! The reasons why a march does not start, or ends early.
 
-use std::fmt;
-
 use condyle_fem::HexMesh;
 use thiserror::Error;
 
@@ -58,12 +56,14 @@ pub enum MarchError {
     #[error(
         "update {update}: the insert is worn through at ({:.1}, {:.1}) mm{}; use fewer cycles or a thicker insert",
         place_mm.x, place_mm.z,
-        by.map_or_else(String::new, |by| by.to_string())
+        wear_and_creep_mm.map_or_else(String::new, |[wear, creep]| {
+            format!(", by {wear:.2} mm of wear and {creep:.2} mm of creep")
+        })
     )]
     WornThrough {
         update: usize,
         place_mm: Vec3,
-        by: Option<WornAndCrept>,
+        wear_and_creep_mm: Option<[f64; 2]>,
     },
     /// Elements below the worn surface are inverted.
     #[error(
@@ -76,25 +76,6 @@ pub enum MarchError {
         count: usize,
         place_mm: Vec3,
     },
-}
-
-/// The depth of an insert at a place by cause.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct WornAndCrept {
-    /// By wear, mm.
-    pub wear_mm: f64,
-    /// By creep, mm.
-    pub creep_mm: f64,
-}
-
-impl fmt::Display for WornAndCrept {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Self { wear_mm, creep_mm } = self;
-        write!(
-            f,
-            ", by {wear_mm:.2} mm of wear and {creep_mm:.2} mm of creep"
-        )
-    }
 }
 
 impl MarchError {

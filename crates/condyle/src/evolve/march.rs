@@ -10,7 +10,6 @@ use super::{
     comparison_laws::{ComparisonLaw, outside_mm3, sum},
     creep::{CreepContact, CreepStep},
     depth::{lost_mm, total_mm},
-    error::WornAndCrept,
     next_step::next_step,
     placement::place,
     rates::{Rates, SolvedStep, StepStart, WearStep, mean_cycles, volume_mm3, worn},
@@ -31,7 +30,6 @@ pub struct March {
     test: WearTest,
     /// The femur prepared for the shares of the insert.
     femur: FemoralSurface,
-    /// The insert as worn so far.
     insert: Insert,
     /// One per activity.
     chains: Vec<Chain>,
@@ -355,14 +353,17 @@ impl March {
         if let Some(node) = nodes.position(|(depth, thickness)| depth >= thickness) {
             // Wear and creep there, if the insert creeps.
             let (before, at) = (&self.state.depths, |depths_mm: &[f64]| depths_mm[node]);
-            let by = taken.get(1).map(|crept| WornAndCrept {
-                wear_mm: at(before.wear_mm()) + at(&taken[0].depth_mm),
-                creep_mm: before.creep_mm().map_or(0.0, at) + at(&crept.depth_mm),
+            let wear_and_creep_mm = taken.get(1).map(|crept| {
+                let wear_mm = at(before.wear_mm()) + at(&taken[0].depth_mm);
+                [
+                    wear_mm,
+                    before.creep_mm().map_or(0.0, at) + at(&crept.depth_mm),
+                ]
             });
             return Err(MarchError::WornThrough {
                 update,
                 place_mm: surface.positions[node],
-                by,
+                wear_and_creep_mm,
             });
         }
         self.insert.wear_down(surface, &down_mm);

@@ -32,7 +32,7 @@ pub use activity_wear::ActivityWear;
 pub use comparison_laws::ComparisonLaw;
 pub use creep::CreepState;
 pub use depth::{DepthField, DepthFields};
-pub use error::{MarchError, PlacementError, WornAndCrept};
+pub use error::{MarchError, PlacementError};
 pub use march::March;
 pub use rates::{StepRecord, mean_over_volume, weight_of_depth};
 pub use records::{

@@ -12,9 +12,7 @@ use crate::{
 /// The wear per cycle on the present geometry, the mean over all activities by their shares.
 #[derive(Clone, Debug)]
 pub(super) struct Rates {
-    /// Depth at every surface node, mm per cycle.
     pub depth_per_cycle_mm: Vec<f64>,
-    /// Area of every node's share of the surface, mm2.
     pub area_mm2: Vec<f64>,
     /// Relative decrease of the pressure at every node per cycle if the node alone wears.
     pub node_relaxation_per_cycle: Vec<f64>,
@@ -142,17 +140,13 @@ pub(super) struct StepStart<'a> {
     pub last: Option<&'a StepRecord>,
     /// Depth worn so far at every surface node, mm.
     pub worn_mm: &'a [f64],
-    /// Cycles done.
     pub cycles: f64,
-    /// Updates done.
     pub updates: usize,
-    /// Whether the insert creeps as well.
     pub creeps: bool,
 }
 
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct WearStep {
-    /// Cycles.
     pub interval: f64,
     /// Cycles of the test done after it.
     pub cycles_after: f64,

@@ -139,7 +139,6 @@ fn likely_interval(test: &WearTest, state: &MarchState) -> f64 {
 }
 
 impl SolvedCycles {
-    /// Returns whether the bodies touch in any increment.
     pub fn touch(&self) -> bool {
         let mut rows = self.cycles.iter().flat_map(|cycle| &cycle.rows);
         rows.any(|row| row.axial_force_n != 0.0)

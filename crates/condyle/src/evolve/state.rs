@@ -158,7 +158,6 @@ impl MarchState {
         }
     }
 
-    /// Returns the cycles done.
     pub(super) fn cycles(&self) -> f64 {
         self.updates.last().map_or(0.0, |last| last.cycles)
     }

@@ -21,7 +21,6 @@ pub struct ArticulatingSurface {
 }
 
 impl ArticulatingSurface {
-    /// Creates the surface of nodes at `positions` with outward faces around them.
     pub(crate) fn new(positions: Vec<Vec3>, around: &FacesAround) -> Self {
         let (shares, normals) = shares_and_normals(&positions, around);
         Self {

@@ -7,7 +7,6 @@ use crate::Vec3;
 
 /// Distance between the vertical lines that sample a body, mm.
 const LINES_EVERY_MM: f64 = 0.5;
-/// Distance between its sections, mm.
 const SECTIONS_EVERY_MM: f64 = 0.25;
 /// A body that reaches no farther below its dishes counts as an insert, mm: the shape does not distinguish a thin
 /// insert on a thin tray from a thick insert.
@@ -125,7 +124,6 @@ impl<'a> Profile<'a> {
         }
     }
 
-    /// Heights of the sections from the dishes downwards.
     fn heights(&self, lowest_mm: f64) -> impl Iterator<Item = f64> + use<> {
         let dish_mm = self.dish_mm;
         let count = ((dish_mm - lowest_mm) / SECTIONS_EVERY_MM) as usize;

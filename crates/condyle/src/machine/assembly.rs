@@ -222,14 +222,12 @@ impl Spring {
         }
     }
 
-    /// Subtracts the spring's loads from the residual.
     pub(super) fn subtract_force(&self, positions: &[f64; 6], residual: &mut Vec6) {
         let hold = self.hold(positions);
         residual[self.along.place()] -= hold.force;
         residual[self.about.place()] -= hold.force * hold.by_turn;
     }
 
-    /// Subtracts the derivatives of the spring's loads from the tangent.
     pub(super) fn subtract_stiffness(&self, positions: &[f64; 6], tangent: &mut Mat6) {
         let hold = self.hold(positions);
         let (along, about) = (self.along.place(), self.about.place());

@@ -105,13 +105,12 @@ impl Simulator<'_> {
     /// Computes the state a `step` of the cycle later.
     ///
     /// BDF2 is stable however stiff the contact, damps what a step cannot resolve, and its error
-    /// falls with the square of the step. `watch` receives the length of every residual, N.
+    /// falls with the square of the step.
     pub(super) fn implicit_step(
         &mut self,
         from: &MachineState,
         step: f64,
         warm_start: Option<&WarmStart>,
-        watch: &mut dyn FnMut(f64),
     ) -> Result<Stepped, CycleError> {
         let step = BackwardStep::new(self.machine, from, step);
         let (levers, tolerance_n) = (self.machine.levers(), self.time.force_tolerance_n);
@@ -124,7 +123,7 @@ impl Simulator<'_> {
             let balance = Balance::new(self.machine, self.chain, self.contact, kinematics);
             self.counters.contact_evaluations += 1;
             let residual = balance.residual(&loads);
-            watch(levers.length_n(&residual));
+            self.residuals_n.push(levers.length_n(&residual));
             if levers.largest_n(&residual) <= tolerance_n {
                 return Ok(step.ended(kinematics, balance.motion(), &iteration));
             }
@@ -135,7 +134,7 @@ impl Simulator<'_> {
             }
             self.counters.newton_iterations += 1;
             // If the prediction of the residual is good enough, the last evaluation of a step is skipped.
-            if iteration.is_predicted_done() {
+            if may_leave_n.is_some_and(|may_leave_n| iteration.predicted_n <= may_leave_n) {
                 let kinematics = step.kinematics(iteration.positions);
                 let configuration = self.chain.at(&kinematics.positions);
                 let motion = configuration.motion(&kinematics.rates);
@@ -153,7 +152,17 @@ impl Simulator<'_> {
     /// one.
     pub(super) fn is_exact_enough(&self, from: &MachineState, to: &MachineState) -> bool {
         let at_most_mm = self.time.increment_error_mm;
-        at_most_mm == 0.0 || step_error_mm(self.machine, from, to) <= at_most_mm
+        if at_most_mm == 0.0 {
+            return true;
+        }
+        let levers = self.machine.levers();
+        let step_s = to.before.map_or(0.0, |(_, step_s)| step_s);
+        let extrapolated = from.extrapolated(step_s);
+        // Both the step and the extrapolation miss the truth by a multiple of the same h^3 q''', so their
+        // difference, which is known, is in constant proportion to the error of the step, which is not.
+        let surprise_mm = |j: usize| (to.now.positions[j] - extrapolated[j]).abs() * levers.0[j];
+        let surprises_mm = self.machine.loaded().map(surprise_mm);
+        STEP_ERROR_PER_SURPRISE * surprises_mm.fold(0.0, f64::max) <= at_most_mm
     }
 }
 
@@ -161,17 +170,6 @@ impl Simulator<'_> {
 /// acceleration: 2/9 of h^3 and the third derivative against 1/2, since the rates and the
 /// accelerations of the extrapolation are backward differences too.
 const STEP_ERROR_PER_SURPRISE: f64 = 4.0 / 9.0;
-
-/// Estimated error of a step in the positions of the loaded joints, mm; rotations on their lever.
-fn step_error_mm(machine: &Machine, from: &MachineState, to: &MachineState) -> f64 {
-    let levers = machine.levers();
-    let step_s = to.before.map_or(0.0, |(_, step_s)| step_s);
-    let extrapolated = from.extrapolated(step_s);
-    // Both the step and the extrapolation miss the truth by a multiple of the same h^3 q''', so their
-    // difference, which is known, is in constant proportion to the error of the step, which is not.
-    let surprise_mm = |j: usize| (to.now.positions[j] - extrapolated[j]).abs() * levers.0[j];
-    STEP_ERROR_PER_SURPRISE * machine.loaded().map(surprise_mm).fold(0.0, f64::max)
-}
 
 /// Smallest part of a correction that backtracking keeps.
 const MIN_PART_OF_CORRECTION: f64 = 0.1;
@@ -231,12 +229,6 @@ impl NewtonIteration {
             caution: CAUTION,
             tangent: None,
         }
-    }
-
-    /// Returns whether the predicted residual is within the permitted one.
-    fn is_predicted_done(&self) -> bool {
-        self.may_leave_n
-            .is_some_and(|may_leave_n| self.predicted_n <= may_leave_n)
     }
 
     /// Moves to better positions; false if none are found.

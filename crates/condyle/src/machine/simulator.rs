@@ -49,6 +49,8 @@ pub struct Simulator<'a> {
     pub warm_starts: Vec<Option<WarmStart>>,
     /// The history of the cycle that runs; before it, any history whose memory may be reused.
     pub history: CycleHistory,
+    /// Lengths of the residuals of all Newton iterations of the last implicit increment, N, moments on a lever of 10 mm.
+    pub residuals_n: Vec<f64>,
 }
 
 impl<'a> Simulator<'a> {
@@ -67,6 +69,7 @@ impl<'a> Simulator<'a> {
             counters: SolverCounters::default(),
             warm_starts: Vec::new(),
             history: CycleHistory::default(),
+            residuals_n: Vec::new(),
         }
     }
 
@@ -97,7 +100,7 @@ impl<'a> Simulator<'a> {
             self.contact.begin_increment(place);
             let to = (place + 1) as f64 / count as f64;
             let end = match self.time.integration {
-                Integration::Implicit => self.implicit(&state, to, &mut |_| ()),
+                Integration::Implicit => self.implicit(&state, to),
                 Integration::Explicit { least_step_s } => self.explicit(&state, to, least_step_s),
             }?;
             state = end.state;
@@ -156,18 +159,12 @@ impl<'a> Simulator<'a> {
 
     /// Advances the machine by an increment to the phase `to` with the implicit integrator.
     ///
-    /// `watch` receives the length of the residual at every Newton iteration, N, moments on a lever of
-    /// 10 mm. A step that does not converge is halved, and leaves no warm start.
+    /// A step that does not converge is halved, and leaves no warm start.
     ///
     /// # Errors
     /// An increment that does not converge.
-    pub fn step(
-        &mut self,
-        state: &MachineState,
-        to: f64,
-        watch: &mut dyn FnMut(f64),
-    ) -> Result<MachineState, CycleError> {
-        Ok(self.implicit(state, to, watch)?.state)
+    pub fn step(&mut self, state: &MachineState, to: f64) -> Result<MachineState, CycleError> {
+        Ok(self.implicit(state, to)?.state)
     }
 
     /// Returns the largest force out of balance at a state, N; for moments, on a lever of 10 mm.
@@ -178,18 +175,14 @@ impl<'a> Simulator<'a> {
     }
 
     /// Solves an increment with the implicit integrator, with its warm start from the last cycle.
-    fn implicit(
-        &mut self,
-        state: &MachineState,
-        to: f64,
-        watch: &mut dyn FnMut(f64),
-    ) -> Result<Stepped, CycleError> {
+    fn implicit(&mut self, state: &MachineState, to: f64) -> Result<Stepped, CycleError> {
+        self.residuals_n.clear();
         let count = self.time.increments;
         self.warm_starts.resize(count, None);
         // Rounded: `to` is a multiple of the increment up to rounding.
         let place = (to * count as f64).round() as usize % count;
         let last = self.warm_starts[place];
-        let end = self.advance(state, to, last, MAX_HALVINGS, watch)?;
+        let end = self.advance(state, to, last, MAX_HALVINGS)?;
         self.warm_starts[place] = end.warm_start;
         Ok(end)
     }
@@ -202,9 +195,8 @@ impl<'a> Simulator<'a> {
         to: f64,
         warm_start: Option<WarmStart>,
         halvings: u32,
-        watch: &mut dyn FnMut(f64),
     ) -> Result<Stepped, CycleError> {
-        match self.settled_step(state, to - state.phase, warm_start, watch) {
+        match self.settled_step(state, to - state.phase, warm_start) {
             Ok(mut next) if halvings == 0 || self.is_exact_enough(state, &next.state) => {
                 self.contact.accept(&next.motion);
                 // Exactly `to`, which the sum of phase and step may miss by rounding.
@@ -217,8 +209,8 @@ impl<'a> Simulator<'a> {
                 self.contact.reject();
                 self.counters.halvings += 1;
                 let half = (state.phase + to) / 2.0;
-                let middle = self.advance(state, half, None, halvings - 1, watch)?;
-                let end = self.advance(&middle.state, to, None, halvings - 1, watch)?;
+                let middle = self.advance(state, half, None, halvings - 1)?;
+                let end = self.advance(&middle.state, to, None, halvings - 1)?;
                 Ok(Stepped {
                     warm_start: None,
                     ..end
@@ -233,10 +225,9 @@ impl<'a> Simulator<'a> {
         from: &MachineState,
         step: f64,
         mut warm_start: Option<WarmStart>,
-        watch: &mut dyn FnMut(f64),
     ) -> Result<Stepped, CycleError> {
         for _ in 0..MAX_TURNS {
-            let ended = self.implicit_step(from, step, warm_start.as_ref(), watch)?;
+            let ended = self.implicit_step(from, step, warm_start.as_ref())?;
             let settled = self.contact.settle(&ended.motion);
             let not_borne = |why| CycleError::not_borne(ended.state.phase, why);
             if settled.map_err(not_borne)? == Settled::Yes {

@@ -12,6 +12,7 @@ use std::{
     ops::{Add, AddAssign, Div, DivAssign, Mul, MulAssign, Neg, Sub, SubAssign},
 };
 
+use nalgebra::{ClosedAddAssign, ClosedDivAssign, ClosedMulAssign, ClosedSubAssign};
 use num_traits::{One, Zero};
 use wide::{f32x8, f64x4};
 
@@ -26,28 +27,21 @@ pub trait Number:
     + 'static
     + Zero
     + One
-    + Add<Output = Self>
-    + Sub<Output = Self>
-    + Mul<Output = Self>
-    + Div<Output = Self>
     + Neg<Output = Self>
-    + AddAssign
-    + SubAssign
-    + MulAssign
-    + DivAssign
+    + ClosedAddAssign
+    + ClosedSubAssign
+    + ClosedMulAssign
+    + ClosedDivAssign
 {
     /// Creates a number with the same value in every lane.
     fn splat(value: f64) -> Self;
-    /// The number of lanes.
     const COUNT: usize;
     /// Returns a number from its lanes.
     fn from_lanes(value: impl FnMut(usize) -> f64) -> Self;
     /// Returns the value in one lane.
     fn lane(self, lane: usize) -> f64;
 
-    /// Square root.
     fn sqrt(self) -> Self;
-    /// Magnitude.
     fn abs(self) -> Self;
     /// Returns the largest integer that is not larger than `self`.
     fn floor(self) -> Self;
@@ -55,9 +49,7 @@ pub trait Number:
     fn mul_add(self, factor: Self, addend: Self) -> Self;
     /// `self` times `factor` less `subtrahend`, rounded once.
     fn mul_sub(self, factor: Self, subtrahend: Self) -> Self;
-    /// Returns the larger of two.
     fn max(self, other: Self) -> Self;
-    /// Returns the smaller of two.
     #[inline(always)]
     fn min(self, other: Self) -> Self {
         -(-self).max(-other)

@@ -56,7 +56,6 @@ pub(crate) struct Quadratic {
     slope: [f64; 2],
     /// xx, xy, yy.
     bend: [f64; 3],
-    /// Edges of the share.
     edges: [[f64; 2]; 2],
     /// Mean square of the place along the share, for the mean over it.
     moment: f64,

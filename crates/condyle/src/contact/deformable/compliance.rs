@@ -320,7 +320,6 @@ impl UnitLoads {
         }
     }
 
-    /// Returns the results of another run that were not needed yet.
     pub fn known(&self) -> MutexGuard<'_, KnownCompliance> {
         self.known.lock().unwrap_or_else(PoisonError::into_inner)
     }

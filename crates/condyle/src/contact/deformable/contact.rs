@@ -56,7 +56,6 @@ pub(crate) struct DeformableContact<'a> {
     /// The loads of the last response, and the parts of the state that depend on the load history.
     node_loads: Vec<NodeLoad>,
     histories: Vec<Box<dyn LoadHistory + 'a>>,
-    /// The present increment of the cycle.
     increment: usize,
 }
 

@@ -22,7 +22,6 @@ const STEPS_LESS: f64 = 0.77;
 /// A fit is rejected if it misses the square of the pressure at its node by more than this part.
 const MAX_MISSED: f64 = 0.1;
 
-/// The pressures at the nodes of a surface.
 pub(crate) struct NodePressures<'a> {
     surface: &'a ArticulatingSurface,
     faces: &'a FacesAround,

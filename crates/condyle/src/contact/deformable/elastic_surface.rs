@@ -36,12 +36,11 @@ const FELT_PER_ROOT: f64 = 6.0;
 /// The stiffness is factored once. Everything else is computed when it is first needed, and kept.
 pub(crate) struct ElasticSurface {
     pub solid: Arc<ElasticSolid>,
-    /// Mesh nodes of the surface.
     nodes: Vec<u32>,
     /// The surface's own directions at its nodes, anterior and lateral.
     tangents: Vec<[Vec3; 2]>,
     /// Unit loads along the inward normals, and the compliance between them.
-    loads: Arc<UnitLoads>,
+    pub loads: Arc<UnitLoads>,
     pub normal: Arc<Compliance>,
     known_at_first: AtomicUsize,
     /// The compliance along the surface, if nodes stick and slip.
@@ -146,19 +145,12 @@ impl ElasticSurface {
         made
     }
 
-    /// Returns the displacements of the nodes of a tile along their inward normals by each number of the backside's motion:
-    /// a row for each node.
-    pub fn by_tray<'a>(&self, tray: &'a Tray, tile: usize) -> &'a [f64] {
-        tray.of_tile(&self.loads, tile)
-    }
-
     /// Returns the forces at the points of the backside by loads along the inward normals of nodes, N.
     pub fn forces_on_tray(&self, tray: &Tray, loads: &[NodeLoad]) -> DVector<f64> {
         let mut forces_n = DVector::zeros(tray.freedoms());
         for (tile, loads) in self.by_tile(loads) {
-            let rows = self
-                .by_tray(tray, tile as usize)
-                .chunks_exact(tray.freedoms());
+            let rows = tray.of_tile(&self.loads, tile as usize);
+            let rows = rows.chunks_exact(tray.freedoms());
             for (row, load_n) in rows.zip(loads).filter(|(_, load_n)| *load_n != 0.0) {
                 for (force_n, by) in forces_n.iter_mut().zip(row) {
                     *force_n += load_n * by;

@@ -66,9 +66,8 @@ impl<'a> ElasticFriction<'a> {
         compliance: Arc<Compliance>,
     ) -> Self {
         let nodes = surface.positions.len();
-        let fields = state.fields.iter();
-        let fields = fields.filter(|field| field.name == FRICTION_FIELD);
-        let left = fields.map(|field| Held::from_values(&field.values).unwrap_or_default());
+        let left = state.named(FRICTION_FIELD);
+        let left = left.map(|values| Held::from_values(values).unwrap_or_default());
         let activities = ByActivity::new(left.collect());
         let start = activities.start_of(0);
         let mut friction = Self {

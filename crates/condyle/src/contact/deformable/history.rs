@@ -24,13 +24,9 @@ pub(crate) const SETTLED_MM: f64 = 1e-5;
 /// A part of the insert's state that depends on the load history: plastic strain, friction that sticks, the position of
 /// a backside that rests.
 ///
-/// A history has a committed state and a trial state. An increment is solved with the trial state; [`settle`] updates
-/// that under the loads found, until loads and state agree, and [`accept`] commits it. The next contact resumes from
-/// [`into_fields`].
-///
-/// [`settle`]: Self::settle
-/// [`accept`]: Self::accept
-/// [`into_fields`]: Self::into_fields
+/// A history has a committed state and a trial state. An increment is solved with the trial state; `settle` updates
+/// that under the loads found, until loads and state agree, and `accept` commits it. The next contact resumes from
+/// `into_fields`.
 pub(crate) trait LoadHistory {
     /// Begins the cycle of the next activity.
     fn begin_cycle(&mut self);

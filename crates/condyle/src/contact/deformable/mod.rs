@@ -238,8 +238,7 @@ impl Deformable {
         insert: &Insert,
         state: &ContactState,
     ) -> (Arc<ElasticSurface>, Option<Vec<f64>>) {
-        let stored = state.fields.iter().find(|field| field.name == NODES_FIELD);
-        let stored = stored.map(|field| field.values.clone());
+        let stored = state.named(NODES_FIELD).next().cloned();
         let used = match &stored {
             Some(numbers) => numbers
                 .chunks_exact(3)

@@ -61,7 +61,6 @@ pub(crate) struct FrictionNode {
     pub load_n: Pair,
 }
 
-/// A node in the search.
 #[derive(Clone, Copy)]
 struct Searched {
     own: FrictionNode,
@@ -84,7 +83,6 @@ impl Searched {
         within(self.unlimited_n(), self.own.limit_n)
     }
 
-    /// Returns the change to the improved load, N.
     fn change_n(&self) -> Pair {
         let better_n = self.better_n();
         [0, 1].map(|k| better_n[k] - self.own.load_n[k])
@@ -128,7 +126,6 @@ impl StickSlip {
         length(self.load_n(place)) < AT_LIMIT * self.nodes[place].own.limit_n
     }
 
-    /// Returns the displacement of a node along the surface by the loads, mm.
     pub fn moved_mm(&self, place: usize) -> Pair {
         self.nodes[place].moved_mm()
     }

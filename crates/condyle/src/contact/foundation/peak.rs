@@ -51,7 +51,6 @@ impl PeakSearch<'_> {
         self.bodies.insert.faces_around()
     }
 
-    /// Returns the highest pressure at or around the nodes in contact, MPa; any region may have it.
     pub fn highest_mpa(&self, touched: &[TouchedNode]) -> f64 {
         let pressure_mpa = |measure: f64| self.law.pressure(measure.max(0.0), 1.0).0;
         highest_mpa(touched, |node, so_far_mpa| {

@@ -44,7 +44,6 @@ pub enum InsertError {
 
 /// An insert before any wear: connectivity, positions and thickness.
 pub(super) struct UnwornInsert {
-    /// Positions of all mesh nodes, mm.
     pub nodes: Vec<Vec3>,
     /// Quads around the mesh, facing out.
     pub boundary: Vec<[u32; 4]>,
@@ -56,9 +55,7 @@ pub(super) struct UnwornInsert {
     pub faces: Vec<[u32; 4]>,
     pub faces_around: FacesAround,
     pub node_blocks: Vec<NodeBlock>,
-    /// Area of each surface node's share, mm2.
     pub share_mm2: Vec<f64>,
-    /// Thickness below each surface node, mm.
     pub thickness_mm: Vec<f64>,
     /// Unit direction of the side wall below each surface node on the rim, upwards.
     pub walls: Vec<Option<Vec3>>,
@@ -66,7 +63,6 @@ pub(super) struct UnwornInsert {
 }
 
 impl UnwornInsert {
-    /// See [`Insert::new`](super::Insert::new).
     pub fn new(
         mesh: &HexMesh,
         articulating: &[[u32; 4]],
@@ -106,7 +102,6 @@ impl UnwornInsert {
         })
     }
 
-    /// Returns the positions of the surface's nodes, mm.
     pub fn surface_positions(&self) -> impl Iterator<Item = Vec3> {
         let nodes = self.surface_nodes.iter();
         nodes.map(|&node| self.nodes[node as usize])

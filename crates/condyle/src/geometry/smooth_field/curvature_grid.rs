@@ -89,7 +89,6 @@ fn rounded_up(value: f64) -> f32 {
 }
 
 impl CurvatureGrid {
-    /// Creates the bounds of a field.
     pub fn new(gap: &GapSpline) -> Self {
         let margin_mm = HALF_DIAGONAL * SPACING_MM;
         let near = NEAR_MM.start - margin_mm..NEAR_MM.end + margin_mm;

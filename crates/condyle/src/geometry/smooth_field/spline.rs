@@ -57,13 +57,11 @@ impl GapSpline {
         corners.map(move |corner| corner as usize + sx + sy + sz)
     }
 
-    /// Returns the gap at a point, mm.
     #[inline(always)]
     pub fn gap_mm<T: Number>(&self, point: &Vector<T>) -> T {
         self.derivatives(point).value
     }
 
-    /// Gap, normal and curvature at a point.
     #[inline(always)]
     pub fn sample<T: Number>(&self, point: &Vector<T>) -> SurfaceSample<T> {
         sample_from(&self.derivatives(point))

@@ -106,7 +106,7 @@ impl RestingInsert {
             return set_mm;
         }
         let tile = self.surface.normal.tile_of(node) as usize;
-        let rows = self.surface.by_tray(&self.tray, tile);
+        let rows = self.tray.of_tile(&self.surface.loads, tile);
         let rows = rows.chunks_exact(self.tried_mm.len());
         for (&node, row) in self.surface.nodes_of_tile(tile).iter().zip(rows) {
             let products = row.iter().zip(&self.tried_mm).map(|(a, b)| a * b);
@@ -267,9 +267,7 @@ impl LoadHistory for RestingInsert {
 
 /// Reads the positions in which activities left the backside from a contact's state.
 fn stored_positions(state: &ContactState) -> ByActivity<Vec<f64>> {
-    let fields = state.fields.iter();
-    let fields = fields.filter(|field| field.name == MOVED_FIELD);
-    ByActivity::new(fields.map(|field| field.values.clone()).collect())
+    ByActivity::new(state.named(MOVED_FIELD).cloned().collect())
 }
 
 /// Returns the position of the points of a tray: as stored, or on the tray as made if that is of other points or of none.
@@ -287,9 +285,8 @@ pub(crate) fn stored(
     activity: usize,
     tray: &Tray,
 ) -> (Vec<f64>, BacksideAtRest) {
-    let mut fields = state.fields.iter();
-    let cycle = fields.find(|field| field.name == CYCLE_FIELD);
-    let cycle = cycle.and_then(|field| field.values.first_chunk());
+    let cycle = state.named(CYCLE_FIELD).next();
+    let cycle = cycle.and_then(|values| values.first_chunk());
     let left_mm = of_points(stored_positions(state).start_of(activity), tray);
     (
         left_mm,

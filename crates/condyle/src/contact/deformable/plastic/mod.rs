@@ -576,8 +576,8 @@ impl<P: MaterialPoint> StoredPlasticity<P> {
     /// Reads the field of a contact's state; empty if there is none.
     fn from_stored(state: &ContactState) -> Self {
         let (mut points, mut flow_in_cycle) = (Points::new(), BTreeMap::new());
-        let field = state.fields.iter().find(|field| field.name == P::FIELD);
-        let values = field.map_or(&[][..], |field| &field.values);
+        let values = state.named(P::FIELD).next();
+        let values = values.map_or(&[][..], |values| values);
         for numbers in values.chunks_exact(2 + POINTS * P::NUMBERS) {
             let element = numbers[0] as u32;
             let point = |p: usize| P::from_numbers(&numbers[2 + p * P::NUMBERS..][..P::NUMBERS]);
