@@ -166,11 +166,12 @@ impl<Of: Body, In: Body> Twist<Of, In> {
     }
 
     /// Returns the finite motion along a screw by `position`, rad or mm: its exponential.
-    pub fn exponential(&self, position: f64) -> Pose<Of, Of> {
+    pub(crate) fn exponential(&self, position: f64) -> Pose<Of, Of> {
         // A screw without rotation has no centre.
         if self.angular == Vec3::zeros() {
             return Pose::new(Mat3::identity(), self.linear * position);
         }
+        // The axis passes through w x v, since a screw of a joint has a unit direction and no pitch.
         let rotation = nalgebra::Rotation3::new(self.angular * position).into_inner();
         let centre = self.angular.cross(&self.linear);
         Pose::new(rotation, centre - rotation * centre)
@@ -241,7 +242,7 @@ impl<On: Body, In: Body> Wrench<On, In> {
     /// the derivative of the load on a joint by the position of the joint that carries it.
     ///
     /// W . \[a, b\] = (m x a_w + f x a_v) . b_w + (f x a_w) . b_v.
-    pub fn on_bracket_with(&self, carrying: &Twist<On, In>) -> Self {
+    pub(crate) fn on_bracket_with(&self, carrying: &Twist<On, In>) -> Self {
         let (m, f) = (&self.moment, &self.force);
         let (turn, shift) = (&carrying.angular, &carrying.linear);
         Self::new(m.cross(turn) + f.cross(shift), f.cross(turn))
@@ -342,6 +343,7 @@ impl FrameChange {
         let mut matrix = Mat6::zeros();
         matrix.fixed_view_mut::<3, 3>(0, 0).copy_from(&turn);
         matrix.fixed_view_mut::<3, 3>(3, 3).copy_from(&turn);
+        // Moving the origin by t adds w x t to the linear part: -[t]x w, seen from the femur.
         let lever = -turn * pose.translation.cross_matrix();
         matrix.fixed_view_mut::<3, 3>(3, 0).copy_from(&lever);
         Self { matrix }

@@ -132,9 +132,9 @@ fn a_contact_goes_on_from_where_the_one_before_left_the_backside() {
         assert!((down_n / whole_n - 1.0).abs() < 1e-4, "{down_n} {whole_n}");
     }
     // One that has forgotten it slips another way.
-    let mut anew = pair.contact(ContactState::default());
-    anew.begin_cycle();
-    let down_n = go(anew.as_mut(), path[2]);
+    let mut fresh = pair.contact(ContactState::default());
+    fresh.begin_cycle();
+    let down_n = go(fresh.as_mut(), path[2]);
     assert!(
         (down_n / whole_n[2] - 1.0).abs() > 3e-4,
         "{down_n} {whole_n:?}"

@@ -328,7 +328,7 @@ fn ripple(femur: &FemoralSurface, insert: &Insert) -> f64 {
     let pair = Pair::new(femur, insert);
     let mut contact = pair.contact(&law);
     let shape = GenericInsertShape::default();
-    // The force changes as the dish does; what is left beside a smooth curve is ripple.
+    // The force changes as the dish does; the rest besides a smooth curve is ripple.
     let forces: Vec<f64> = (0..400)
         .map(|i| {
             let x = -4.0 + 0.02 * f64::from(i);

@@ -310,7 +310,7 @@ fn on_a_layer(radius_mm: f64) -> Pair {
 #[test]
 fn verify_a_ball_on_bonded_layers_from_thick_to_thin() {
     let radius_mm = 121.0;
-    // As wide as what bulges beside the contact: at 40 mm a layer of 9 mm is 2 % too soft.
+    // As wide as the bulge around the contact: at 40 mm a layer of 9 mm is 2 % too soft.
     let layers = [(9.0, 72.0, 1.5, 6), (3.0, 36.0, 0.75, 4)];
     for (thickness_mm, wide_mm, edge_mm, layers) in layers {
         let layer = flat_insert(
@@ -536,7 +536,7 @@ fn what_another_run_found_is_taken_to_the_bit() {
     assert_eq!(force_n(&second, 0.4), deep_n);
     let more = second.known_compliance(&pair.insert, 0).unwrap();
     assert!(more.pairs() > known.pairs());
-    // A stiffer insert that is told of this one believes it: nothing is computed twice.
+    // A stiffer insert uses the known compliance of this one: nothing is computed twice.
     let elastic = Elastic::new(2.0 * MODULUS_MPA, POISSON).unwrap();
     let stiff = Deformable::new(elastic, 0.07, 1.0, Backside::Bonded, &pair.insert).unwrap();
     stiff.know(&pair.insert, more).unwrap();

@@ -202,14 +202,14 @@ fn tests_that_run_side_by_side_give_what_they_give_alone() {
         test
     };
     let alone = [1.0, 2.0].map(|factor| mass_mg(&marched(scaled(factor))));
-    let beside = std::thread::scope(|scope| {
+    let together = std::thread::scope(|scope| {
         let runs = [1.0, 2.0].map(|factor| {
             let test = scaled(factor);
             scope.spawn(move || mass_mg(&marched(test)))
         });
-        runs.map(|run| run.join().expect("a run beside another"))
+        runs.map(|run| run.join().expect("two runs at once"))
     });
-    assert_eq!(alone, beside);
+    assert_eq!(alone, together);
 }
 
 #[test]
@@ -245,12 +245,12 @@ fn every_law() -> Vec<NamedLaw> {
 #[test]
 fn laws_beside_move_no_surface_and_the_same_law_wears_the_same() {
     let alone = marched(test());
-    let beside = marched(WearTest {
+    let together = marched(WearTest {
         comparison_laws: every_law(),
         ..test()
     });
-    assert!(alone.mesh_nodes == beside.mesh_nodes && alone.updates == beside.updates);
-    let laws = &beside.comparison_laws;
+    assert!(alone.mesh_nodes == together.mesh_nodes && alone.updates == together.updates);
+    let laws = &together.comparison_laws;
     assert_eq!(laws.len(), WEAR_LAWS.len());
     let volume_mm3 = alone.updates[3].volume_loss_mm3;
     let ratio = laws[0].volume_mm3 / volume_mm3;
@@ -417,7 +417,7 @@ fn verify_pressures_of_the_last_cycle_carry_its_load_under_its_pose() {
     let cycle = march.last_cycle().expect("one is solved");
     for (increment, row) in cycle.rows.iter().enumerate() {
         let pressures_mpa = cycle.pressures_mpa(increment);
-        // Pressure acts along the ball's normal, which leans where the plate is beside its middle.
+        // Pressure acts along the ball's normal, which leans away from the middle of the plate.
         let centre = cycle.pose(increment).translation;
         let down = |node: usize| -(cycle.surface.positions[node] - centre).normalize().y;
         let shares = cycle.surface.shares.iter().zip(&pressures_mpa).enumerate();

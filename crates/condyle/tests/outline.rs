@@ -113,7 +113,7 @@ fn turn(degrees: f64) -> Mat3 {
     Rotation3::new(Vec3::y() * degrees.to_radians()).into_inner()
 }
 
-/// A body turned about the vertical, with a chip beside it that shifts where the grid begins, and is too
+/// A body turned about the vertical, with a chip next to it that shifts where the grid begins, and is too
 /// small to be part of the outline.
 fn insert(body: &Body, degrees: f64, shift_mm: f64) -> Insert {
     let mut shell = body.shell().mapped(|vertex| turn(degrees) * vertex);

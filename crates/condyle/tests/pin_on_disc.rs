@@ -201,7 +201,7 @@ fn cycle(machine: &Machine, place_mm: Vec3, time: &TimeSettings) -> Result<Cycle
     start.now.positions[PRESS.place()] = -LOAD_N / STIFFNESS_N_PER_MM;
     let mut watch = |_| ControlFlow::Continue(());
     let solved = simulator.cycle(&start, &mut watch)?;
-    Ok(solved.continue_value().expect("nobody stops it"))
+    Ok(solved.continue_value().expect("no watch stops it"))
 }
 
 /// Work of friction over a cycle, N mm, from what the disc went through.
@@ -268,7 +268,7 @@ fn explicit_steps_do_the_same_work_and_are_all_accepted() {
     let steps = simulator.counters.explicit_steps;
     let cycle = solved.expect("a solved cycle").continue_value();
     let exact_nmm = FRICTION * LOAD_N * TAU * RADIUS_MM;
-    let work_nmm = work_nmm(&cycle.expect("nobody stops it"));
+    let work_nmm = work_nmm(&cycle.expect("no watch stops it"));
     assert!((work_nmm / exact_nmm - 1.0).abs() < 1e-6);
     assert_eq!(tip.accepted as u64, steps);
 }

@@ -156,7 +156,7 @@ fn verify_stress_under_a_ball_against_hertz() {
     }
 }
 
-/// What the state says of elements that have yielded; nothing where none has.
+/// Returns the state of the elements that have yielded; empty if none has.
 fn plastic_strains(state: &ContactState) -> Vec<f64> {
     let mut fields = state.fields.iter();
     let field = fields.find(|field| field.name.starts_with("plastic_strain"));

@@ -62,11 +62,15 @@ impl Recognition {
 
     /// Returns the orientations that fit best and cannot be distinguished, best first.
     pub fn best(&self) -> impl Iterator<Item = Orientation> {
+        self.within(LIKELY_MARGIN)
+    }
+
+    /// Returns the orientations whose scores are less than `margin` below the best, best first.
+    fn within(&self, margin: f64) -> impl Iterator<Item = Orientation> {
         let highest = self.scores[0].1;
-        let is_close = move |(_, score): &&(Orientation, f64)| highest - score < LIKELY_MARGIN;
-        self.scores
-            .iter()
-            .take_while(is_close)
+        let scores = self.scores.iter();
+        scores
+            .take_while(move |(_, score)| highest - score < margin)
             .map(|(orientation, _)| *orientation)
     }
 
@@ -88,18 +92,16 @@ impl Recognition {
     pub fn nearest(&self) -> Orientation {
         // The trace of a rotation is 1 + 2 cos(angle).
         let least_turn = |orientation: &Orientation| orientation.rotation().trace();
-        let highest = self.scores[0].1;
-        let is_equal = |(_, score): &&(Orientation, f64)| highest - score < EQUAL_MARGIN;
-        let equal = self.scores.iter().take_while(is_equal);
-        let best = equal.map(|(orientation, _)| *orientation);
-        best.reduce(|a, b| {
-            if least_turn(&b) > least_turn(&a) {
-                b
-            } else {
-                a
-            }
-        })
-        .unwrap_or(Orientation::ISB)
+        let equal = self.within(EQUAL_MARGIN);
+        equal
+            .reduce(|a, b| {
+                if least_turn(&b) > least_turn(&a) {
+                    b
+                } else {
+                    a
+                }
+            })
+            .unwrap_or(Orientation::ISB)
     }
 
     /// Returns the certainty that all but the best are wrong; none if another may be right.

@@ -10,12 +10,8 @@ const LEVEL: f64 = 0.05;
 
 /// Returns the score of an orientation of a femoral component, and whether it shows the signs of every whole
 /// component; if not, the score is meaningless. Lengths are shares of the longest extent.
-pub(super) fn fit_femur(views: &Views, orientation: &Orientation) -> (f64, bool) {
-    let Orientation {
-        anterior,
-        superior,
-        right,
-    } = *orientation;
+pub(super) fn fit_femur(views: &Views, of: &Orientation) -> (f64, bool) {
+    let (anterior, superior, right) = (of.anterior, of.superior, of.right);
     let below = views.picture(superior.reversed(), anterior, right);
     let front = views.picture(anterior, superior, right);
     let behind = views.picture(anterior.reversed(), superior, right);
@@ -125,12 +121,8 @@ fn curl_behind(below: &Picture) -> f64 {
 
 /// Returns the score of an orientation of an insert, and whether it shows the signs of every insert of a whole knee; if
 /// not, the score is meaningless. Each sign counts up to a limit. Lengths are shares of the longest extent.
-pub(super) fn fit_insert(views: &Views, orientation: &Orientation) -> (f64, bool) {
-    let Orientation {
-        anterior,
-        superior,
-        right,
-    } = *orientation;
+pub(super) fn fit_insert(views: &Views, of: &Orientation) -> (f64, bool) {
+    let (anterior, superior, right) = (of.anterior, of.superior, of.right);
     let above = views.picture(superior, anterior, right);
     let below = views.picture(superior.reversed(), anterior, right);
     let (length, width, height) = (
@@ -228,6 +220,7 @@ pub fn flange_lead_mm(femur: &TriangleMesh) -> Option<f64> {
         of_side[1] = of_side[1].max(vertex.y - below.at(vertex.z));
     }
     let [left, right] = reach.map(|[ahead, up]| ahead + up);
+    // A mesh on one side of the middle only has infinite or undefined reaches, which are rejected.
     let lead = right - left;
     (lead.is_finite() && lead.abs() > MIN_LEAD * (high - low).max()).then_some(lead)
 }

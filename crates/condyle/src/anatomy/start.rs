@@ -20,11 +20,8 @@ pub fn start_over_the_dishes_mm(
     let (sine, cosine) = flexion_rad.sin_cos();
     let flexion = Mat3::new(cosine, -sine, 0.0, sine, cosine, 0.0, 0.0, 0.0, 1.0);
     let femur = femur.clone().mapped(|vertex| flexion * vertex);
-    let Orientation {
-        anterior,
-        superior,
-        right,
-    } = Orientation::ISB;
+    let isb = Orientation::ISB;
+    let (anterior, superior, right) = (isb.anterior, isb.superior, isb.right);
     let (femur_views, insert_views) = (Views::new(&femur)?, Views::new(insert)?);
     let condyles = femur_views.picture(superior.reversed(), anterior, right);
     let dishes = insert_views.picture(superior, anterior, right);

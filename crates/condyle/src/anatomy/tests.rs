@@ -23,7 +23,7 @@ fn boundary(insert: &Insert) -> TriangleMesh {
     TriangleMesh::of_quads(mesh.nodes.clone(), mesh.boundary_quads())
 }
 
-/// The shape as a file has it whose axes point as `orientation` says.
+/// Returns the shape as a file with axes of this `orientation` stores it.
 fn turned(mesh: &TriangleMesh, orientation: &Orientation) -> TriangleMesh {
     let back = orientation.rotation().transpose();
     mesh.clone().mapped(|vertex| back * vertex)

@@ -7,7 +7,7 @@ use crate::{Mat3, Vec3, geometry::TriangleMesh};
 pub(super) struct AxisDirection {
     /// 0 for x, 1 for y, 2 for z.
     pub axis: usize,
-    /// Whether the direction points along the axis rather than against it.
+    /// True if the direction points along the axis rather than against it.
     pub is_forward: bool,
 }
 
@@ -112,6 +112,7 @@ impl Views {
         if !(size.is_finite() && size > 0.0) {
             return None;
         }
+        // At least one cell: a flat body still has a view along its thin side.
         let extent = (high - low) / size;
         let cells = [0, 1, 2].map(|axis| (extent[axis] * CELLS).ceil().max(1.0) as usize);
         let spans = [0, 1, 2].map(|axis| vec![None; cells[(axis + 1) % 3] * cells[(axis + 2) % 3]]);

@@ -128,6 +128,7 @@ impl CycleHistory {
         for i in 0..=node_count {
             first[i + 1] += first[i];
         }
+        // All records counted: the last entry is their number.
         sorted.resize(first[node_count + 1], 0);
         for (number, record) in records() {
             let node = record.node as usize;
@@ -194,24 +195,24 @@ impl SlipWork {
     }
 
     /// Adds a part of another.
-    pub fn add_part(&mut self, part: f64, other: &Self) {
+    pub(crate) fn add_part(&mut self, part: f64, other: &Self) {
         self.anterior += part * other.anterior;
         self.mixed += part * other.mixed;
         self.lateral += part * other.lateral;
     }
 
     /// Returns the sum over all directions, sum of p |ds|, MPa mm.
-    pub fn total_mpa_mm(&self) -> f64 {
+    pub(crate) fn total_mpa_mm(&self) -> f64 {
         self.anterior + self.lateral
     }
 
     /// Returns the part along the principal direction, MPa mm.
-    pub fn along_mpa_mm(&self) -> f64 {
+    pub(crate) fn along_mpa_mm(&self) -> f64 {
         self.total_mpa_mm() - self.across_mpa_mm()
     }
 
     /// Returns the part across the principal direction, MPa mm.
-    pub fn across_mpa_mm(&self) -> f64 {
+    pub(crate) fn across_mpa_mm(&self) -> f64 {
         (0.5 * self.total_mpa_mm() - self.half_difference()).max(0.0)
     }
 

@@ -210,7 +210,7 @@ pub enum Regime {
 
 impl Regime {
     /// Returns the regime of a place that has yielded, from the plastic strain that accumulates in a cycle.
-    pub fn from_flow(plastic_strain: f64) -> Self {
+    pub(crate) fn from_flow(plastic_strain: f64) -> Self {
         if plastic_strain > SHAKEN_DOWN {
             Self::Ratcheting
         } else {

@@ -79,6 +79,7 @@ impl PressureLaw {
     pub fn pressures<T: Number>(&self, overclosure_mm: T, per_thickness: T) -> (T, T) {
         if let Self::Linear { modulus_mpa } = self {
             let stiffness = T::splat(*modulus_mpa) * per_thickness;
+            // The linear law stays in lanes; the others need functions that exist for single numbers only.
             return (stiffness * overclosure_mm, stiffness);
         }
         let at = |lane| self.pressure(overclosure_mm.lane(lane), 1.0 / per_thickness.lane(lane));

@@ -55,6 +55,7 @@ fn alone_mm3(
     interval: &SolvedStep<'_>,
     (share, history): SharedCycle<'_>,
 ) -> f64 {
+    // A share of 1: the law sees the cross-shear of this activity alone.
     let worn = worn(law, &mean_cycles(&[(1.0, history)], interval.surface));
     let depth_mm: Vec<f64> = worn.iter().map(|worn| worn.depth_mm).collect();
     let area_mm2 = &interval.rates.area_mm2;

@@ -170,12 +170,6 @@ impl Node {
         law.depth_mm(self.by_history_mm, self.deepest_mm) - self.before_mm
     }
 
-    /// Returns the depth of the step at constant pressure, mm.
-    fn unrelieved_mm(&self, law: &LeePienkowski) -> f64 {
-        let recoverable_mm = self.by_history_mm + self.mm_per_mpa * self.pressure_mpa;
-        law.depth_mm(recoverable_mm, self.deepest_mm) - self.before_mm
-    }
-
     /// Recoverable depth after a step of `down_mm`, mm: the inverse of the law's depth.
     fn recoverable_mm(&self, law: &LeePienkowski, down_mm: f64) -> f64 {
         let depth_mm = self.before_mm + down_mm;
@@ -195,8 +189,11 @@ fn implicit(step: &CreepStep<'_>, nodes: &[Node]) -> Vec<f64> {
     };
     let mut down_mm = vec![0.0; step.thickness_mm.len()];
     let mut lost_n = vec![0.0; contact.sides.len()];
+    // The search starts from the creep at constant pressure.
     for node in nodes {
-        add_lost_n(node, node.unrelieved_mm(step.law), &mut lost_n);
+        let recoverable_mm = node.by_history_mm + node.mm_per_mpa * node.pressure_mpa;
+        let depth_mm = step.law.depth_mm(recoverable_mm, node.deepest_mm);
+        add_lost_n(node, depth_mm - node.before_mm, &mut lost_n);
     }
     let mut sunk_mm = contact.sunk_mm(&lost_n);
     // The map from sunk to sunk contracts slowly where the compliance is large; mixing accelerates it.

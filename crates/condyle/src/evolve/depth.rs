@@ -7,7 +7,7 @@ use serde::{Deserialize, Serialize};
 pub struct DepthField {
     /// Name of the cause, such as `wear`.
     pub name: String,
-    /// Whether the material is lost, as by wear, or only displaced.
+    /// True if the material is lost, as by wear, and false if it is only displaced.
     pub loses_mass: bool,
     /// Depth at every surface node along the inward normal, mm.
     pub depth_mm: Vec<f64>,

@@ -86,6 +86,7 @@ pub(super) fn fixed_interval(all_cycles: f64, updates: usize, done: usize, creep
 /// expected at the end, and that is stable.
 fn adaptive_interval(start: StepStart<'_>, all_cycles: f64, tolerance: f64) -> f64 {
     let (left, rates_mm) = (all_cycles - start.cycles, &start.rates.depth_per_cycle_mm);
+    // Without relaxation every step is stable.
     let stable = LONGEST / start.rates.relaxation_per_cycle.max(f64::MIN_POSITIVE);
     let Some(last) = start.last else {
         let share = FIRST_SHARE * (tolerance / FIRST_TOLERANCE).sqrt().min(1.0);

@@ -70,6 +70,7 @@ fn lowered(femur: &FemoralSurface, surface: &ArticulatingSurface, pose: Pose) ->
     let (low, high) = surface.height_range_mm();
     let reach = femur.reach_mm();
     let mut pose = pose;
+    // There no part of the femur can reach the insert.
     pose.translation.y = high + reach;
     while pose.translation.y > low - reach {
         let gap = |position: &Vec3| femur.gap_mm(&pose.to_femur(position));

@@ -32,6 +32,7 @@ impl Rates {
         let depth_per_cycle_mm: Vec<f64> = worn.iter().map(|worn| worn.depth_mm).collect();
         let shares = surface.shares.iter();
         let area_mm2: Vec<f64> = shares.map(|share| share.area_mm2).collect();
+        // Where a node alone wears, its pressure falls, and with it its rate.
         // Rate times the pressure lost per millimetre of depth, over the mean pressure while the node slides.
         let alone = |node: usize| {
             let stiffness_mpa_per_mm = contact.stiffness_mpa_per_mm(insert, node);

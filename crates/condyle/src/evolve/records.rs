@@ -41,7 +41,7 @@ pub struct UpdateRecord {
     pub peak_contact_area_mm2: f64,
     /// Cycles solved until every activity repeated itself.
     pub cycles_solved: f64,
-    /// Whether every activity repeated itself.
+    /// True if every activity repeated itself.
     pub repeats: bool,
     /// Smallest scaled Jacobian of the worn mesh.
     pub worst_quality: f64,

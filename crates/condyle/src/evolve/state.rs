@@ -175,6 +175,7 @@ impl MarchState {
         }
         self.last_step = Some(snapshot.step.clone());
         let [early, late] = SNAPSHOT_PARTS;
+        // A later step before the same part replaces the snapshot, so that the last one before it remains.
         if part <= early {
             self.snapshots[0] = Some(snapshot.clone());
         }

@@ -96,6 +96,7 @@ fn shares_and_normals(positions: &[Vec3], around: &FacesAround) -> (Vec<Share>, 
         let flat = FlatShare::new(&patches);
         let [edge_a, edge_b] = flat.parallelogram(&patches);
         let spread_mm2 = dot(&edge_a, &edge_a) + dot(&edge_b, &edge_b);
+        // The second moment has the trace (a.a + b.b)/12 over the area, and the spread is a quarter of that.
         let spread_mm2 = spread_mm2 * F64x4::splat(1.0 / 48.0);
         let own = vector_from_lanes(|lane| &positions[nodes[lane] as usize]);
         // Between nodes the true surface bulges away from the bilinear faces: the mean of a

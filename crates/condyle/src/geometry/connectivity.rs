@@ -8,9 +8,9 @@ pub(crate) struct FacesAround {
     first: Vec<usize>,
     /// The other corners of each face, in its order from the node.
     faces: Vec<[u32; 3]>,
-    /// The nodes that share a face with node i are `beside[first_beside[i]..first_beside[i + 1]]`, each once.
-    first_beside: Vec<usize>,
-    beside: Vec<u32>,
+    /// The nodes that share a face with node i are `adjacent[first_adjacent[i]..first_adjacent[i + 1]]`, each once.
+    first_adjacent: Vec<usize>,
+    adjacent: Vec<u32>,
 }
 
 impl FacesAround {
@@ -32,23 +32,23 @@ impl FacesAround {
                 next[node as usize] += 1;
             }
         }
-        let mut first_beside = vec![0];
+        let mut first_adjacent = vec![0];
         // A node of a grid has eight others in its faces.
-        let mut beside = Vec::with_capacity(8 * node_count);
+        let mut adjacent = Vec::with_capacity(8 * node_count);
         for node in 0..node_count {
-            let start = beside.len();
+            let start = adjacent.len();
             for &other in sorted[first[node]..first[node + 1]].as_flattened() {
-                if !beside[start..].contains(&other) {
-                    beside.push(other);
+                if !adjacent[start..].contains(&other) {
+                    adjacent.push(other);
                 }
             }
-            first_beside.push(beside.len());
+            first_adjacent.push(adjacent.len());
         }
         Self {
             first,
             faces: sorted,
-            first_beside,
-            beside,
+            first_adjacent,
+            adjacent,
         }
     }
 
@@ -62,9 +62,9 @@ impl FacesAround {
         &self.faces[self.first[node]..self.first[node + 1]]
     }
 
-    fn beside(&self, node: u32) -> &[u32] {
+    fn adjacent(&self, node: u32) -> &[u32] {
         let node = node as usize;
-        &self.beside[self.first_beside[node]..self.first_beside[node + 1]]
+        &self.adjacent[self.first_adjacent[node]..self.first_adjacent[node + 1]]
     }
 
     /// Returns a node, and then those around it: all that have a face in common with it and, if these are fewer than
@@ -72,10 +72,10 @@ impl FacesAround {
     pub fn patch(&self, node: u32, least: usize) -> Vec<u32> {
         let mut nodes = Vec::with_capacity(32);
         nodes.push(node);
-        nodes.extend_from_slice(self.beside(node));
+        nodes.extend_from_slice(self.adjacent(node));
         if nodes.len() < least {
             for ring in 1..nodes.len() {
-                for other in self.beside(nodes[ring]) {
+                for other in self.adjacent(nodes[ring]) {
                     if !nodes.contains(other) {
                         nodes.push(*other);
                     }
@@ -124,6 +124,7 @@ pub(super) fn node_blocks(faces: &[[u32; 4]], around: &FacesAround) -> Vec<NodeB
             blocks.push(chain);
         }
     }
+    // In a fixed order, so that sums over blocks have the same bytes however the blocks were found.
     blocks.sort_unstable_by_key(|block| block.nodes[0]);
     blocks
 }

@@ -100,7 +100,7 @@ impl Underside {
 /// A flat step around a body.
 struct Ledge {
     height_mm: f64,
-    /// Whether the section is larger below it.
+    /// True if the section is larger below it.
     faces_up: bool,
 }
 
@@ -179,6 +179,7 @@ impl<'a> Profile<'a> {
     /// Returns the height between two at which the area changes most, by bisection.
     fn jump(&self, low_mm: f64, high_mm: f64) -> f64 {
         let (mut low, mut high) = (low_mm, high_mm);
+        // A quarter, so that the sections a ledge above and below lie on both sides of the jump.
         while high - low > LEDGE_MM / 4.0 {
             let middle = (low + high) / 2.0;
             let [below, at, above] = [low, middle, high].map(|y| self.sections.area_mm2(y));

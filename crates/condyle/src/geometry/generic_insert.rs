@@ -48,6 +48,7 @@ impl GenericInsertShape {
         let (rs, rc) = (self.sagittal_radius_mm, self.coronal_radius_mm);
         let across = z_mm.abs() - self.spacing_mm / 2.0;
         let distance = (rs - rc) + (rc * rc - across * across).max(0.0).sqrt();
+        // Beyond the dish the roots would be of negative numbers; there the cap below counts.
         let height = rs - (distance * distance - x_mm * x_mm).max(0.0).sqrt();
         height.min(EMINENCE_MM)
     }

@@ -311,7 +311,7 @@ impl SurfaceRegions {
 
     /// Creates the regions of the two sides of a right knee, split at z = 0: 0 is medial, where z < 0, and 1 is
     /// lateral.
-    pub fn medial_and_lateral(positions: impl IntoIterator<Item = Vec3>) -> Self {
+    pub(crate) fn medial_and_lateral(positions: impl IntoIterator<Item = Vec3>) -> Self {
         Self::split(&["medial", "lateral"], positions, |position| {
             usize::from(position.z >= 0.0)
         })

@@ -37,6 +37,7 @@ impl Levers {
 
     /// Returns the part of `motions`, at most 1, that moves no joint farther than `most_mm`.
     pub fn part_within(&self, motions: &Vec6, most_mm: f64) -> f64 {
+        // Without motion the quotient is infinite, and the part 1.
         (most_mm / self.longest_mm(motions)).min(1.0)
     }
 }

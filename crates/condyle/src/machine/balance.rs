@@ -10,6 +10,7 @@ use crate::{
 
 /// Solves K dq = -f for the motions dq that remove `forces`; none if K is singular.
 pub(super) fn correction(tangent: &Mat6, forces: &Vec6) -> Option<Vec6> {
+    // LU and not Cholesky: friction makes the tangent unsymmetric.
     tangent.lu().solve(&-forces)
 }
 

@@ -30,7 +30,7 @@ pub struct Configuration {
 
 impl Chain {
     /// Creates the chain of a machine whose femur, with all joints at zero, has its frame's origin at `zero_mm` in
-    /// the insert frame and turns about the point (x, y, 0) of its own frame.
+    /// the insert frame and turns about the point (x, y, 0) of the femoral frame.
     pub fn new(machine: &Machine, zero_mm: Vec3, flexion_axis_mm: (f64, f64)) -> Self {
         let pivot_mm = zero_mm + Vec3::new(flexion_axis_mm.0, flexion_axis_mm.1, 0.0);
         Self {
@@ -114,6 +114,7 @@ impl Configuration {
     /// Joint k turns the screws that it carries by their Lie bracket with its own, and so their twist too.
     pub(super) fn carried_twists(&self, rates: &[f64; 6]) -> [Twist; 6] {
         let mut carried = [Twist::zero(); 6];
+        // From the femur inwards, so that every sum is built from the next one.
         for k in (0..5).rev() {
             carried[k] = carried[k + 1] + self.screws[k + 1] * rates[k + 1];
         }

@@ -136,7 +136,7 @@ pub struct TimeSettings {
     pub increment_error_mm: f64,
     /// Largest force left out of balance, N; moments count as forces on a lever of 10 mm.
     pub force_tolerance_n: f64,
-    /// Whether Newton's iteration may stop at a correction whose predicted residual is within the tolerance,
+    /// True if Newton's iteration may stop at a correction whose predicted residual is within the tolerance,
     /// without evaluating that residual.
     pub trusts_prediction: bool,
     /// Largest difference in translation between the ends of a cycle that counts as repeating, mm.
@@ -160,7 +160,7 @@ impl TimeSettings {
     }
 
     /// Returns the length of an increment at a cycle frequency, s.
-    pub fn increment_s(&self, frequency_hz: f64) -> f64 {
+    pub(crate) fn increment_s(&self, frequency_hz: f64) -> f64 {
         1.0 / (frequency_hz * self.increments as f64)
     }
 
@@ -174,6 +174,7 @@ impl TimeSettings {
         // Rates differ by as much as they move the joints apart within an increment.
         let lead_s = self.increment_s(machine.frequency_hz);
         let repeats = |(j, joint): (usize, &Joint)| {
+            // Accelerations are not compared: they follow from positions, rates and loads.
             let apart = (state.now.positions[j] - earlier.now.positions[j]).abs();
             let parting = (state.now.rates[j] - earlier.now.rates[j]).abs() * lead_s;
             let tolerance = match joint.description.kind() {
@@ -228,7 +229,7 @@ pub struct Cycle {
     pub warm_starts: Vec<Option<WarmStart>>,
     /// Increments solved in all.
     pub increments_solved: usize,
-    /// Whether the cycle repeats within the permitted number of cycles.
+    /// True if the cycle repeats within the permitted number of cycles.
     pub repeats: bool,
 }
 
@@ -262,7 +263,7 @@ pub enum CycleError {
     Unstable { percent: f64, readings: String },
     /// A load that presses the insert flat.
     #[error(
-        "the load presses the insert flat at {percent:.2} % of the cycle: where plastic strain has come to {plastic_strain:.2} the \
+        "the load presses the insert flat at {percent:.2} % of the cycle: where plastic strain has reached {plastic_strain:.2} the \
          insert finds no balance; check the load, and [contact.deformable] yield_stress_mpa and its hardening, or take plasticity = \"none\""
     )]
     Flattened { percent: f64, plastic_strain: f64 },

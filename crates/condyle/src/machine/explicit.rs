@@ -35,6 +35,7 @@ impl Simulator<'_> {
             let quickness = Quickness::at_rest(self.machine, &self.balance(still));
             let (stable_step_s, inertia_factor) = quickness.stable_step(least_step_s);
             self.counters.added_inertia = (inertia_factor - 1.0).max(self.counters.added_inertia);
+            // Equal steps that end exactly at `to`, none longer than the stable one.
             let rest_s = (to - phase) / self.machine.frequency_hz;
             let mut left = ((rest_s / stable_step_s).ceil() as usize).max(1);
             let step = (to - phase) / left as f64;
@@ -132,6 +133,7 @@ impl Quickness {
     /// the norm of M^-1/2 K M^-1/2, which no eigenvalue exceeds.
     fn at_rest(machine: &Machine, balance: &Balance<'_>) -> Self {
         // 1/sqrt(M) on the diagonal of loaded rows; 0 on the others.
+        // Scaled by the inertia on both sides, the matrices stay symmetric where K and C are.
         let mut diagonal = [0.0; 6];
         for j in machine.loaded() {
             diagonal[j] = machine.joints[j].inertia.sqrt().recip();

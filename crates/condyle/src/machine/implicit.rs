@@ -31,6 +31,7 @@ impl<'a> BackwardStep<'a> {
     /// Creates a step of second order if the state includes the state before it, and of first order after a start.
     fn new(machine: &'a Machine, from: &'a MachineState, step: f64) -> Self {
         let step_s = step / machine.frequency_hz;
+        // A ratio of 0 turns the formula into that of first order.
         let ratio = from.before.map_or(0.0, |(_, last_s)| step_s / last_s);
         Self {
             machine,
@@ -194,7 +195,6 @@ struct NewtonIteration {
     taken: Vec6,
     /// Mean slip of the regions where the last correction was computed, mm/s.
     mean_slip: [Vec3; MAX_REGIONS],
-    /// Whether the whole correction was taken.
     is_whole: bool,
     /// Largest predicted residual, N, at which the iteration may end without evaluating it; none if every correction
     /// requires its own tangent and every residual is evaluated.

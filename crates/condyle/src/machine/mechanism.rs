@@ -148,7 +148,7 @@ pub enum Settling {
     DrivenWithoutLoad,
 }
 
-/// Whether a joint can be free under a load, and the waveform of that load.
+/// The permission of a joint to be free under a load, and the waveform of that load.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Loading {
     /// It cannot be free.
@@ -184,7 +184,7 @@ pub struct JointDescription {
     pub moves: MovedBody,
     /// State while the machine settles.
     pub settling: Settling,
-    /// Whether it reads zero where the machine has settled.
+    /// True if it reads zero where the machine has settled.
     pub is_zeroed: bool,
     /// Default mass in tonne, or moment of inertia in tonne mm2.
     pub inertia: f64,

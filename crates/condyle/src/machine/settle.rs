@@ -47,6 +47,7 @@ pub fn settle(
     let (loads, levers) = (machine.loads_at(0.0), machine.levers());
     let mut positions = [0.0; 6];
     machine.drive(0.0, &mut positions, &mut [0.0; 6]);
+    // At least a newton, so that an unloaded machine has a finite first step.
     let mut damping = levers.largest_n(&loads).max(1.0) / FIRST_MOTION_MM;
     let (mut last_residual_n, mut moved_mm) = (f64::INFINITY, f64::INFINITY);
     for _ in 0..MAX_ITERATIONS {

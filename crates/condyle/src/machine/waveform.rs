@@ -159,6 +159,7 @@ impl Waveform {
         let after = self.knots.partition_point(|knot| knot.percent <= percent);
         let (a, b) = ((after + n - 1) % n, after % n);
         let span = span_percent(&self.knots, a);
+        // In the piece across the seam the place may lie before its first knot.
         let along = (percent - self.knots[a].percent).rem_euclid(100.0) / span;
         let (ya, yb) = (self.knots[a].value, self.knots[b].value);
         let (value, slope) = match self.interpolation {
@@ -188,6 +189,7 @@ fn spline_bends(knots: &[Knot]) -> Vec<f64> {
     const SWEEPS: usize = 100;
     let n = knots.len();
     let mut bends = vec![0.0; n];
+    // One or two knots give a constant or straight lines, without bends.
     if n < 3 {
         return bends;
     }
@@ -221,6 +223,7 @@ pub fn without_drift(samples: &[Knot]) -> Vec<Knot> {
         value: knot.value - drift * (knot.percent / 100.0 - 0.5),
     };
     let mut levelled: Vec<Knot> = samples.iter().map(level).collect();
+    // By rounding both ends may differ, which a waveform rejects as a step at the seam.
     let seam = levelled[0].value;
     if let Some(end) = levelled.last_mut() {
         end.value = seam;
@@ -230,6 +233,7 @@ pub fn without_drift(samples: &[Knot]) -> Vec<Knot> {
 
 /// Samples the mean and the first `harmonics` Fourier terms of a waveform at every percent of the cycle.
 pub fn low_passed(waveform: &Waveform, harmonics: usize) -> Vec<Knot> {
+    // Even samples project low harmonics exactly, unless the curve has harmonics near the number of samples.
     const SAMPLES: usize = 1000;
     let sample = |k: usize| waveform.at(k as f64 / SAMPLES as f64).0;
     let values: Vec<f64> = (0..SAMPLES).map(sample).collect();

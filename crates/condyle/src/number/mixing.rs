@@ -35,7 +35,12 @@ impl Mixing {
     pub fn next(&mut self, tried: &[f64], image: &[f64], part: f64) -> Vec<f64> {
         let tried = DVector::from_column_slice(tried);
         let left = DVector::from_column_slice(image) - &tried;
-        self.forget_where_bent(left.norm());
+        let size = left.norm();
+        let least = self.least.map_or(size, |least| least.min(size));
+        if size > BENT * least {
+            *self = Self::default();
+        }
+        self.least = Some(if size > BENT * least { size } else { least });
         let seen = Seen {
             reached: tried + part * &left,
             left,
@@ -46,6 +51,7 @@ impl Mixing {
                 left: &seen.left - &last.left,
             });
         }
+        // The oldest difference belongs to the point farthest from the solution.
         if self.changes.len() > DEPTH {
             self.changes.pop_front();
         }
@@ -59,17 +65,6 @@ impl Mixing {
         next.as_slice().to_vec()
     }
 
-    fn forget_where_bent(&mut self, size: f64) {
-        let least = self.least.map_or(size, |least| least.min(size));
-        self.least = Some(least);
-        if size > BENT * least {
-            *self = Self {
-                least: Some(size),
-                ..Self::default()
-            };
-        }
-    }
-
     /// Returns the $\gamma$ of the changes; none if there are none.
     fn parts(&self, left: &DVector<f64>) -> Option<DVector<f64>> {
         let count = self.changes.len();
@@ -80,6 +75,7 @@ impl Mixing {
         for i in 0..count {
             products[(i, i)] += MIN_PART * mean;
         }
+        // If the factor fails by rounding, the step is a plain one.
         let wanted = DVector::from_fn(count, |i, _| of(i).dot(left));
         Some(products.cholesky()?.solve(&wanted))
     }

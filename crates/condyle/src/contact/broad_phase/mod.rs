@@ -80,6 +80,7 @@ impl BroadPhase {
         if increment == self.increment || self.search == Search::BruteForce {
             return;
         }
+        // Slots appear as increments do: the number of increments of a cycle is not known here.
         let most = increment.max(self.increment);
         if most >= self.kept.len() {
             self.kept.resize(most + 1, None);

@@ -181,6 +181,7 @@ impl Separations {
     #[inline(always)]
     pub fn set(&mut self, block: u32, bound: &SeparationBound) {
         let (eight, i) = self.place_of(block);
+        // Rounding to single precision is covered by the loss that every step subtracts.
         eight.clear_mm[i] = bound.clear_mm.min(FARTHEST_MM) as f32;
         eight.slope[0][i] = bound.slope.x as f32;
         eight.slope[1][i] = bound.slope.y as f32;

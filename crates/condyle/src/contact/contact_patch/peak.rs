@@ -73,6 +73,7 @@ impl Plane {
         let normal = share.edge_a.cross(&share.edge_b).normalize();
         Self {
             along: [first, normal.cross(&first)],
+            // With lengths near 1 the coefficients have one scale, and the regularisation weighs them alike.
             length_mm: share.area_mm2.sqrt(),
         }
     }
@@ -102,6 +103,7 @@ impl Quadratic {
         // Means are fitted relative to the first, so that the regularisation does not depend on their level.
         let mut matrix = SMatrix::<f64, 6, 6>::identity() * LEAST_SQUARES_FLOOR;
         let mut right = SVector::<f64, 6>::zeros();
+        // Any mean determines the constant.
         matrix[(0, 0)] = 0.0;
         for (share, mean) in means {
             let row = row(&plane, share, around);

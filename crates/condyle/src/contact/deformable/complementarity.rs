@@ -39,7 +39,7 @@ pub(crate) struct ContactSet {
     /// The load of every node of the trial set; and of the solution, with the derivatives by six motions.
     loads_n: Vec<f64>,
     loads: Vec<Eight>,
-    /// Those loads by the panels of their nodes.
+    /// The loads of the trial set by the panels of their nodes.
     by_panel: Vec<(usize, Eight)>,
     clearances: Clearances,
 }
@@ -74,6 +74,7 @@ impl ContactSet {
             self.overclosures[candidate.node as usize] = candidate.overclosure_mm;
         }
         self.factor.take_other_overclosures();
+        // The smallest number of wrong nodes so far, and the block exchanges left without a smaller one.
         let (mut least, mut tries) = (usize::MAX, MAX_TRIES);
         for _ in 0..MAX_ROUNDS {
             self.load(candidates, compliance);

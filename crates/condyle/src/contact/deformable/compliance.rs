@@ -85,6 +85,7 @@ impl Compliance {
             return near;
         }
         drop(near);
+        // Sorted, so that each is added once, and in an order that does not depend on that of the nodes.
         tiles.sort_unstable();
         tiles.dedup();
         let mut near = self.near.write().unwrap_or_else(PoisonError::into_inner);

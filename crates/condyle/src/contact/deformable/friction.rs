@@ -96,6 +96,7 @@ impl<'a> ElasticFriction<'a> {
     fn resume(&mut self, start: Held) {
         self.start = start;
         self.last_end.clone_from(&self.start.loads);
+        // Displacements belong to the loads at the start, which change here.
         self.start_mm.fill(f64::NAN);
         self.loads_n.fill([0.0; 2]);
         for &(node, load_n) in &self.start.loads {

@@ -213,6 +213,7 @@ impl Deformable {
             .iter()
             .position(|surface| surface.is_of(insert, mesh_nodes, rests));
         let surface = if let Some(place) = place {
+            // The surface used last moves to the end; the first one is dropped first.
             kept.remove(place)
         } else {
             // Room for one as large as the newest is made before, so that old and new are not in memory at once.

@@ -149,6 +149,7 @@ impl StickSlip {
 
     /// Starts the search with other nodes, and the loads that were found for them before; these may exceed the new limits.
     fn start(&mut self, nodes: &[FrictionNode], compliance: &NearMatrix) {
+        // The old loads and slips are kept apart: most nodes reuse them.
         let before = std::mem::take(self);
         self.places = nodes.iter().map(|node| node.node).zip(0..).collect();
         self.places.sort_unstable();
@@ -262,6 +263,7 @@ impl StickSlip {
             for (place, node) in before.iter().enumerate() {
                 self.load(place, node.own.load_n);
             }
+            // Newton's step started with the wrong nodes sticking: sweeps find better ones first.
             self.nodes = before;
             (0..SWEEPS_BETWEEN).for_each(|_| self.sweep(compliance));
             self.find_slips(compliance);

@@ -59,6 +59,7 @@ impl PeakSearch<'_> {
                 return 0.0;
             };
             let highest_mpa = pressure_mpa(fit.highest());
+            // The limited maximum is never higher, so that its costly second fit can be skipped.
             if highest_mpa <= so_far_mpa {
                 0.0
             } else if patch.iter().all(|at| at.mean > 0.0) {

@@ -76,6 +76,7 @@ impl UnwornInsert {
         if let Some((_, what)) = parts.into_iter().find(|(count, _)| *count == 0) {
             return Err(InsertError::Empty { what });
         }
+        // Checked before anything is computed: an inverted element has no thickness and no stiffness.
         let mut qualities = mesh.qualities().enumerate();
         if let Some((hex, quality)) = qualities.find(|(_, quality)| *quality <= 0.0) {
             return Err(InsertError::BadElement { hex, quality });
@@ -124,6 +125,7 @@ fn walls(mesh: &HexMesh, boundary: &[[u32; 4]], surface_nodes: &[u32]) -> Vec<Op
         }
     }
     let direction = |(here, mut below): (usize, Vec<u32>)| {
+        // An edge belongs to two quads, so that each end is found twice.
         below.sort_unstable();
         below.dedup();
         let place = |node: u32| mesh.nodes[node as usize];

@@ -25,6 +25,7 @@ pub struct NodeGrid {
 impl NodeGrid {
     /// Creates the grid around a surface from `low` to `high`: two nodes beyond the band.
     pub fn around((low, high): (Vec3, Vec3)) -> Self {
+        // The spline reads a node on either side, and a point at the band has one more beyond it.
         let margin = Vec3::repeat(BAND_MM + 2.0 * SPACING_MM);
         let origin = low - margin;
         let size = high + margin - origin;
@@ -110,6 +111,7 @@ fn fill_layers(grid: &NodeGrid, mesh: &CurvedMesh<'_>, first_layer: usize, gaps:
     for (here, (gap, triangle)) in gaps.iter_mut().zip(nearest).enumerate() {
         if let Some(triangle) = triangle {
             let (i, j, k) = (here % row, here % layer / row, here / layer);
+            // Only for the nearest facet: the gap to the curved surface is far more expensive than the distance to a facet.
             let node = grid.position(i, j, k + first_layer);
             *gap = mesh.curved_gap_mm(triangle, &node);
         }
@@ -164,8 +166,10 @@ pub fn bound_far_gaps(grid: &NodeGrid, gaps: &mut [f64], is_closed: bool) -> Vec
     let strides = grid.strides();
     let count = gaps.len();
     let mut pass_on = |there: usize, here: usize| {
-        if is_far[here] {
-            gaps[here] = nearer(gaps[here], gaps[there], is_closed);
+        let from_there = gaps[there].abs() + SPACING_MM * STRAIGHT_PER_PATH;
+        if is_far[here] && from_there < gaps[here].abs() {
+            let sign = if is_closed { gaps[there].signum() } else { 1.0 };
+            gaps[here] = sign * from_there;
         }
     };
     // One pass carries bounds to higher numbers along all axes at once, the other back to lower ones.
@@ -178,16 +182,6 @@ pub fn bound_far_gaps(grid: &NodeGrid, gaps: &mut [f64], is_closed: bool) -> Vec
         higher.for_each(|stride| pass_on(here + stride, here));
     }
     is_far
-}
-
-/// Returns a node's bound, or the bound from its neighbour's gap if that is nearer.
-fn nearer(own: f64, neighbours: f64, is_closed: bool) -> f64 {
-    let from_there = neighbours.abs() + SPACING_MM * STRAIGHT_PER_PATH;
-    if from_there >= own.abs() {
-        return own;
-    }
-    let sign = if is_closed { neighbours.signum() } else { 1.0 };
-    sign * from_there
 }
 
 /// Returns the coefficients of the quadratic B-spline through the gaps at the nodes, without fourth differences.

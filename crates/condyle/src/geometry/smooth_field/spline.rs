@@ -35,6 +35,7 @@ struct Neighbourhood<T> {
 impl GapSpline {
     /// Creates the spline of these coefficients, one per node.
     pub fn new(grid: NodeGrid, mut coefficients: Vec<f64>) -> Self {
+        // The last row is read as four numbers, too.
         coefficients.push(0.0);
         Self {
             grid,

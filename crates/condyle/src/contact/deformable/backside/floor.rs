@@ -50,6 +50,7 @@ impl Floor {
         let middle_mm = middle.map_or(0.0, |face| height_mm(face));
         let is_flat = |face: &&&Face| (height_mm(face) - middle_mm).abs() <= MAX_OFF_MM;
         let flat: Vec<[u32; 4]> = level.iter().filter(is_flat).map(|face| face.quad).collect();
+        // Ordered by node, so that the tray is the same on every run.
         let mut shares = BTreeMap::<u32, f64>::new();
         for (node, share) in mesh.traction_forces(&flat, |_, outward| -outward) {
             *shares.entry(node).or_default() += share.dot(&normal);

@@ -171,7 +171,7 @@ fn of_transform(bonded: bool) -> f64 {
 
 #[test]
 fn verify_a_bell_of_pressure_on_a_layer_on_a_smooth_base_and_on_a_bonded_one() {
-    // An even pressure beside keeps the layer on its base; without friction it adds what it does alone.
+    // An even pressure next to it keeps the layer on its base; without friction it adds what it does alone.
     let (layer, even_mpa) = (wide(5.0), 10.0);
     let (middle, bell) = (layer.middle(), |place: &Vec3| {
         PEAK_MPA * (-0.5 * place.xz().norm_squared() / (WIDTH_MM * WIDTH_MM)).exp()

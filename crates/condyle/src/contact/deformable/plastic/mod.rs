@@ -340,6 +340,7 @@ impl<M: Material> PlasticInsert<M> {
         let rows: Vec<(&[f32], &Vec<f64>)> = tiles
             .map(|(&tile, loads)| (surface.moved_below(tile as usize), loads))
             .collect();
+        // Only for nodes of evaluated elements: a product over all nodes would be far larger.
         for node in (0..is_needed.len()).filter(|&node| is_needed[node]) {
             let mut moved = Vec3::zeros();
             for (rows, loads) in &rows {

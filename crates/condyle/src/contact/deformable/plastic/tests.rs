@@ -80,7 +80,7 @@ fn verify_flow_and_permanent_set_against_newton_on_all_elements() {
     let mut insert = block.plastic(nothing_stored());
     let elements = block.insert.mesh().hexes.len();
     let mut state = condyle_fem::PlasticState::unloaded(elements);
-    // Pressed, let go, and pressed beside.
+    // Pressed, released, and pressed next to that place.
     for (peak_mpa, x) in [(38.0, 0.0), (0.1, 0.0), (42.0, 1.5), (0.1, 1.5)] {
         let loads = block.loads(peak_mpa, x);
         let all = 0..block.surface.normal.node_count() as u32;
@@ -112,8 +112,8 @@ fn verify_flow_and_permanent_set_against_newton_on_all_elements() {
             assert!((set - tried).abs() < 1e-6, "{set} {tried}");
         }
     }
-    let remembered = insert.into_stored();
-    let most = remembered.points.values().flatten();
+    let stored = insert.into_stored();
+    let most = stored.points.values().flatten();
     let most = most.map(|point| point.accumulated).fold(0.0, f64::max);
     let exact = state.elements.iter().flatten();
     let exact = exact.map(|point| point.accumulated).fold(0.0, f64::max);
@@ -129,14 +129,14 @@ fn what_is_remembered_goes_through_the_state_to_the_same_bytes() {
     insert.begin_increment(0);
     insert.flow(&loads, f64::INFINITY, 0..1, around).unwrap();
     insert.commit();
-    let remembered = insert.into_stored();
-    assert!(remembered.flow_in_cycle.values().any(|flow| *flow > 1e-4));
+    let stored = insert.into_stored();
+    assert!(stored.flow_in_cycle.values().any(|flow| *flow > 1e-4));
     let state = ContactState {
-        fields: remembered.field().into_iter().collect(),
+        fields: stored.field().into_iter().collect(),
     };
-    assert_eq!(StoredPlasticity::from_stored(&state), remembered);
+    assert_eq!(StoredPlasticity::from_stored(&state), stored);
     // The same load again is elastic: it is what is already there.
-    let mut insert = block.plastic(remembered.clone());
+    let mut insert = block.plastic(stored.clone());
     insert.flow(&loads, f64::INFINITY, 0..1, around).unwrap();
     insert.commit();
     let again = insert.into_stored();
