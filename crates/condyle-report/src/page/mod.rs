@@ -54,13 +54,6 @@ fn page_of(results: &Results, scene: Option<&Scene>) -> String {
     let other_maps = maps::drawn(&maps::MAPS[1..], results, SMALL, on_page).into_iter();
     let other_maps: Vec<Value> = other_maps.map(captioned).collect();
     let activities: Vec<_> = results.activities.iter().map(|(one, _)| one).collect();
-    // The charts of the first activity are those of the whole page.
-    let others = results.activities.iter().skip(1);
-    let activity_charts = others.filter_map(|(activity, table)| {
-        let charts = svgs(&charts::cycle_of(table.as_ref()?, &activity.name));
-        Some(json!({ "name": activity.name, "charts": charts }))
-    });
-    let activity_charts: Vec<Value> = activity_charts.collect();
     let surface = results.surface.as_ref();
     let wear_map = surface.and_then(|surface| maps::MAPS[0].of(surface, results.side, LARGE));
     let kinematics = results.kinematics.as_ref();
@@ -86,7 +79,7 @@ fn page_of(results: &Results, scene: Option<&Scene>) -> String {
             "wear_laws": summary.map_or(&[][..], |summary| &summary.wear_laws),
             "wear_over_conventional": times.map(|times| significant(times, 3)),
             "activities": activities,
-            "activity_charts": activity_charts,
+            "activity_charts": activity_charts(results),
             "wear_charts": svgs(&charts::wear(results)),
             "cycle_charts": svgs(&charts::cycle(results)),
             "cycles": kinematics.and_then(charts::cycle_captions),
@@ -109,6 +102,16 @@ fn page_of(results: &Results, scene: Option<&Scene>) -> String {
 }
 
 /// Returns the map of wear depth; `None` without a mesh that has it.
+fn activity_charts(results: &Results) -> Vec<Value> {
+    // The charts of the first activity are those of the whole page.
+    let others = results.activities.iter().skip(1);
+    let charts = others.filter_map(|(activity, table)| {
+        let charts = svgs(&charts::cycle_of(table.as_ref()?, &activity.name));
+        Some(json!({ "name": activity.name, "charts": charts }))
+    });
+    charts.collect()
+}
+
 fn svgs(panels: &[Panel]) -> Vec<String> {
     panels.iter().map(Panel::svg).collect()
 }
