@@ -40,17 +40,17 @@ pub enum Command {
     Diff(Diff),
     /// Run a case over finer and finer values of one of its numbers, and see what changes.
     Converge(Converge),
-    /// Run a case again with each of its assumptions changed, and see which of them its results hang on.
+    /// Run a case again with each of its assumptions changed, and compare the results.
     Sensitivity(Sensitivity),
-    /// Run a case many times with inputs that scatter as they do from test to test, and see how far its results do.
+    /// Run a case many times with inputs that scatter as they do from test to test, and report the scatter of its results.
     Uncertainty(Uncertainty),
-    /// Run a case many times with what varies of it: designs of tests, sensitivity, ranking, the best within limits.
+    /// Run a study: designs of tests, sensitivity, ranking of designs, the best design within limits.
     Study(Study),
-    /// Hold a run against measured kinematics, weighed wear and a scanned surface.
+    /// Compare a run with measured kinematics, weighed wear and a scanned surface.
     Compare(Compare),
-    /// Fit a pressure law with which the rigid model follows the deformable insert, and say what is left.
+    /// Fit a pressure law with which the rigid model follows the deformable insert, and report the remaining errors.
     Calibrate(Calibrate),
-    /// Find the constants of the wear law with which runs wear as fast as the specimens did.
+    /// Find the constants of the wear law with which runs reproduce the measured wear rates.
     CalibrateWear(CalibrateWear),
 }
 
@@ -61,10 +61,10 @@ pub struct Run {
     /// Folder for the results [default: results/ and the case's name].
     #[arg(short, long, value_name = "DIR")]
     pub out: Option<PathBuf>,
-    /// Go on with the run that was stopped in that folder.
+    /// Resume the run that was stopped in that folder.
     #[arg(long)]
     pub resume: bool,
-    /// Write over the run that is in that folder.
+    /// Replace the run in that folder.
     #[arg(long, conflicts_with = "resume")]
     pub force: bool,
     #[command(flatten)]
@@ -95,13 +95,13 @@ pub struct Check {
     /// Print the case as it would run, every default written out.
     #[arg(long, conflicts_with = "json")]
     pub print: bool,
-    /// Print what is found as JSON, and nothing else on standard output.
+    /// Print the findings as JSON, and nothing else on standard output.
     #[arg(long)]
     pub json: bool,
     /// Also draw both bodies in place from three sides, as an SVG file.
     #[arg(long, value_name = "FILE.svg")]
     pub picture: Option<PathBuf>,
-    /// Threads for the one-time work on a mesh; what is found is the same on any number.
+    /// Threads for the one-time work on a mesh; the findings are the same on any number.
     #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u16).range(1..=256))]
     pub threads: u16,
 }
@@ -159,10 +159,11 @@ pub struct Plot {
     /// Folder for the pictures [default: pictures in the results folder].
     #[arg(short, long, value_name = "DIR")]
     pub out: Option<PathBuf>,
-    /// Dots of a PNG to a point of the picture.
+    /// Pixels of a PNG per point of the picture.
+    #[cfg_attr(not(feature = "png"), expect(dead_code))]
     #[arg(long, value_name = "N", default_value_t = 2, value_parser = clap::value_parser!(u8).range(1..=8))]
     pub dots: u8,
-    /// Only these files; both, where this condyle was built with the feature `png`, if not given.
+    /// Only these formats [default: SVG, and PNG if built with the feature `png`].
     #[arg(long, value_name = "FORMAT", value_enum)]
     pub format: Vec<PictureFormat>,
 }
@@ -208,7 +209,7 @@ pub struct Converge {
     /// Folder for the table, the picture and the results of every run; it must be empty.
     #[arg(short, long, value_name = "DIR")]
     pub out: PathBuf,
-    /// Go on with the study that was stopped in that folder.
+    /// Resume the study that was stopped in that folder.
     #[arg(long)]
     pub resume: bool,
     /// Runs at the same time, as many as the machine has cores if not given; the results are the same on any number.
@@ -238,13 +239,13 @@ pub struct Uncertainty {
     /// Runs with other inputs.
     #[arg(long, value_name = "N", default_value_t = 200, value_parser = clap::value_parser!(u32).range(2..=1_000_000))]
     pub runs: u32,
-    /// Of the chance by which inputs are chosen: the same seed gives the same numbers.
+    /// Seed of the random inputs: the same seed gives the same numbers.
     #[arg(long, value_name = "N", default_value_t = 1)]
     pub seed: u64,
     /// Runs at the same time, as many as the machine has cores if not given; the results are the same on any number.
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=256))]
     pub threads: Option<u16>,
-    /// Print all as JSON, and nothing else on standard output.
+    /// Print the results as JSON, and nothing else on standard output.
     #[arg(long)]
     pub json: bool,
 }
@@ -264,7 +265,7 @@ pub struct Study {
     /// Tests at the same time, as many as the machine has cores if not given; the table is the same on any number.
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=256))]
     pub threads: Option<u16>,
-    /// Only every N-th test, from test i on: for many machines. `condyle study merge` puts the parts together.
+    /// Only every N-th test, from test i on: for many machines. `condyle study merge` joins the parts.
     #[arg(long, value_name = "i/N")]
     pub shard: Option<Shard>,
     /// Print answers.json, and nothing else on standard output.
@@ -274,11 +275,11 @@ pub struct Study {
 
 #[derive(Subcommand)]
 pub enum StudyCommand {
-    /// Write the table of a study, as far as it is, as CSV.
+    /// Write the table of the tests so far as CSV.
     Export(StudyExport),
     /// Run one test of a study, by the number of its row, into its own folder.
     RunRow(RunRow),
-    /// Put the shards of a study together, and answer it.
+    /// Join the shards of a study, and compute its answers.
     Merge(StudyMerge),
 }
 
@@ -309,7 +310,7 @@ pub struct StudyMerge {
     /// The folders of its shards.
     #[arg(required = true)]
     pub shards: Vec<PathBuf>,
-    /// Folder for all together [default: results/ and the study's name].
+    /// Folder for the whole study [default: results/ and the study's name].
     #[arg(short, long, value_name = "DIR")]
     pub out: Option<PathBuf>,
     /// Print answers.json, and nothing else on standard output.
@@ -340,7 +341,7 @@ pub struct Calibrate {
     pub out: PathBuf,
     #[command(flatten)]
     pub changes: Changes,
-    /// Also say how far the table carries on this case, which it is not fitted to; may be given several times.
+    /// Also report the errors of the table on this case, which it is not fitted to; may be given several times.
     #[arg(long, value_name = "CASE")]
     pub hold_out: Vec<PathBuf>,
     /// Print calibration.json, and nothing else on standard output.
@@ -354,11 +355,11 @@ pub struct CalibrateWear {
     /// pairs as there are tests. The cases are run again with other constants, and nothing in the folders is changed.
     #[arg(required = true, num_args = 2.., value_names = ["RESULTS", "MEASURED"])]
     pub tests: Vec<PathBuf>,
-    /// Find this constant of the law, such as cross_shear_exponent; may be given several times. Without it, how much the
-    /// law wears is found, whatever the cycle.
+    /// Find this constant of the law, such as cross_shear_exponent; may be given several times. Without it, the
+    /// amount of wear is fitted, whatever the cycle.
     #[arg(long, value_name = "NAME")]
     pub constant: Vec<String>,
-    /// Say what this case would lose with the constants found, with its interval; may be given several times.
+    /// Predict the mass loss of this case with the constants found, with its interval; may be given several times.
     #[arg(long, value_name = "CASE")]
     pub predict: Vec<PathBuf>,
     /// Print the constants, their intervals and every trial as JSON, and nothing else on standard output.
@@ -366,14 +367,12 @@ pub struct CalibrateWear {
     pub json: bool,
 }
 
-/// Right and left, with what each is.
 fn sides() -> impl TypedValueParser<Value = Side> {
     let possible = |side: &Side| PossibleValue::new(side.word()).help(side.about());
     PossibleValuesParser::new(Side::ALL.iter().map(possible))
         .try_map(|word| Side::from_word(&word).ok_or("it is neither side"))
 }
 
-/// Returns the presets of a case, with what each is.
 fn presets() -> impl TypedValueParser<Value = Preset> {
     let possible = |preset: &Preset| PossibleValue::new(preset.word()).help(preset.about());
     PossibleValuesParser::new(Preset::ALL.iter().map(possible))

@@ -1,60 +1,52 @@
-//! `condyle calibrate`.
+//! `condyle calibrate` and `condyle calibrate-wear`.
 
-use std::{fs, io, path::Path, process::ExitCode};
+use std::{fs, io, path::Path};
 
-use condyle_lab::pressure_law::{CalibrateRequest, CalibratedLaw, calibrate as fit};
-
-use crate::{
-    arguments::Calibrate,
-    exit,
-    output::{self, Lines},
-    standard_error::tell,
+use condyle_lab::{
+    measured::{Calibration, CalibrationRequest, Interval, Trial, calibrate as find_constants},
+    pressure_law::{CalibrateRequest, CalibratedLaw, calibrate as fit},
 };
 
-pub fn calibrate(arguments: &Calibrate) -> ExitCode {
+use crate::{
+    arguments::{Calibrate, CalibrateWear},
+    output::{self, Done, Failure, Lines, line, tell},
+};
+
+const PAGE: &str = "calibration.md";
+const CASE: &str = "case.toml";
+
+pub fn calibrate(arguments: &Calibrate) -> Done {
     let out = &arguments.out;
-    if let Err(error) = fs::create_dir(out) {
-        return exit::fail(unwritten(out, &error), exit::BAD_INPUT);
-    }
+    let unwritten = |error: io::Error| {
+        Failure::bad_input(format_args!("{} cannot be written: {error}", out.display()))
+    };
+    fs::create_dir(out).map_err(unwritten)?;
     let request = CalibrateRequest {
         case: arguments.case.clone(),
         changes: arguments.changes.set.clone(),
         held_out: arguments.hold_out.clone(),
     };
-    match fit(&request, &mut |what| tell(format_args!("solving: {what}"))) {
-        Ok(law) => keep_and_print(&law, arguments),
-        Err(error) => {
-            // Nothing is in it.
-            let _ = fs::remove_dir(out);
-            exit::fail_run(&error)
-        }
-    }
-}
-
-fn keep_and_print(law: &CalibratedLaw, arguments: &Calibrate) -> ExitCode {
-    let out = &arguments.out;
-    if let Err(error) = keep(law, out) {
-        return exit::fail(unwritten(out, &error), exit::BAD_INPUT);
-    }
+    let law = fit(&request, &mut |step| tell(format_args!("solving: {step}")));
+    let law = law.inspect_err(|_| {
+        // The folder is still empty.
+        let _ = fs::remove_dir(out);
+    })?;
+    keep(&law, out).map_err(unwritten)?;
     if arguments.json {
-        return output::print(&output::json(law));
+        return output::print(&output::json(&law));
     }
     let mut lines = Lines::default();
-    lines.line(format_args!("{}", law.table_of_left().trim_end()));
-    lines.line(format_args!(
-        "the peak pressure is off by {} % at most in stance, first cycle and last, which every run with the table says",
+    lines.line(law.table_of_left().trim_end());
+    line!(
+        lines,
+        "the peak pressure in stance differs by up to {} %, in the first and the last cycle; every run with the table \
+         reports this",
         law.peak_error_percent
-    ));
-    lines.line(format_args!(
-        "more in {}; run {}",
-        out.join(PAGE).display(),
-        out.join(CASE).display()
-    ));
+    );
+    let (page, case) = (out.join(PAGE), out.join(CASE));
+    line!(lines, "more in {}; run {}", page.display(), case.display());
     output::print(lines.text())
 }
-
-const PAGE: &str = "calibration.md";
-const CASE: &str = "case.toml";
 
 fn keep(law: &CalibratedLaw, out: &Path) -> io::Result<()> {
     let files = [
@@ -63,11 +55,91 @@ fn keep(law: &CalibratedLaw, out: &Path) -> io::Result<()> {
         (PAGE, law.markdown()),
         ("calibration.json", output::json(law)),
     ];
-    files
-        .iter()
-        .try_for_each(|(name, text)| fs::write(out.join(name), text))
+    let mut files = files.iter();
+    files.try_for_each(|(name, text)| fs::write(out.join(name), text))
 }
 
-fn unwritten(out: &Path, error: &io::Error) -> String {
-    format!("{} cannot be written: {error}", out.display())
+pub fn calibrate_wear(arguments: &CalibrateWear) -> Done {
+    let request = CalibrationRequest {
+        tests: CalibrationRequest::pairs(&arguments.tests)?,
+        constants: arguments.constant.clone(),
+        predict: arguments.predict.clone(),
+    };
+    let calibration = find_constants(&request, &mut |trial: &Trial| {
+        let constants = listed(&trial.constants, |value| format!("{value:.4e}"));
+        let rates = listed(&trial.mg_per_million_cycles, |rate| format!("{rate:.3}"));
+        tell(format_args!("{constants}: {rates} mg per million cycles"));
+    })?;
+    if arguments.json {
+        return output::print(&output::json(&calibration));
+    }
+    output::print(table(&calibration).text())
+}
+
+fn listed(values: &[f64], text: fn(f64) -> String) -> String {
+    let texts: Vec<String> = values.iter().map(|&value| text(value)).collect();
+    texts.join(", ")
+}
+
+fn table(calibration: &Calibration) -> Lines {
+    let mut lines = Lines::default();
+    let confidence = calibration.confidence_percent;
+    let ends = |interval: Option<Interval>, text: fn(f64) -> String| match interval {
+        Some(Interval { low, high }) => {
+            format!(", {confidence} % interval {} to {}", text(low), text(high))
+        }
+        None => ", without an interval".to_owned(),
+    };
+    for test in &calibration.tests {
+        line!(
+            lines,
+            "{}: measured rate ({}) {:.3} mg per million cycles{}; fitted {:.3}, {:+.1} %",
+            test.results.display(),
+            test.measured_by,
+            test.measured_mg_per_million_cycles,
+            ends(test.interval_mg_per_million_cycles, |end| format!(
+                "{end:.3}"
+            )),
+            test.fitted_mg_per_million_cycles,
+            test.fitted_above_measured_percent
+        );
+    }
+    if let Some(times) = &calibration.times_as_much {
+        let interval = ends(times.interval, |end| format!("{end:.4}"));
+        let first = calibration.tests[0].results.display();
+        let (law, value) = (calibration.law, times.value);
+        line!(
+            lines,
+            "{law} wears {value:.4} times as much as in {first}{interval}"
+        );
+    }
+    for constant in &calibration.constants {
+        let interval = ends(constant.found.interval, |end| format!("{end:.4e}"));
+        let (name, value, was) = (constant.name, constant.found.value, constant.run_with);
+        line!(lines, "{name} {value:.4e}{interval}; the run had {was:.4e}");
+    }
+    if let Some(scatter) = calibration.scatter_percent {
+        let freedom = calibration.degrees_of_freedom;
+        line!(
+            lines,
+            "specimens scatter by {scatter:.1} % around it, {freedom} degrees of freedom"
+        );
+    }
+    if let Some(why) = calibration.without_interval {
+        line!(lines, "no interval: {why}");
+    }
+    for prediction in &calibration.predictions {
+        let interval = ends(prediction.interval_mg, |end| format!("{end:.2}"));
+        let (mass, millions) = (prediction.mass_loss_mg, prediction.cycles / 1e6);
+        let case = prediction.case.display();
+        line!(
+            lines,
+            "{case} would lose {mass:.2} mg in {millions} million cycles{interval}"
+        );
+    }
+    for constant in &calibration.constants {
+        let (name, value) = (constant.name, constant.found.value);
+        line!(lines, "for the case: [wear] {name} = {value:.4e}");
+    }
+    lines
 }

@@ -1,56 +1,54 @@
-//! `condyle new`.
+//! `condyle new` and `condyle export`: commands that write one new file.
 
 use std::{
     fs::{self, File},
     io::{ErrorKind, Write},
     path::{Path, PathBuf},
-    process::ExitCode,
     thread,
 };
 
-use condyle_case::case::{Case, Draft, DraftError, template};
-use condyle_lab::Preview;
+use condyle_case::{
+    abaqus::{ExportError, PressedCase},
+    case::{Case, Draft, DraftError, template},
+};
+use condyle_lab::{Preview, RunError};
 
-use crate::{arguments::New, exit, output, standard_error::tell};
+use crate::{
+    arguments::{Export, New},
+    output::{self, Done, Failure, tell},
+};
 
 /// The schema file next to a case, which the case names in its first line.
 const SCHEMA: &str = "condyle.schema.json";
 
-pub fn new(arguments: &New) -> ExitCode {
-    let text = match text(arguments) {
-        Ok(text) => text,
-        Err(DraftError::Case(problems)) => return exit::fail_case(&problems),
-        Err(error) => return exit::fail(error, exit::BAD_INPUT),
-    };
+pub fn new(arguments: &New) -> Done {
     let path = &arguments.case;
+    let text = text(arguments).map_err(|error| match error {
+        DraftError::Case(problems) => Failure::from(&problems),
+        error => Failure::bad_input(error),
+    })?;
     let text = format!("#:schema {SCHEMA}\n{text}");
-    let written = File::create_new(path).and_then(|mut file| file.write_all(text.as_bytes()));
-    if let Err(error) = written {
-        let said = format!("{}: {error}; choose another name", path.display());
-        return exit::fail(said, exit::BAD_INPUT);
-    }
-    write_schema(&path.with_file_name(SCHEMA));
-    let picture = arguments.femur.as_ref().and_then(|_| drawn(path));
-    let seen = picture.map_or(String::new(), |picture| {
-        format!("look at {}; ", picture.display())
-    });
-    output::print(&format!(
-        "wrote {}; {seen}run it with: condyle run {}\n",
-        path.display(),
-        path.display()
-    ))
-}
-
-/// Writes the schema for editors, unless it exists; a case runs without it.
-fn write_schema(path: &Path) {
-    let written =
-        File::create_new(path).and_then(|mut file| file.write_all(Case::json_schema().as_bytes()));
-    match written {
+    create(path, text.as_bytes())
+        .map_err(|error| Failure::unwritten(path, &error, "choose another name"))?;
+    // For editors; a case runs without it.
+    let schema = path.with_file_name(SCHEMA);
+    match create(&schema, Case::json_schema().as_bytes()) {
         Err(error) if error.kind() != ErrorKind::AlreadyExists => {
-            tell(format_args!("warning: {}: {error}", path.display()));
+            output::warn([format_args!("{}: {error}", schema.display())]);
         }
         _ => {}
     }
+    let picture = arguments.femur.as_ref().and_then(|_| drawn(path));
+    let picture = picture.map(|picture| format!("look at {}; ", picture.display()));
+    let (path, picture) = (path.display(), picture.unwrap_or_default());
+    output::print(&format!(
+        "wrote {path}; {picture}run it with: condyle run {path}\n"
+    ))
+}
+
+/// Writes a new file; an existing one is kept, because a user may have edited it.
+fn create(path: &Path, bytes: &[u8]) -> std::io::Result<()> {
+    File::create_new(path).and_then(|mut file| file.write_all(bytes))
 }
 
 /// Draws the bodies in place into a file next to the case, or warns why it cannot.
@@ -80,11 +78,44 @@ fn text(arguments: &New) -> Result<String, DraftError> {
         femur,
         insert,
     };
-    let folder = arguments
-        .case
-        .parent()
-        .filter(|folder| *folder != Path::new(""));
+    let folder = arguments.case.parent();
+    let folder = folder.filter(|folder| *folder != Path::new(""));
     let drafted = draft.drafted(folder.unwrap_or(Path::new(".")))?;
     drafted.remarks.iter().for_each(tell);
     Ok(drafted.text)
+}
+
+pub fn export(arguments: &Export) -> Done {
+    let case = Case::read(&arguments.case).map_err(RunError::from)?;
+    let mut text = Vec::new();
+    let written = PressedCase::new(&case, usize::from(arguments.threads)).and_then(|pressed| {
+        pressed.write(arguments.pressed_at, &mut text)?;
+        Ok(pressed.warnings)
+    });
+    output::warn(written.map_err(|error| export_failure(&case, error))?);
+    let path = &arguments.out;
+    create(path, &text)
+        .map_err(|error| Failure::unwritten(path, &error, "choose another name or folder"))?;
+    output::print(&format!("wrote {}\n", path.display()))
+}
+
+/// Fails as a run of the same case would.
+fn export_failure(case: &Case, error: ExportError) -> Failure {
+    Failure::from(match error {
+        ExportError::Build(source) => RunError::Build {
+            shown: case.at_its_key(&source),
+            source: Box::new(source),
+        },
+        ExportError::Placement(source) => RunError::Placement {
+            shown: case.placement_at_its_key(&source, &[]),
+            source,
+        },
+        ExportError::Cycle(source) => RunError::March {
+            source: *source,
+            out: None,
+        },
+        ExportError::Write { .. } | ExportError::Unsupported { .. } | ExportError::Apart { .. } => {
+            return Failure::bad_input(error);
+        }
+    })
 }

@@ -1,63 +1,188 @@
-//! Standard output, which may be closed or on a full disk.
+//! Standard output and standard error, either of which may be closed, and exit codes.
 
 use std::{
     fmt::Display,
-    io::{self, ErrorKind, Write},
+    io::{self, ErrorKind, IsTerminal, Write},
     path::Path,
     process::ExitCode,
 };
 
-use condyle_case::config::visible;
+use condyle_case::config::{Problems, RenderStyle, visible};
+use condyle_lab::{
+    RunError,
+    measured::{CalibrateError, CompareError},
+};
+use condyle_report::ReportError;
 use serde::Serialize;
 
-use crate::exit;
+/// Bad input.
+pub const BAD_INPUT: u8 = 2;
+/// The physics could not be solved.
+pub const PHYSICS: u8 = 3;
+/// Interrupted, and resumable.
+pub const INTERRUPTED: u8 = 130;
 
-/// Prints `text` on standard output and returns the exit code.
-pub fn print(text: &str) -> ExitCode {
+/// The exit code of a command, or the reason why it failed.
+pub type Done = Result<ExitCode, Failure>;
+
+/// A message for standard error, and the exit code.
+pub struct Failure {
+    text: String,
+    code: u8,
+}
+
+impl Failure {
+    pub fn bad_input(error: impl Display) -> Self {
+        Self::new(error, BAD_INPUT)
+    }
+
+    pub fn interrupted(message: impl Display) -> Self {
+        Self {
+            text: printable(message),
+            code: INTERRUPTED,
+        }
+    }
+
+    /// Creates the failure to write a file.
+    pub fn unwritten(path: &Path, error: &io::Error, remedy: &str) -> Self {
+        Self::bad_input(format_args!("{}: {error}; {remedy}", path.display()))
+    }
+
+    fn new(error: impl Display, code: u8) -> Self {
+        let text = printable(format_args!("error: {error}"));
+        Self { text, code }
+    }
+
+    pub fn exit(self) -> ExitCode {
+        show(&self.text);
+        ExitCode::from(self.code)
+    }
+}
+
+impl From<&Problems> for Failure {
+    fn from(problems: &Problems) -> Self {
+        let style = if io::stderr().is_terminal() {
+            RenderStyle::Terminal { width: 100 }
+        } else {
+            RenderStyle::Plain
+        };
+        Self {
+            text: problems.render(style),
+            code: BAD_INPUT,
+        }
+    }
+}
+
+impl From<&RunError> for Failure {
+    fn from(error: &RunError) -> Self {
+        let code = if error.is_physics() {
+            PHYSICS
+        } else {
+            BAD_INPUT
+        };
+        match error.in_case() {
+            Some(problems) => Self {
+                code,
+                ..Self::from(problems)
+            },
+            None => Self::new(error, code),
+        }
+    }
+}
+
+impl From<RunError> for Failure {
+    fn from(error: RunError) -> Self {
+        Self::from(&error)
+    }
+}
+
+impl From<CompareError> for Failure {
+    fn from(error: CompareError) -> Self {
+        match &error {
+            CompareError::Measured(problems) => Self::from(problems),
+            other => Self::bad_input(other),
+        }
+    }
+}
+
+impl From<CalibrateError> for Failure {
+    fn from(error: CalibrateError) -> Self {
+        match error {
+            CalibrateError::Compare(error) => error.into(),
+            CalibrateError::Case(problems) => Self::from(&problems),
+            other if other.is_physics() => Self::new(other, PHYSICS),
+            other => Self::bad_input(other),
+        }
+    }
+}
+
+impl From<ReportError> for Failure {
+    fn from(error: ReportError) -> Self {
+        Self::bad_input(error)
+    }
+}
+
+fn printable(words: impl Display) -> String {
+    format!("{}\n", visible(&words.to_string()))
+}
+
+/// Prints a line on standard error; its words may come from a file or the command line.
+pub fn tell(words: impl Display) {
+    show(&printable(words));
+}
+
+fn show(text: &str) {
+    // A closed standard error stops no work.
+    let _ = io::stderr().lock().write_all(text.as_bytes());
+}
+
+pub fn warn(warnings: impl IntoIterator<Item = impl Display>) {
+    for warning in warnings {
+        tell(format_args!("warning: {warning}"));
+    }
+}
+
+/// Prints `text` on standard output.
+pub fn print(text: &str) -> Done {
     ended(write(text), "")
 }
 
-/// Prints `text`, of which more is kept in `folder`, and returns the exit code.
-pub fn print_beside(text: &str, folder: &Path) -> ExitCode {
+/// Prints `text`, of which more is kept in `folder`.
+pub fn print_beside(text: &str, folder: &Path) -> Done {
     let kept = format!("; the results are kept in {}", folder.display());
     ended(write(text), &kept)
 }
 
-/// Prints a message of the command-line parser, such as its help, and returns the exit code.
-pub fn print_from_parser(words: &clap::Error) -> ExitCode {
+/// Prints a message of the command-line parser, such as its help.
+pub fn print_from_parser(words: &clap::Error) -> Done {
     match words.print().or_else(forgive_a_closed_pipe) {
         Err(error) if !words.use_stderr() => ended(Err(error), ""),
-        Ok(()) | Err(_) => {
-            ExitCode::from(u8::try_from(words.exit_code()).unwrap_or(exit::BAD_INPUT))
-        }
+        Ok(()) | Err(_) => Ok(ExitCode::from(
+            u8::try_from(words.exit_code()).unwrap_or(BAD_INPUT),
+        )),
     }
 }
 
 fn write(text: &str) -> io::Result<()> {
     let mut out = io::stdout().lock();
-    let written = out.write_all(text.as_bytes()).and_then(|()| out.flush());
-    written.or_else(forgive_a_closed_pipe)
+    out.write_all(text.as_bytes()).and_then(|()| out.flush())
 }
 
-/// Ignores the error of a pipe that its reader, such as `head`, has closed.
+/// Ignores the error of a pipe that its reader, such as `head`, has closed: it needs no more output.
 fn forgive_a_closed_pipe(error: io::Error) -> io::Result<()> {
     match error.kind() {
-        // The reader needs no more output.
         ErrorKind::BrokenPipe => Ok(()),
         _ => Err(error),
     }
 }
 
-fn ended(written: io::Result<()>, kept: &str) -> ExitCode {
-    match written {
-        Ok(()) => ExitCode::SUCCESS,
-        Err(error) => exit::fail(
-            format!(
-                "standard output cannot be written: {error}{kept}; \
-                 check that the disk is not full, or send it elsewhere"
-            ),
-            exit::BAD_INPUT,
-        ),
+/// Returns the end of a command whose output was `written`; `kept` is the place of the results otherwise.
+pub fn ended(written: io::Result<()>, kept: &str) -> Done {
+    match written.or_else(forgive_a_closed_pipe) {
+        Ok(()) => Ok(ExitCode::SUCCESS),
+        Err(error) => Err(Failure::bad_input(format_args!(
+            "standard output cannot be written: {error}{kept}; check that the disk is not full, or send it elsewhere"
+        ))),
     }
 }
 
@@ -76,10 +201,19 @@ pub struct Lines {
 impl Lines {
     /// Adds a line; its words may come from a file.
     pub fn line(&mut self, words: impl Display) {
-        self.text += &format!("{}\n", visible(&words.to_string()));
+        self.text += &printable(words);
     }
 
     pub fn text(&self) -> &str {
         &self.text
     }
 }
+
+/// Adds a line of formatted words.
+macro_rules! line {
+    ($lines:expr, $($words:tt)*) => {
+        $lines.line(format_args!($($words)*))
+    };
+}
+
+pub(crate) use line;

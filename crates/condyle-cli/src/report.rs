@@ -1,83 +1,120 @@
-//! `condyle report`.
+//! `condyle report` and `condyle plot`.
 
 use std::{
+    fs,
     path::{Path, PathBuf},
-    process::ExitCode,
 };
 
-use condyle_report::runs::{Run, write_runs};
+use condyle_report::{
+    Picture, Results, pictures,
+    runs::{Run, write_runs},
+};
+use condyle_results::PLOTTED;
 
 use crate::{
-    arguments::Report,
-    exit,
-    output::{self, Lines},
-    standard_error::tell,
+    arguments::{PictureFormat, Plot, Report},
+    output::{self, Done, Failure, Lines, line, tell},
 };
 
-pub fn report(arguments: &Report) -> ExitCode {
+pub fn report(arguments: &Report) -> Done {
     match arguments.results.as_slice() {
         [folder] if arguments.out.is_none() => of_one(folder, arguments.pictures),
-        [_] => exit::fail(
-            "--out is for the page of several runs; the report of one stands in its folder",
-            exit::BAD_INPUT,
-        ),
-        folders => side_by_side(folders, arguments),
-    }
-}
-
-fn side_by_side(folders: &[PathBuf], arguments: &Report) -> ExitCode {
-    if arguments.pictures {
-        let said = "--pictures is for one results folder; condyle plot writes the pictures of each";
-        return exit::fail(said, exit::BAD_INPUT);
-    }
-    let runs: Result<Vec<Run>, _> = folders.iter().map(|folder| Run::read(folder)).collect();
-    let out = arguments.out.clone();
-    let out = out.unwrap_or_else(|| PathBuf::from("runs.html"));
-    match runs.and_then(|runs| Ok((write_runs(&out, &runs)?, runs))) {
-        Ok((page, runs)) => {
-            for run in &runs {
-                let left_out = run.results.left_out.iter();
-                left_out
-                    .for_each(|why| tell(format_args!("warning: left out of {}: {why}", run.name)));
-            }
-            folders.iter().for_each(|folder| note_unfinished(folder));
-            output::print(&format!("wrote {}\n", page.display()))
+        [_] => Err(Failure::bad_input(
+            "--out is for the page of several runs; the report of one is in its folder",
+        )),
+        _ if arguments.pictures => Err(Failure::bad_input(
+            "--pictures is for one results folder; condyle plot writes the pictures of each",
+        )),
+        folders => {
+            let out = arguments.out.as_deref();
+            side_by_side(folders, out.unwrap_or(Path::new("runs.html")))
         }
-        Err(error) => exit::fail(error, exit::BAD_INPUT),
     }
 }
 
-fn of_one(folder: &Path, has_pictures: bool) -> ExitCode {
-    let (page, left_out) = match condyle_report::write_readable_report(folder) {
-        Ok(written) => written,
-        Err(error) => return exit::fail(error, exit::BAD_INPUT),
-    };
-    for why in left_out {
-        tell(format_args!("warning: left out of the page: {why}"));
+fn side_by_side(folders: &[PathBuf], out: &Path) -> Done {
+    let runs = folders.iter().map(|folder| Run::read(folder));
+    let runs: Vec<Run> = runs.collect::<Result<_, _>>()?;
+    let page = write_runs(out, &runs)?;
+    for run in &runs {
+        let left_out = run.results.left_out.iter();
+        output::warn(left_out.map(|why| format!("left out of {}: {why}", run.name)));
     }
+    folders.iter().for_each(|folder| note_unfinished(folder));
+    output::print(&format!("wrote {}\n", page.display()))
+}
+
+fn of_one(folder: &Path, has_pictures: bool) -> Done {
+    let (page, left_out) = condyle_report::write_readable_report(folder)?;
+    let left_out = left_out.iter();
+    output::warn(left_out.map(|why| format!("left out of the page: {why}")));
     note_unfinished(folder);
     let mut written = vec![page];
     if has_pictures {
-        match condyle_report::write_pictures(folder) {
-            Ok(pictures) => written.extend(pictures),
-            Err(error) => return exit::fail(error, exit::BAD_INPUT),
-        }
+        written.extend(condyle_report::write_pictures(folder)?);
     }
     let mut lines = Lines::default();
     for path in written {
-        lines.line(format_args!("wrote {}", path.display()));
+        line!(lines, "wrote {}", path.display());
     }
     output::print(lines.text())
 }
 
-/// Notes that the run of a results folder is not done, so that its page is not taken for the
-/// whole.
+/// Notes that the run of a results folder is not finished, so that its results are not taken for those of the whole
+/// test.
 pub fn note_unfinished(folder: &Path) {
-    let is_begun = folder.join("checkpoint").exists() && !folder.join("summary.json").exists();
-    if is_begun {
+    if folder.join("checkpoint").exists() && !folder.join("summary.json").exists() {
         tell(format_args!(
-            "note: the run in {} is not finished (there is no summary.json); shown is how far it is",
+            "note: the run in {} is not finished (there is no summary.json); its results so far are shown",
             folder.display()
         ));
     }
+}
+
+pub fn plot(arguments: &Plot) -> Done {
+    if !cfg!(feature = "png") && arguments.format.contains(&PictureFormat::Png) {
+        return Err(Failure::bad_input(
+            "this condyle was built without PNG; build it with: cargo install --path crates/condyle-cli --features \
+             png, or choose SVG",
+        ));
+    }
+    let results = Results::read_readable(&arguments.results)?;
+    let left_out = results.left_out.iter();
+    output::warn(left_out.map(|why| format!("not drawn: {why}")));
+    note_unfinished(&arguments.results);
+    let folder = arguments.out.clone();
+    let folder = folder.unwrap_or_else(|| arguments.results.join(PLOTTED.folder));
+    let mut lines = Lines::default();
+    for (path, bytes) in files(arguments, &pictures(&results)) {
+        let path = folder.join(path);
+        fs::create_dir_all(&folder)
+            .and_then(|()| fs::write(&path, bytes))
+            .map_err(|error| Failure::unwritten(&path, &error, "choose another folder"))?;
+        line!(lines, "wrote {}", path.display());
+    }
+    if lines.text().is_empty() {
+        let folder = arguments.results.display();
+        return Err(Failure::bad_input(format_args!(
+            "{folder} holds nothing to draw"
+        )));
+    }
+    output::print(lines.text())
+}
+
+fn files(arguments: &Plot, pictures: &[Picture]) -> Vec<(PathBuf, Vec<u8>)> {
+    let is_asked = |format| arguments.format.is_empty() || arguments.format.contains(&format);
+    let mut files = Vec::new();
+    for picture in pictures {
+        let name = Path::new(picture.name);
+        if is_asked(PictureFormat::Svg) {
+            files.push((name.with_extension("svg"), picture.svg.clone().into_bytes()));
+        }
+        #[cfg(feature = "png")]
+        if is_asked(PictureFormat::Png) {
+            let png = condyle_report::png(&picture.svg, f32::from(arguments.dots));
+            let png = png.expect("our own pictures are pictures");
+            files.push((name.with_extension("png"), png));
+        }
+    }
+    files
 }

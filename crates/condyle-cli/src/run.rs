@@ -1,14 +1,6 @@
 //! `condyle run`.
 
-use std::{
-    ops::ControlFlow,
-    path::{Path, PathBuf},
-    process::ExitCode,
-    sync::{
-        Arc,
-        atomic::{AtomicBool, Ordering},
-    },
-};
+use std::path::Path;
 
 use condyle_case::cache::Cache;
 use condyle_lab::{Outcome, RunOptions};
@@ -19,59 +11,41 @@ use condyle_results::{
 
 use crate::{
     arguments::Run,
-    exit,
-    output::{self, Lines},
-    progress::{self, Progress},
+    output::{self, Done, Failure, Lines, line, tell},
+    progress::{self, RunProgress},
     run_tables,
-    standard_error::tell,
 };
 
-pub fn run(arguments: &Run) -> ExitCode {
+pub fn run(arguments: &Run) -> Done {
+    let default = || Path::new("results").join(arguments.case.file_stem().unwrap_or_default());
     let options = RunOptions {
-        out: arguments.out.clone().unwrap_or_else(|| {
-            PathBuf::from("results").join(arguments.case.file_stem().unwrap_or_default())
-        }),
+        out: arguments.out.clone().unwrap_or_else(default),
         resume: arguments.resume,
         force: arguments.force,
         threads: usize::from(arguments.threads),
         cache: Cache::of_user(),
     };
-    let stop = stop_on_interrupt();
-    let mut progress = Progress::new();
-    let outcome = condyle_lab::run(
-        &arguments.case,
-        &arguments.changes.set,
-        &options,
-        &mut |on_event| {
-            progress.show(&on_event);
-            if stop.load(Ordering::Relaxed) {
-                return ControlFlow::Break(());
-            }
-            ControlFlow::Continue(())
-        },
-    );
-    progress.finish();
+    let (case, set) = (&arguments.case, &arguments.changes.set);
+    let outcome = {
+        let mut progress = RunProgress::new();
+        condyle_lab::run(case, set, &options, &mut |event| progress.show(&event))?
+    };
     match outcome {
-        Ok(Outcome::Done(summary)) => print_summary(&summary, &options, arguments.json),
-        Ok(Outcome::DoneBefore(summary)) => {
+        Outcome::Done(summary) => print_summary(&summary, &options.out, arguments.json),
+        Outcome::DoneBefore(summary) => {
             tell("this run is done already: nothing was computed");
-            print_summary(&summary, &options, arguments.json)
+            print_summary(&summary, &options.out, arguments.json)
         }
-        Ok(Outcome::Interrupted(reached)) => {
-            tell(format_args!(
-                "interrupted: {}, and kept; go on with: {}",
-                progress::in_words(&reached),
-                command_to_go_on(arguments, &options)
-            ));
-            ExitCode::from(exit::INTERRUPTED)
-        }
-        Err(error) => exit::fail_run(&error),
+        Outcome::Interrupted(reached) => Err(Failure::interrupted(format_args!(
+            "interrupted: {}, and kept; resume with: {}",
+            progress::in_words(&reached),
+            resuming_command(arguments, &options.out)
+        ))),
     }
 }
 
-/// Returns the shell command that resumes a run.
-fn command_to_go_on(arguments: &Run, options: &RunOptions) -> String {
-    let (case, out) = (arguments.case.display(), options.out.display());
+fn resuming_command(arguments: &Run, out: &Path) -> String {
+    let (case, out) = (arguments.case.display(), out.display());
     let changes = arguments.changes.set.iter().map(|change| {
         let quoted = change.to_string().replace('\'', r"'\''");
         format!(" --set '{quoted}'")
@@ -80,34 +54,15 @@ fn command_to_go_on(arguments: &Run, options: &RunOptions) -> String {
     format!("condyle run {case} --out {out} --resume{changes}")
 }
 
-/// Returns a flag that the first Ctrl-C (or SIGTERM) raises; a second ends the program at once.
-pub fn stop_on_interrupt() -> Arc<AtomicBool> {
-    let stop = Arc::new(AtomicBool::new(false));
-    let flag = Arc::clone(&stop);
-    let set = ctrlc::set_handler(move || {
-        // The first signal waits for the end of an increment, which may take long: the second does not wait.
-        if flag.swap(true, Ordering::Relaxed) {
-            std::process::exit(i32::from(exit::INTERRUPTED));
-        }
-    });
-    if let Err(error) = set {
-        tell(format_args!(
-            "warning: Ctrl-C will end the run at once: {error}"
-        ));
-    }
-    stop
-}
-
-fn print_summary(summary: &Summary, options: &RunOptions, json: bool) -> ExitCode {
-    let out = &options.out;
+fn print_summary(summary: &Summary, out: &Path, json: bool) -> Done {
     if json {
         return output::print_beside(&output::json(summary), out);
     }
     let mut lines = Lines::default();
     // Reasons to doubt the run come before its numbers.
     for doubt in &summary.plausibility {
-        lines.line(format_args!("doubtful: {}", doubt.message));
-        lines.line(format_args!("          {}", doubt.advice));
+        line!(lines, "doubtful: {}", doubt.message);
+        line!(lines, "          {}", doubt.advice);
     }
     let wear_over_conventional = summary.get(&WEAR_OVER_CONVENTIONAL);
     run_tables::add_laws(&summary.wear_laws, wear_over_conventional, &mut lines);
@@ -116,29 +71,26 @@ fn print_summary(summary: &Summary, options: &RunOptions, json: bool) -> ExitCod
     let labels = rows.iter().map(|(label, _)| label.len());
     let width = labels.max().unwrap_or_default().max(26) + 2;
     for (label, value) in rows {
-        lines.line(format_args!("{label:<width$}{value}"));
+        line!(lines, "{label:<width$}{value}");
     }
     for (part, why) in summary.error.iter().flat_map(|error| &error.not_estimated) {
         let part = part.replace('_', " ");
-        lines.line(format_args!(
+        line!(
+            lines,
             "warning: the error from {part} could not be estimated: {why}"
-        ));
+        );
     }
-    lines.line(format_args!(
+    let series = ["insert.pvd", "cycle_first.pvd", "cycle_last.pvd"].map(|name| out.join(name));
+    let series = series.iter().filter(|file| file.exists());
+    let series = series.map(|file| file.display().to_string());
+    line!(
+        lines,
         "results in {}; open {}, and in ParaView {}",
         out.display(),
         out.join("report.html").display(),
-        for_paraview(out)
-    ));
+        series.collect::<Vec<_>>().join(", ")
+    );
     output::print_beside(lines.text(), out)
-}
-
-fn for_paraview(out: &Path) -> String {
-    let series = ["insert.pvd", "cycle_first.pvd", "cycle_last.pvd"];
-    let files = series.map(|name| out.join(name)).into_iter();
-    let there = files.filter(|file| file.exists());
-    let named: Vec<String> = there.map(|file| file.display().to_string()).collect();
-    named.join(", ")
 }
 
 type SummaryLine = (&'static str, String);
@@ -190,51 +142,38 @@ fn in_words(summary: &Summary, scalar: &Scalar) -> Option<String> {
 }
 
 fn rows_of_creep(creep: &CreepSummary) -> Vec<SummaryLine> {
-    let parted = |penetration: f64, wear: f64, creep: f64| {
+    let parts = |penetration: f64, wear: f64, creep: f64| {
         format!("{penetration:.4} mm: {wear:.4} by wear, {creep:.4} by creep (approximate)")
     };
+    let (wear_mm, creep_mm) = (creep.wear_there_mm, creep.creep_there_mm);
+    let deepest = parts(creep.max_penetration_mm, wear_mm, creep_mm);
+    let unloaded = format!("{:.4} mm", creep.max_unloaded_depth_mm);
     let mut rows = vec![
-        (
-            "deepest penetration",
-            parted(
-                creep.max_penetration_mm,
-                creep.wear_there_mm,
-                creep.creep_there_mm,
-            ),
-        ),
-        (
-            "  scanned without load",
-            format!("{:.4} mm", creep.max_unloaded_depth_mm),
-        ),
+        ("deepest penetration", deepest),
+        ("  scanned without load", unloaded),
         ("volume of creep", format!("{:.2} mm3", creep.volume_mm3)),
     ];
     if let Some(first) = creep.first_million {
-        let said = parted(first.penetration_mm, first.wear_mm, first.creep_mm);
-        rows.push(("  after a million cycles", said));
+        let first = parts(first.penetration_mm, first.wear_mm, first.creep_mm);
+        rows.push(("  after a million cycles", first));
     }
     if let Some(line) = creep.line_from_a_million {
-        rows.push((
-            "  scans from there on",
-            format!(
-                "{:.4} mm a million cycles, from {:.4} mm, as laboratories part wear from creep",
-                line.rise_mm_per_million_cycles, line.at_no_cycles_mm
-            ),
-        ));
+        let line = format!(
+            "{:.4} mm a million cycles, from {:.4} mm, as laboratories separate wear from creep",
+            line.rise_mm_per_million_cycles, line.at_no_cycles_mm
+        );
+        rows.push(("  scans from there on", line));
     }
     rows
 }
 
 /// Returns the parts of the discretisation error, with the sign of the change that finer values would make.
 fn rows_of_error(error: &ErrorEstimate) -> [SummaryLine; 3] {
+    let [mass, depth] =
+        [&MASS_LOSS_MG, &MAX_DEPTH_MM].map(|scalar| in_parts(&error[scalar].percent));
     [
-        (
-            "error of mass, by parts",
-            in_parts(&error[&MASS_LOSS_MG].percent),
-        ),
-        (
-            "error of depth, by parts",
-            in_parts(&error[&MAX_DEPTH_MM].percent),
-        ),
+        ("error of mass, by parts", mass),
+        ("error of depth, by parts", depth),
         ("time, error estimate", format!("{:.3} s", error.wall_s)),
     ]
 }

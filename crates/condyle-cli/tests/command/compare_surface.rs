@@ -237,7 +237,7 @@ fn a_region_to_fit_may_be_given_and_the_rest_is_still_compared() {
     );
     let said = bench.say(&["compare", "out", "measured.toml"]);
     for words in [
-        "laid on with a turn of",
+        "registered by a rotation of",
         "in the scars",
         "deepest scanned",
         "half of the creep",
