@@ -170,7 +170,7 @@ fn rows_of_creep(creep: &CreepSummary) -> Vec<SummaryLine> {
 /// Returns the parts of the discretisation error, with the sign of the change that finer values would make.
 fn rows_of_error(error: &ErrorEstimate) -> [SummaryLine; 3] {
     let [mass, depth] =
-        [&MASS_LOSS_MG, &MAX_DEPTH_MM].map(|scalar| in_parts(&error[scalar].percent));
+        [&MASS_LOSS_MG, &MAX_DEPTH_MM].map(|scalar| in_parts(error.of(scalar).percent));
     [
         ("error of mass, by parts", mass),
         ("error of depth, by parts", depth),

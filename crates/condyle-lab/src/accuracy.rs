@@ -12,10 +12,12 @@
 
 mod worn_surface;
 
-use std::{ops::ControlFlow, sync::Arc};
+use std::{
+    ops::{ControlFlow, Range},
+    sync::Arc,
+};
 
 use condyle::{
-    contact::ContactLaw,
     evolve::{
         March, MarchState, Schedule, Snapshot, StepRecord, UpdateRecord, WearTest, mean_over_volume,
     },
@@ -50,18 +52,8 @@ const MISSED: f64 = 1.0;
 /// the updates leave a third of the error, so that half the updates triple it.
 const HALF_THE_UPDATES: f64 = -1.0 / 2.0;
 
-enum Without {
-    /// The user asked to stop.
-    Stopped,
-    /// The changed test could not be solved.
-    Reason(String),
-}
-
 /// The result of a changed test, or the reason why there is none.
-type Found<T> = Result<T, Without>;
-
-/// The result of a changed test, or the reason in words.
-type Stated<T> = Result<T, String>;
+type Found<T> = Result<T, String>;
 
 /// Errors of volume loss and maximum depth, %.
 type OfWear = [f64; 2];
@@ -72,19 +64,23 @@ type Peaks = [f64; 2];
 /// The peaks of the first cycle, and its ranges of AP and IE; or errors of them, %.
 type FirstCycle = [f64; 4];
 
-struct OnTheWay {
-    wear: OfWear,
-    peaks: Peaks,
-}
-
+/// The errors by one part of the discretisation.
 struct PartEstimate {
-    wear: Stated<OfWear>,
+    wear: Found<OfWear>,
     /// Peaks of the later cycle during the march.
-    later: Stated<Peaks>,
-    first: Stated<FirstCycle>,
+    later: Found<Peaks>,
+    first: Found<FirstCycle>,
 }
 
 impl PartEstimate {
+    fn unknown(why: &str) -> Self {
+        Self {
+            wear: Err(why.to_owned()),
+            later: Err(why.to_owned()),
+            first: Err(why.to_owned()),
+        }
+    }
+
     fn errors(self, summary: &Summary) -> QuantityErrors {
         let [mass, depth] = each(self.wear);
         let [later_pressure, later_area] = each(self.later);
@@ -103,8 +99,8 @@ impl PartEstimate {
     }
 }
 
-fn each<const N: usize>(stated: Stated<[f64; N]>) -> [Stated<f64>; N] {
-    match stated {
+fn each<const N: usize>(found: Found<[f64; N]>) -> [Found<f64>; N] {
+    match found {
         Ok(values) => values.map(Ok),
         Err(why) => std::array::from_fn(|_| Err(why.clone())),
     }
@@ -117,65 +113,34 @@ pub(crate) fn estimate(
     summary: &Summary,
     watch: &mut dyn FnMut() -> ControlFlow<()>,
 ) -> ControlFlow<(), Option<ErrorEstimate>> {
-    let Some(mut again) = Again::of(march, watch) else {
+    let Some(mut again) = Again::new(march, watch) else {
         return ControlFlow::Continue(None);
     };
-    let coarser = case.coarser_insert().map(Arc::new);
-    let law = looser(march.test().contact.as_ref());
-    let (mesh, base) = again.by_mesh(&coarser, summary)?;
-    let finer = again.by_increments(&base)?;
-    let looser = again.by_slip(&base, &law)?;
-    let updates = again.by_updates(summary)?;
+    let (mesh, base) = again.by_mesh(case.coarser_insert(), summary);
+    let all = 0..again.snapshots.len();
+    // The slip tolerance has nearly the same effect throughout the march: the last snapshot represents it.
+    let last = all.end.saturating_sub(1)..all.end;
+    let increments = again.by_change(&base, FINER_INCREMENTS, all, |mut test| {
+        test.time.increments *= 2;
+        test
+    });
+    let looser = march.test().contact.with_slip_tolerance_times(2.0);
+    let slip_tolerance = again.by_change(&base, LOOSER_SLIP, last, |test| WearTest {
+        contact: Arc::clone(&looser),
+        ..test
+    });
+    let updates = again.by_updates(summary);
+    if again.is_stopped {
+        return ControlFlow::Break(());
+    }
     let parts = [
-        (Part::Increments, finer.errors(summary)),
+        (Part::Increments, increments.errors(summary)),
         (Part::Updates, updates.errors(summary)),
         (Part::Mesh, mesh.errors(summary)),
-        (Part::SlipTolerance, looser.errors(summary)),
+        (Part::SlipTolerance, slip_tolerance.errors(summary)),
     ];
     let estimate = ErrorEstimate::new(|scalar| summary[scalar], parts);
     ControlFlow::Continue(Some(estimate))
-}
-
-/// Propagates a stop, and converts every other reason to words.
-fn stated<T>(found: Found<T>) -> ControlFlow<(), Stated<T>> {
-    match found {
-        Ok(percent) => ControlFlow::Continue(Ok(percent)),
-        Err(Without::Reason(why)) => ControlFlow::Continue(Err(why)),
-        Err(Without::Stopped) => ControlFlow::Break(()),
-    }
-}
-
-fn finer(mut test: WearTest) -> WearTest {
-    test.time.increments *= 2;
-    test
-}
-
-fn looser(contact: &dyn ContactLaw) -> Arc<dyn ContactLaw> {
-    contact.with_slip_tolerance_times(2.0)
-}
-
-fn with_contact(test: WearTest, contact: Arc<dyn ContactLaw>) -> WearTest {
-    WearTest { contact, ..test }
-}
-
-fn has_later_peak(summary: &Summary) -> bool {
-    summary[&PEAK_PRESSURE_CYCLE] > 0.0 || summary[&PEAK_CONTACT_AREA_CYCLE] > 0.0
-}
-
-/// Returns the last update; an error for a march with one update, which cannot be compared.
-fn last_of_several(state: &MarchState) -> Stated<&UpdateRecord> {
-    let last = state.updates.last().filter(|_| state.updates.len() > 1);
-    last.ok_or_else(|| "one update has no other to be compared with".to_owned())
-}
-
-/// Returns the march's own estimate of the error of its steps, % of volume loss and of maximum depth.
-fn of_updates(state: &MarchState) -> Stated<OfWear> {
-    let last = last_of_several(state)?;
-    let error = state.step_error;
-    Ok([
-        100.0 * error.volume_mm3 / last.volume_loss_mm3,
-        100.0 * error.max_depth_mm / last.max_depth_mm,
-    ])
 }
 
 /// A reference test, with whose first cycle changed tests are compared, and the results of that cycle.
@@ -194,19 +159,24 @@ struct Again<'a> {
     worn: WornSurface,
     growth: OfWear,
     watch: &'a mut dyn FnMut() -> ControlFlow<()>,
+    is_stopped: bool,
 }
 
 impl<'a> Again<'a> {
-    fn of(march: &'a March, watch: &'a mut dyn FnMut() -> ControlFlow<()>) -> Option<Self> {
+    fn new(march: &'a March, watch: &'a mut dyn FnMut() -> ControlFlow<()>) -> Option<Self> {
         let state = march.state();
         let worn = WornSurface::of(march);
+        let mut snapshots: Vec<&Snapshot> = state.snapshots.iter().flatten().collect();
+        // In a short march both snapshots belong to one step.
+        snapshots.dedup_by(|a, b| a.depths == b.depths);
         Some(Self {
             first: state.first_step.as_ref()?,
-            snapshots: snapshots(state),
+            snapshots,
             growth: growth(state, &worn)?,
             worn,
             march,
             watch,
+            is_stopped: false,
         })
     }
 
@@ -223,102 +193,117 @@ impl<'a> Again<'a> {
 
     /// Estimates the error by a coarser mesh; also returns a test whose first cycle is solved quickly, on that mesh
     /// if it exists.
-    fn by_mesh(
-        &mut self,
-        coarser: &Stated<Arc<Insert>>,
-        summary: &Summary,
-    ) -> ControlFlow<(), (PartEstimate, Base)> {
+    fn by_mesh(&mut self, coarser: Found<Insert>, summary: &Summary) -> (PartEstimate, Base) {
         // The run's own first cycle.
         let own = Base {
             test: self.as_run(),
             first: first_cycle(self.march.state()),
         };
-        let insert = match coarser {
-            Ok(insert) => insert,
-            Err(why) => return ControlFlow::Continue((unknown(why), own)),
+        let solved = coarser.and_then(|insert| {
+            let insert = Arc::new(insert);
+            let test = WearTest {
+                insert,
+                ..own.test.clone()
+            };
+            let march = self.started(test.clone())?;
+            Ok((self.solved(march)?, test))
+        });
+        let (march, test) = match solved {
+            Ok(solved) => solved,
+            Err(why) => return (PartEstimate::unknown(&why), own),
         };
-        let test = WearTest {
-            insert: Arc::clone(insert),
-            ..self.as_run()
-        };
-        let unworn = stated(self.unworn(&test))?;
-        let later = if has_later_peak(summary) {
-            stated(self.worn_on(&test))?
-        } else {
-            Ok([0.0; 2])
-        };
-        ControlFlow::Continue(match unworn {
-            Err(why) => (unknown(&why), own),
-            Ok((wear, first)) => {
-                let told = PartEstimate {
-                    wear: Ok(self.between_the_nodes_too(wear)),
-                    later,
-                    first: Ok(errors(COARSER_MESH, first, own.first)),
-                };
-                (told, Base { test, first })
-            }
-        })
-    }
-
-    /// Returns the errors of wear by the mesh; the error of the depth is at least the excess of the deepest place
-    /// between the nodes.
-    fn between_the_nodes_too(&self, [mass, depth]: OfWear) -> OfWear {
+        let reference = worn(&self.first.0, &self.worn.weights());
+        let weights = self.worn.weights_on(march.insert());
+        let [mass, depth] = self.errors_of_wear(COARSER_MESH, &march, &weights, reference);
+        // The deepest place may lie between the nodes of either mesh: its excess is the least error of the depth.
         let missed = 100.0 * self.worn.missed_between_nodes();
-        [mass, if missed > depth.abs() { missed } else { depth }]
+        let depth = if missed > depth.abs() { missed } else { depth };
+        let fine = &self.march.test().insert;
+        let later = self.later_peaks(summary, COARSER_MESH, &test, |snapshot| {
+            let surface = WornSurface::with(fine, &snapshot.depths.total_mm());
+            snapshot.on(&test.insert, surface.depths_on(&test.insert))
+        });
+        let first = first_cycle(march.state());
+        let part = PartEstimate {
+            wear: Ok([mass, depth]),
+            later,
+            first: Ok(errors(COARSER_MESH, first, own.first)),
+        };
+        (part, Base { test, first })
     }
 
-    fn by_increments(&mut self, base: &Base) -> ControlFlow<(), PartEstimate> {
-        let test = finer(self.as_run());
-        let on_the_way = stated(self.on_the_way(FINER_INCREMENTS, &test))?;
-        let first = stated(self.again_first(FINER_INCREMENTS, finer(base.test.clone()), base))?;
-        ControlFlow::Continue(told(on_the_way, first))
-    }
-
-    fn by_slip(
+    /// Estimates the error by a change of the test: of the wear from the mean of cycles at some snapshots, of the later
+    /// peaks from the last of them, and of the first cycle.
+    fn by_change(
         &mut self,
         base: &Base,
-        looser: &Arc<dyn ContactLaw>,
-    ) -> ControlFlow<(), PartEstimate> {
-        // The slip tolerance has nearly the same effect throughout the march: the last snapshot represents it.
-        let test = with_contact(self.as_run(), Arc::clone(looser));
-        let on_the_way = stated(self.at(self.snapshots.len() - 1, LOOSER_SLIP, &test))?;
-        let test = with_contact(base.test.clone(), Arc::clone(looser));
-        let first = stated(self.again_first(LOOSER_SLIP, test, base))?;
-        ControlFlow::Continue(told(on_the_way, first))
+        factor: f64,
+        snapshots: Range<usize>,
+        change: impl Fn(WearTest) -> WearTest,
+    ) -> PartEstimate {
+        let changed = change(self.as_run());
+        let (wear, later) = match self.on_the_way(factor, snapshots, &changed) {
+            Ok((wear, peaks)) => (Ok(wear), Ok(peaks)),
+            Err(why) => (Err(why.clone()), Err(why)),
+        };
+        let first = self.started(change(base.test.clone()));
+        let first = first.and_then(|march| self.solved(march));
+        let first = first.map(|march| errors(factor, first_cycle(march.state()), base.first));
+        PartEstimate { wear, later, first }
+    }
+
+    /// Returns errors in %: `factor` times the change of a changed test during the march.
+    fn on_the_way(
+        &mut self,
+        factor: f64,
+        snapshots: Range<usize>,
+        changed: &WearTest,
+    ) -> Found<(OfWear, Peaks)> {
+        let (count, weights) = (snapshots.len() as f64, self.worn.weights());
+        let (mut mean, mut peaks) = ([0.0; 2], [0.0; 2]);
+        for number in snapshots {
+            let snapshot = self.snapshots[number];
+            let march = self.solved(self.march_from(changed, snapshot))?;
+            let reference = worn(&snapshot.step, &weights);
+            let wear = self.errors_of_wear(factor, &march, &weights, reference);
+            mean = [0, 1].map(|i| mean[i] + wear[i] / count);
+            peaks = self.errors_of_peaks(factor, &march, snapshot);
+        }
+        Ok((mean, peaks))
     }
 
     /// Estimates the errors by the updates, on which the first cycle does not depend.
-    fn by_updates(&mut self, summary: &Summary) -> ControlFlow<(), PartEstimate> {
-        let later = if has_later_peak(summary) {
-            stated(self.as_deep_as_exact())?
-        } else {
-            Ok([0.0; 2])
-        };
-        let wear = if self.march.test().creep.is_some() {
-            stated(self.with_half_the_updates())?
-        } else {
-            of_updates(self.march.state())
-        };
-        ControlFlow::Continue(PartEstimate {
-            wear,
+    fn by_updates(&mut self, summary: &Summary) -> PartEstimate {
+        let test = self.as_run();
+        // The surface that exact steps would give.
+        let later = self.later_peaks(summary, MISSED, &test, |snapshot| {
+            snapshot.lowered(&test.insert, snapshot.step.error_mm.clone())
+        });
+        PartEstimate {
+            wear: self.wear_by_updates(),
             later,
             first: Ok([0.0; 4]),
-        })
+        }
     }
 
-    /// Estimates the errors of a march with creep, in %, from a march with half as many updates.
-    ///
-    /// The march estimates the error of its steps of wear, but not of its steps of creep, which change the later
-    /// wear.
-    fn with_half_the_updates(&mut self) -> Found<OfWear> {
+    /// Returns the march's own estimate of the error of its steps of wear, in %. With creep, a march with half as many
+    /// updates estimates it, because the steps of creep change the later wear.
+    fn wear_by_updates(&mut self) -> Found<OfWear> {
         let state = self.march.state();
-        let last = last_of_several(state).map_err(Without::Reason)?;
-        let test = WearTest {
+        let last = state.updates.last().filter(|_| state.updates.len() > 1);
+        let last = last.ok_or_else(|| "one update has no other to be compared with".to_owned())?;
+        if self.march.test().creep.is_none() {
+            let error = state.step_error;
+            return Ok([
+                100.0 * error.volume_mm3 / last.volume_loss_mm3,
+                100.0 * error.max_depth_mm / last.max_depth_mm,
+            ]);
+        }
+        let mut march = self.started(WearTest {
             schedule: Schedule::fixed(last.cycles, state.updates.len() / 2),
             comparison_laws: Vec::new(),
             ..self.march.test().clone()
-        };
-        let mut march = March::start(test)?.in_motion(&self.first.1);
+        })?;
         while !march.is_done() {
             march = self.solved(march)?;
         }
@@ -327,95 +312,52 @@ impl<'a> Again<'a> {
         Ok(errors(HALF_THE_UPDATES, halved, worn(last)))
     }
 
-    /// Returns errors in %: `factor` times the change of a changed test during the march. Errors of the wear are the
-    /// mean over the snapshots; errors of the peaks come from the later snapshot.
-    fn on_the_way(&mut self, factor: f64, changed: &WearTest) -> Found<OnTheWay> {
-        let count = self.snapshots.len();
-        let (mut mean, mut peaks) = ([0.0; 2], [0.0; 2]);
-        for snapshot in 0..count {
-            let here = self.at(snapshot, factor, changed)?;
-            mean = [0, 1].map(|i| mean[i] + here.wear[i] / count as f64);
-            peaks = here.peaks;
-        }
-        Ok(OnTheWay { wear: mean, peaks })
-    }
-
-    fn at(&mut self, snapshot: usize, factor: f64, changed: &WearTest) -> Found<OnTheWay> {
-        let snapshot = self.snapshots[snapshot];
-        let march = self.solved(self.march_from(changed, snapshot))?;
-        let weights = self.worn.weights();
-        let reference = worn(&snapshot.step, &weights);
-        let peaks = peaks_of(&self.march.state().updates[snapshot.update]);
-        Ok(OnTheWay {
-            wear: self.errors_of_wear(factor, &march, &weights, reference),
-            peaks: errors(factor, first_peaks(march.state()), peaks),
-        })
+    /// Returns the errors of the peaks in the later cycle, in %, from a changed insert in that cycle; 0 if the first
+    /// cycle has all peaks.
+    fn later_peaks(
+        &mut self,
+        summary: &Summary,
+        factor: f64,
+        test: &WearTest,
+        change: impl FnOnce(&Snapshot) -> Snapshot,
+    ) -> Found<Peaks> {
+        let is_later =
+            summary[&PEAK_PRESSURE_CYCLE] > 0.0 || summary[&PEAK_CONTACT_AREA_CYCLE] > 0.0;
+        let Some(snapshot) = self.snapshots.last().copied().filter(|_| is_later) else {
+            return Ok([0.0; 2]);
+        };
+        let march = self.solved(self.march_from(test, &change(snapshot)))?;
+        Ok(self.errors_of_peaks(factor, &march, snapshot))
     }
 
     fn march_from(&self, test: &WearTest, snapshot: &Snapshot) -> March {
         March::from_snapshot(test.clone(), snapshot, self.march.state().zero_mm)
     }
 
-    /// Returns the errors of the peaks in the later cycle, in %: the difference between the surface of the march and
-    /// the surface that exact steps would give.
-    fn as_deep_as_exact(&mut self) -> Found<Peaks> {
-        let test = self.as_run();
-        let Some(snapshot) = self.snapshots.last().copied() else {
-            return Ok([0.0; 2]);
-        };
-        let exact = snapshot.lowered(&test.insert, snapshot.step.error_mm.clone());
-        self.peaks_at(MISSED, &test, &exact, snapshot.update)
+    fn started(&self, test: WearTest) -> Found<March> {
+        // After a stop even the settling of a test would take time.
+        if self.is_stopped {
+            return Err("stopped".to_owned());
+        }
+        let march = March::start(test).map_err(|why| why.to_string())?;
+        Ok(march.in_motion(&self.first.1))
     }
 
-    /// Returns the errors of the peaks in the later cycle, in %, from a coarser mesh worn to the same depth.
-    fn worn_on(&mut self, coarser: &WearTest) -> Found<Peaks> {
-        let Some(snapshot) = self.snapshots.last().copied() else {
-            return Ok([0.0; 2]);
-        };
-        let depths_mm = snapshot.depths.total_mm();
-        let worn = WornSurface::with(&self.march.test().insert, &depths_mm);
-        let depths_mm = worn.depths_on(&coarser.insert);
-        let coarse = snapshot.on(&coarser.insert, depths_mm);
-        self.peaks_at(COARSER_MESH, coarser, &coarse, snapshot.update)
-    }
-
-    fn peaks_at(
-        &mut self,
-        factor: f64,
-        test: &WearTest,
-        snapshot: &Snapshot,
-        update: usize,
-    ) -> Found<Peaks> {
-        let march = self.solved(self.march_from(test, snapshot))?;
-        let reference = peaks_of(&self.march.state().updates[update]);
-        Ok(errors(factor, first_peaks(march.state()), reference))
-    }
-
-    /// Returns the errors of wear in % from an unworn coarser mesh, and its first cycle.
-    fn unworn(&mut self, coarser: &WearTest) -> Found<(OfWear, FirstCycle)> {
-        let march = self.started(coarser.clone())?;
-        let reference = worn(&self.first.0, &self.worn.weights());
-        let weights = self.worn.weights_on(march.insert());
-        let wear = self.errors_of_wear(COARSER_MESH, &march, &weights, reference);
-        Ok((wear, first_cycle(march.state())))
-    }
-
-    /// Returns the errors of the first cycle in %, from a change of the test.
-    fn again_first(&mut self, factor: f64, changed: WearTest, base: &Base) -> Found<FirstCycle> {
-        let march = self.started(changed)?;
-        Ok(errors(factor, first_cycle(march.state()), base.first))
-    }
-
-    fn started(&mut self, test: WearTest) -> Found<March> {
-        let march = March::start(test)?.in_motion(&self.first.1);
-        self.solved(march)
-    }
-
+    /// Takes one update.
     fn solved(&mut self, mut march: March) -> Found<March> {
-        if march.update(&mut |_| (self.watch)())?.is_break() {
-            return Err(Without::Stopped);
+        if !self.is_stopped {
+            let flow = march.update(&mut |_| (self.watch)());
+            self.is_stopped = flow.map_err(|why| why.to_string())?.is_break();
+        }
+        if self.is_stopped {
+            return Err("stopped".to_owned());
         }
         Ok(march)
+    }
+
+    fn errors_of_peaks(&self, factor: f64, march: &March, snapshot: &Snapshot) -> Peaks {
+        let reference = peaks_of(&self.march.state().updates[snapshot.update]);
+        errors(factor, first_peaks(march.state()), reference)
     }
 
     fn errors_of_wear(
@@ -431,23 +373,6 @@ impl<'a> Again<'a> {
         };
         [0, 1].map(|i| self.growth[i] * 100.0 * factor * (now[i] / reference[i] - 1.0))
     }
-}
-
-fn unknown(why: &str) -> PartEstimate {
-    PartEstimate {
-        wear: Err(why.to_owned()),
-        later: Err(why.to_owned()),
-        first: Err(why.to_owned()),
-    }
-}
-
-/// Returns the estimate from the cycles during the march and the first cycle.
-fn told(on_the_way: Stated<OnTheWay>, first: Stated<FirstCycle>) -> PartEstimate {
-    let (wear, later) = match on_the_way {
-        Ok(OnTheWay { wear, peaks }) => (Ok(wear), Ok(peaks)),
-        Err(why) => (Err(why.clone()), Err(why)),
-    };
-    PartEstimate { wear, later, first }
 }
 
 /// Returns errors in %: `factor` times the relative difference of `now` from `reference`; 0 where they are equal.
@@ -478,25 +403,12 @@ fn first_cycle(state: &MarchState) -> FirstCycle {
     [pressure, area, range(AP), range(IE)]
 }
 
-fn snapshots(state: &MarchState) -> Vec<&Snapshot> {
-    let mut snapshots: Vec<&Snapshot> = state.snapshots.iter().flatten().collect();
-    // In a short march both snapshots belong to one step.
-    snapshots.dedup_by(|a, b| a.depths == b.depths);
-    snapshots
-}
-
 /// Returns the volume that a cycle wore, and the mean of its depth by `weights`.
 fn worn(step: &StepRecord, weights: &[f64]) -> [f64; 2] {
     [
         step.volume_per_cycle_mm3(),
         mean_over_volume(&step.area_mm2, weights, &step.depth_per_cycle_mm),
     ]
-}
-
-impl<E: std::error::Error> From<E> for Without {
-    fn from(why: E) -> Self {
-        Self::Reason(why.to_string())
-    }
 }
 
 /// Returns the powers of the rates with which volume loss and maximum depth grow.

@@ -146,32 +146,32 @@ impl Stated {
         let of = [
             (
                 "mass",
-                &error[&catalogue::MASS_LOSS_MG].percent,
+                error.of(&catalogue::MASS_LOSS_MG).percent,
                 NOISE_PERCENT,
             ),
             (
                 "depth",
-                &error[&catalogue::MAX_DEPTH_MM].percent,
+                error.of(&catalogue::MAX_DEPTH_MM).percent,
                 NOISE_PERCENT,
             ),
             (
                 "peak pressure",
-                &error[&catalogue::PEAK_PRESSURE_MPA].percent,
+                error.of(&catalogue::PEAK_PRESSURE_MPA).percent,
                 NOISE_PERCENT,
             ),
             (
                 "area",
-                &error[&catalogue::PEAK_CONTACT_AREA_MM2].percent,
+                error.of(&catalogue::PEAK_CONTACT_AREA_MM2).percent,
                 AREA_NOISE_PERCENT,
             ),
             (
                 "AP range",
-                &error[&catalogue::AP_RANGE_MM].percent,
+                error.of(&catalogue::AP_RANGE_MM).percent,
                 NOISE_PERCENT,
             ),
             (
                 "IE range",
-                &error[&catalogue::IE_RANGE_DEG].percent,
+                error.of(&catalogue::IE_RANGE_DEG).percent,
                 NOISE_PERCENT,
             ),
         ];
@@ -251,13 +251,13 @@ fn verify_the_estimated_errors_of_updates_where_the_insert_creeps() {
     for (what, parts, now, truth) in [
         (
             "mass",
-            &error[&catalogue::MASS_LOSS_MG].percent,
+            error.of(&catalogue::MASS_LOSS_MG).percent,
             summary[&catalogue::MASS_LOSS_MG],
             mass_mg,
         ),
         (
             "depth",
-            &error[&catalogue::MAX_DEPTH_MM].percent,
+            error.of(&catalogue::MAX_DEPTH_MM).percent,
             summary[&catalogue::MAX_DEPTH_MM],
             depth_mm,
         ),
@@ -275,16 +275,16 @@ fn the_default_case_states_half_a_percent_of_mass_and_one_of_depth() {
         .clone()
         .expect("a case asks for it unless it says otherwise");
     assert!(
-        error[&catalogue::MASS_LOSS_MG].percent.total < 0.5,
+        error.of(&catalogue::MASS_LOSS_MG).percent.total < 0.5,
         "{error:?}"
     );
     assert!(
-        error[&catalogue::MAX_DEPTH_MM].percent.total < 1.0,
+        error.of(&catalogue::MAX_DEPTH_MM).percent.total < 1.0,
         "{error:?}"
     );
-    let mass_mg =
-        error[&catalogue::MASS_LOSS_MG].percent.total / 100.0 * summary[&catalogue::MASS_LOSS_MG];
-    assert!((error[&catalogue::MASS_LOSS_MG].in_unit.total / mass_mg - 1.0).abs() < 1e-9);
+    let mass_mg = error.of(&catalogue::MASS_LOSS_MG).percent.total / 100.0
+        * summary[&catalogue::MASS_LOSS_MG];
+    assert!((error.of(&catalogue::MASS_LOSS_MG).in_unit.total / mass_mg - 1.0).abs() < 1e-9);
 }
 
 /// A shipped case; none if its meshes are not there.
@@ -321,7 +321,8 @@ fn assert_as_deep_as_forty_updates(name: &str, most_cycles: f64, stated: fn(f64,
         .error
         .clone()
         .expect("a case asks for it unless it says otherwise");
-    let found = error[&catalogue::MAX_DEPTH_MM]
+    let found = error
+        .of(&catalogue::MAX_DEPTH_MM)
         .percent
         .updates
         .expect("it has updates");
@@ -387,7 +388,13 @@ fn what_cannot_be_estimated_says_why() {
     updated(&mut case, 1);
     case.time.increments = 40;
     let error = run(&case).error.expect("the other parts can");
-    assert_eq!(error[&catalogue::MASS_LOSS_MG].percent.updates, None);
+    assert_eq!(error.of(&catalogue::MASS_LOSS_MG).percent.updates, None);
     assert!(error.not_estimated["updates"].contains("one update has no other"));
-    assert!(error[&catalogue::MASS_LOSS_MG].percent.increments.is_some());
+    assert!(
+        error
+            .of(&catalogue::MASS_LOSS_MG)
+            .percent
+            .increments
+            .is_some()
+    );
 }

@@ -362,7 +362,7 @@ impl Spread {
         let [low, high] = central_interval(values);
         Self {
             value: as_given[output],
-            discretisation: error.map(|error| error[output].in_unit.total),
+            discretisation: error.map(|error| error.of(output).in_unit.total),
             mean,
             standard_deviation,
             low,

@@ -34,7 +34,7 @@ fn two_runs_differ_by_what_their_summaries_say_ranked_beside_their_errors() {
     assert_eq!(mass["difference"], off);
     let [one, two] = [&first, &second].map(|summary| {
         let error = summary.error.as_ref().expect("is estimated");
-        error[&catalogue::MASS_LOSS_MG].in_unit.total
+        error.of(&catalogue::MASS_LOSS_MG).in_unit.total
     });
     let times = mass["times_errors"].as_f64().expect("has errors");
     assert!((times - off.abs() / (one + two)).abs() < 1e-12);

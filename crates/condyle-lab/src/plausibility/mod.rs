@@ -120,7 +120,7 @@ fn large_error(
     scalar: &Scalar,
     finished: &Finished<'_>,
 ) -> Option<PlausibilityWarning> {
-    let percent = finished.summary.error.as_ref()?[scalar].percent.total;
+    let percent = finished.summary.error.as_ref()?.of(scalar).percent.total;
     (percent > MAX_ERROR_PERCENT).then(|| PlausibilityWarning {
         check: check.to_owned(),
         value: percent,
@@ -153,7 +153,7 @@ pub(crate) fn single_update(finished: &Finished<'_>) -> Option<PlausibilityWarni
 /// Warns of steps of the march that are so long that the estimate of their error is too small.
 pub(crate) fn updates_too_few(finished: &Finished<'_>) -> Option<PlausibilityWarning> {
     let error = finished.summary.error.as_ref()?;
-    let percent = error[&MAX_DEPTH_MM].percent.updates?.abs();
+    let percent = error.of(&MAX_DEPTH_MM).percent.updates?.abs();
     (percent > MAX_OF_UPDATES_PERCENT).then(|| PlausibilityWarning {
         check: "updates_too_few".to_owned(),
         value: percent,

@@ -149,11 +149,11 @@ pub(super) fn ranges(results: &Results) -> Vec<Value> {
 pub(super) fn accuracy(results: &Results) -> Option<Value> {
     let error = results.summary.as_ref()?.error.as_ref()?;
     let parts = ErrorParts::default().parts().map(|(part, _)| part);
-    let rows = error.quantities().iter().flat_map(|quantity| {
+    let rows = error.quantities().flat_map(|quantity| {
         let name = first_letter_large(quantity.scalar.label);
         [
-            row(&name, "%", &quantity.percent),
-            row(&name, &unit_of(quantity.scalar), &quantity.in_unit),
+            row(&name, "%", quantity.percent),
+            row(&name, &unit_of(quantity.scalar), quantity.in_unit),
         ]
     });
     let name = |part: Part| part.name().replace('_', " ");
