@@ -5,8 +5,8 @@ use condyle::{
     contact::{ContactMemory, TouchedNode},
     evolve::March,
     machine::{
-        Chain,
-        knee::{KNEE, MEDIAL, VV},
+        Chain, JointIndex,
+        knee::{FLEXION, KNEE, MEDIAL, VV},
     },
     spatial::{Pose, RelativeMotion},
 };
@@ -45,7 +45,13 @@ impl AtRest {
     /// Evaluates the settled bodies of a march that has not begun.
     pub(crate) fn of(march: &March) -> Self {
         let test = march.test();
-        let positions = settled(march);
+        // The positions after settling, before any cycle.
+        let mut positions = march.state().activities[0].machine.now.positions;
+        for (position, joint) in positions.iter_mut().zip(&test.machine().joints) {
+            if joint.description.settles_at_zero() {
+                *position = 0.0;
+            }
+        }
         let chain = Chain::new(test.machine(), march.state().zero_mm, test.flexion_axis_mm);
         let motion = RelativeMotion::at_rest(chain.at(&positions).pose);
         let surface = march.insert().surface();
@@ -53,41 +59,28 @@ impl AtRest {
         let mut contact = test.contact.contact(bodies, ContactMemory::default());
         // The response settles the contact; the evaluation after it reads its pressures.
         contact.respond(&motion);
-        let landing = contact.evaluate(&motion);
-        let sum = |value: fn(&TouchedNode) -> f64| landing.touched.iter().map(value).sum::<f64>();
+        let result = contact.evaluate(&motion);
+        let sum = |value: fn(&TouchedNode) -> f64| result.touched.iter().map(value).sum::<f64>();
         let axial_force_n = sum(|node| -node.force_n.y);
-        let medial_n = sum(|node| {
-            let is_medial = usize::from(node.region) == MEDIAL;
-            if is_medial { -node.force_n.y } else { 0.0 }
+        let medial_n = sum(|node| match usize::from(node.region) {
+            MEDIAL => -node.force_n.y,
+            _ => 0.0,
         });
         let femur = march.femur();
         let is_near = |place: &&Vec3| femur.gap_mm(&motion.pose.to_femur(place)) < NEAR_MM;
         let (x, y) = test.flexion_axis_mm;
-        let in_files = |joint: condyle::machine::JointIndex| {
-            KNEE.joint(joint).kind().in_files(joint.of(&positions))
-        };
+        let in_files = |joint: JointIndex| KNEE.joint(joint).kind().in_files(joint.of(&positions));
         Self {
             flexion_axis_mm: motion.pose.to_insert(&Vec3::new(x, y, 0.0)).into(),
-            flexion_deg: in_files(condyle::machine::knee::FLEXION),
+            flexion_deg: in_files(FLEXION),
             vv_deg: in_files(VV),
             axial_force_n,
             medial_load_share: medial_n / axial_force_n,
             contact_area_mm2: sum(|node| node.covered_mm2),
-            peak_pressure_mpa: landing.peak_pressure_mpa,
+            peak_pressure_mpa: result.peak_pressure_mpa,
             pose: motion.pose,
             nodes_near: surface.positions.iter().filter(is_near).count(),
-            touched: landing.touched,
+            touched: result.touched,
         }
     }
-}
-
-/// Returns the positions after settling, before any cycle.
-fn settled(march: &March) -> [f64; 6] {
-    let mut positions = march.state().activities[0].machine.now.positions;
-    for (position, joint) in positions.iter_mut().zip(&march.test().machine().joints) {
-        if joint.description.settles_at_zero() {
-            *position = 0.0;
-        }
-    }
-    positions
 }

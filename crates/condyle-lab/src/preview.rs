@@ -154,7 +154,7 @@ impl BodyFacts {
         let file = file.map(DataFile::name);
         // The warnings of a file start with its name.
         let start = file.as_ref().map(|file| format!("{file}: "));
-        let own = |said: &String| said.strip_prefix(start.as_deref()?).map(str::to_owned);
+        let own = |warning: &String| warning.strip_prefix(start.as_deref()?).map(str::to_owned);
         Self {
             shape,
             size_mm: (high - low).into(),
@@ -188,7 +188,12 @@ impl InsertFacts {
         let insert = march.test().insert.as_ref();
         let (mesh, places) = (insert.mesh(), insert.surface().positions);
         let dishes = Dishes::find(&places);
-        let thickness = |dish: Vec3| least_around(&dish, &places, insert.thickness_mm());
+        let thickness = |dish: Vec3| {
+            let nodes = places.iter().zip(insert.thickness_mm());
+            let near = nodes.filter(|(place, _)| (*place - dish).norm() < AROUND_DISH_MM);
+            near.map(|(_, thickness)| *thickness)
+                .fold(f64::INFINITY, f64::min)
+        };
         Self {
             body: BodyFacts::of(
                 case.insert.shape.word(),
@@ -204,15 +209,6 @@ impl InsertFacts {
             dishes_middle_mm: dishes.map(|dishes| dishes.middle_mm().into()),
         }
     }
-}
-
-fn least_around(dish: &Vec3, places: &[Vec3], values: &[f64]) -> f64 {
-    let is_near = |place: &Vec3| (place - dish).norm() < AROUND_DISH_MM;
-    let near = places
-        .iter()
-        .zip(values)
-        .filter(|(place, _)| is_near(place));
-    near.map(|(_, value)| *value).fold(f64::INFINITY, f64::min)
 }
 
 /// Cycles solved for an update: some are solved again until they repeat themselves.

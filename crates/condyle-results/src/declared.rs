@@ -1,12 +1,10 @@
 //! The catalogue in other languages: a JSON schema, and types for Python and TypeScript.
 
-use std::fmt::Write;
-
 use serde_json::{Value, json};
 
 use super::{
-    KNEE,
-    catalogue::{self, PARTS, PartKind, Prominence, Scalar},
+    CycleQuantity, KNEE,
+    catalogue::{self, PARTS, PartKind, Scalar},
     insert_fields::NODE_FIELDS,
     tables::WEAR_COLUMNS,
 };
@@ -34,8 +32,12 @@ pub fn results_schema() -> String {
     }
     let column = |name: &str, about: &str| json!({"name": name, "description": about.trim()});
     let wear = WEAR_COLUMNS.iter().map(|one| column(one.name, one.about));
-    let kinematics = KNEE.columns.iter().map(|quantity| KNEE.column(*quantity));
-    let kinematics = ["cycles", "percent"].into_iter().chain(kinematics);
+    let of_knee = KNEE.columns.iter();
+    let of_knee = of_knee.map(|&quantity| column(KNEE.column(quantity), &description(quantity)));
+    let kinematics = [
+        column("cycles", "Cycles done before the cycle."),
+        column("percent", "End of the increment, % of the cycle."),
+    ];
     let fields = NODE_FIELDS.iter().map(|one| column(one.name, one.about));
     let schema = json!({
         "$schema": "https://json-schema.org/draft/2020-12/schema",
@@ -45,11 +47,30 @@ pub fn results_schema() -> String {
         "required": required,
         "tables": {
             "wear.csv": wear.collect::<Vec<_>>(),
-            "kinematics.csv": kinematics.map(|name| json!({"name": name})).collect::<Vec<_>>(),
+            "kinematics.csv": kinematics.into_iter().chain(of_knee).collect::<Vec<_>>(),
         },
         "node_fields": fields.collect::<Vec<_>>(),
     });
     serde_json::to_string_pretty(&schema).expect("text and numbers always serialise") + "\n"
+}
+
+/// Returns a description of a column of `kinematics.csv`.
+fn description(quantity: CycleQuantity) -> String {
+    match quantity {
+        CycleQuantity::Position(joint) => {
+            let joint = KNEE.joint(joint);
+            format!("{}; {} is positive.", joint.title, joint.positive)
+        }
+        CycleQuantity::AxialForce => "Load that presses the bodies together.".to_owned(),
+        CycleQuantity::ContactArea => "Area in contact.".to_owned(),
+        CycleQuantity::PeakPressure => "Highest pressure anywhere on the surface.".to_owned(),
+        CycleQuantity::RegionForce(region) => {
+            format!(
+                "Part of the axial force on the {} side.",
+                KNEE.regions[region].name
+            )
+        }
+    }
 }
 
 fn schema_of(scalar: &Scalar) -> Value {
@@ -75,8 +96,7 @@ pub fn python_types() -> String {
          class Summary:\n    \"\"\"The entries of ``summary.json`` as attributes; a run does not have all of them.\"\"\"\n\n",
     );
     let mut add = |key: &str, kind: &str, about: &str| {
-        writeln!(text, "    {key}: {kind}\n    \"\"\"{about}\"\"\"")
-            .expect("writing to a string cannot fail");
+        text += &format!("    {key}: {kind}\n    \"\"\"{about}\"\"\"\n");
     };
     for scalar in catalogue::scalars() {
         let kind = if scalar.is_count { "int" } else { "float" };
@@ -107,22 +127,16 @@ pub fn typescript_types() -> String {
     );
     for scalar in catalogue::scalars() {
         let mark = if scalar.is_always_there() { "" } else { "?" };
-        writeln!(text, "  {}{mark}: number;", scalar.key).expect("writing to a string cannot fail");
+        text += &format!("  {}{mark}: number;\n", scalar.key);
     }
     text += "}\n\nexport interface Headline {\n  key: keyof Numbers;\n  label: string;\n  unit: string;\n  isShare: boolean;\n}\n\n\
              export const HEADLINES: Headline[] = [\n";
-    for scalar in catalogue::results().filter(|one| one.prominence == Prominence::Headline) {
-        let (key, label, unit, is_share) = (
-            scalar.key,
-            scalar.label,
-            scalar.shown_unit(),
-            scalar.is_share,
+    for scalar in catalogue::headlines() {
+        let (key, label, is_share) = (scalar.key, scalar.label, scalar.is_share);
+        let unit = scalar.shown_unit();
+        text += &format!(
+            "  {{ key: \"{key}\", label: \"{label}\", unit: \"{unit}\", isShare: {is_share} }},\n"
         );
-        writeln!(
-            text,
-            "  {{ key: \"{key}\", label: \"{label}\", unit: \"{unit}\", isShare: {is_share} }},"
-        )
-        .expect("writing to a string cannot fail");
     }
     text + "];\n"
 }

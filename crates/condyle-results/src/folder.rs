@@ -10,17 +10,18 @@ use thiserror::Error;
 
 use super::side::Side;
 use super::{
-    activities::kinematics_file,
     checkpoint::{Checkpoint, CheckpointError},
-    checksums::{CHECKSUMS, DamagedFile, check_all, is_listed, write_checksum},
     cycle_files::{
         KeptCycle, cycle_pressure_csv, cycle_pressure_file, cycle_pvd, femur_vtu, frame_name,
         insert_frame,
     },
     femur_pose::femur_pose_csv,
+    files::{
+        CHECKSUMS, DamagedFile, FolderLock, LOCK, check_all, is_listed, part_file, replace_file,
+        replace_file_durably, write_checksum,
+    },
     insert_fields::{insert_file_name, insert_pvd, insert_vtu},
-    lock::{FolderLock, LOCK},
-    replace::{beside, replace_file, replace_file_durably},
+    parts::kinematics_file,
     slip_paths::slip_paths_csv,
     summary::Summary,
     tables::{kinematics_csv, wear_csv},
@@ -251,7 +252,10 @@ impl ResultsFolder {
                 Ok(_) | Err(_) => Err(FolderState::NoRun.of(path)),
             };
         }
-        let checkpoint = folder.checkpoint()?;
+        let file = folder.file("checkpoint");
+        let bytes = fs::read(&file).map_err(refused(&file))?;
+        let checkpoint = Checkpoint::from_bytes(&bytes)
+            .map_err(|source| ResultsError::Checkpoint { file, source })?;
         if checkpoint.inputs_blake3 != inputs_blake3 {
             return Err(FolderState::OtherCase.of(path));
         }
@@ -271,18 +275,12 @@ impl ResultsFolder {
 
     /// Returns whether the folder exists and holds nothing but the files of a run before its first file is complete.
     fn was_only_made(&self) -> bool {
-        let begun = beside(Path::new("case.toml"));
+        let begun = part_file(Path::new("case.toml"));
         let is_of_beginning = |entry: io::Result<fs::DirEntry>| {
             let name = entry.map(|entry| entry.file_name());
             name.is_ok_and(|name| name == LOCK || *name == begun)
         };
         fs::read_dir(&self.path).is_ok_and(|mut entries| entries.all(is_of_beginning))
-    }
-
-    fn checkpoint(&self) -> Result<Checkpoint, ResultsError> {
-        let file = self.file("checkpoint");
-        let bytes = fs::read(&file).map_err(refused(&file))?;
-        Checkpoint::from_bytes(&bytes).map_err(|source| ResultsError::Checkpoint { file, source })
     }
 
     /// Returns the summary, which is the last file of a run.
@@ -311,7 +309,7 @@ impl ResultsFolder {
     /// Removes the files that only an unfinished run needs.
     pub fn finish(&self) -> Result<(), ResultsError> {
         let file = self.file(TIME_SPENT);
-        remove(&beside(&file))?;
+        remove(&part_file(&file))?;
         remove(&file)
     }
 
@@ -344,43 +342,22 @@ impl ResultsFolder {
         femur: &TriangleMesh,
         side: Side,
     ) -> Result<(), ResultsError> {
-        for cycle in KeptCycle::solved_by(march) {
-            self.write_frames(cycle, march, femur, side)?;
-        }
-        Ok(())
-    }
-
-    fn write_frames(
-        &self,
-        kept: KeptCycle,
-        march: &March,
-        femur: &TriangleMesh,
-        side: Side,
-    ) -> Result<(), ResultsError> {
-        let Some(cycle) = march.last_cycle() else {
-            return Ok(());
-        };
-        let folder = kept.name();
-        Self::create(&self.file(folder))?;
-        let frame = |body, increment| format!("{folder}/{}", frame_name(body, increment));
-        for increment in 0..cycle.rows.len() {
-            let insert = insert_frame(march, &cycle, increment, side)?;
-            self.replace(&frame("insert", increment), &insert)?;
-            let femur = femur_vtu(femur, &cycle.pose(increment), side)?;
-            self.replace(&frame("femur", increment), &femur)?;
-        }
-        let percents: Vec<f64> = cycle.rows.iter().map(|row| row.percent).collect();
-        let pvd = cycle_pvd(kept, &percents);
-        self.replace(&format!("{}.pvd", kept.name()), pvd.as_bytes())
-    }
-
-    /// Writes the pressures of the cycle that the march has just solved, if it is the first or the last. Call it
-    /// before [`Self::write_update`], as [`Self::write_cycles`].
-    pub fn write_pressures(&self, march: &March) -> Result<(), ResultsError> {
-        for cycle in KeptCycle::solved_by(march) {
-            if let Some(table) = cycle_pressure_csv(march) {
-                self.replace(&cycle_pressure_file(cycle), table.as_bytes())?;
+        for kept in KeptCycle::solved_by(march) {
+            let Some(cycle) = march.last_cycle() else {
+                continue;
+            };
+            let folder = kept.name();
+            Self::create(&self.file(folder))?;
+            for increment in 0..cycle.rows.len() {
+                let name = |body| format!("{folder}/{}", frame_name(body, increment));
+                let insert = insert_frame(march, &cycle, increment, side)?;
+                self.replace(&name("insert"), &insert)?;
+                let femur = femur_vtu(femur, &cycle.pose(increment), side)?;
+                self.replace(&name("femur"), &femur)?;
             }
+            let percents: Vec<f64> = cycle.rows.iter().map(|row| row.percent).collect();
+            let pvd = cycle_pvd(kept, &percents);
+            self.replace(&format!("{folder}.pvd"), pvd.as_bytes())?;
         }
         Ok(())
     }
@@ -394,6 +371,11 @@ impl ResultsFolder {
         inputs_blake3: &str,
     ) -> Result<(), ResultsError> {
         let state = march.state();
+        for cycle in KeptCycle::solved_by(march) {
+            if let Some(table) = cycle_pressure_csv(march) {
+                self.replace(&cycle_pressure_file(cycle), table.as_bytes())?;
+            }
+        }
         self.replace(
             &insert_file_name(state.updates.len()),
             &insert_vtu(march, side)?,

@@ -2,26 +2,19 @@
 //!
 //! A run writes a folder with one file per table, all readable without condyle; [`Summary`] is its `summary.json`.
 
-mod activities;
 mod added;
 pub mod catalogue;
 mod checkpoint;
-#[cfg(feature = "file-system")]
-mod checksums;
-mod creep;
 mod cycle_files;
-mod cycle_motion;
 mod declared;
 mod error_estimate;
 mod femur_pose;
 #[cfg(feature = "file-system")]
+mod files;
+#[cfg(feature = "file-system")]
 mod folder;
 mod insert_fields;
-mod law_wear;
-#[cfg(feature = "file-system")]
-mod lock;
-#[cfg(feature = "file-system")]
-mod replace;
+mod parts;
 mod side;
 #[cfg(feature = "file-system")]
 mod slip_paths;
@@ -37,31 +30,28 @@ pub use condyle::machine::{
 };
 pub use condyle::parameter::split_unit;
 
-pub use activities::{ActivitySummary, kinematics_file};
 pub use added::{
     AddedFiles, COMPARED, COMPARED_KINEMATICS, COMPARED_NUMBERS, COMPARED_SURFACE, COMPARED_WEAR,
     KINEMATICS_PICTURE, MAP_PICTURES, PLOTTED, SLIP_PATHS_PICTURE, WEAR_PICTURE,
 };
 pub use checkpoint::{Checkpoint, CheckpointError};
-#[cfg(feature = "file-system")]
-pub use checksums::{DamagedFile, check_file};
-pub use creep::{CreepSummary, Penetration, ScanLine};
 pub use cycle_files::{
     BODIES, FRAME_TRIANGLES, KeptCycle, cycle_pressure_csv, cycle_pressure_file, cycle_pvd,
     femur_of_frames, femur_on_side, femur_vtu, frame_name, insert_frame,
 };
-pub use cycle_motion::joint_range;
 pub use declared::{python_types, results_schema, typescript_types};
 pub use error_estimate::{ErrorEstimate, ErrorParts, Part, QuantityError, QuantityErrors};
 pub use femur_pose::{NeutralPose, femur_pose_csv};
+#[cfg(feature = "file-system")]
+pub use files::{DamagedFile, FolderLock, check_file};
 #[cfg(feature = "file-system")]
 pub use folder::{FolderState, Found, ResultsError, ResultsFolder};
 pub use insert_fields::{
     InsertFields, NODE_FIELDS, NodeField, insert_file_name, insert_pvd, insert_vtu,
 };
-pub use law_wear::LawWear;
-#[cfg(feature = "file-system")]
-pub use lock::FolderLock;
+pub use parts::{
+    ActivitySummary, CreepSummary, LawWear, Penetration, ScanLine, joint_range, kinematics_file,
+};
 pub use side::Side;
 pub use summary::{PlausibilityWarning, Summary};
 pub use tables::{WEAR_COLUMNS, WearColumn, kinematics_csv, wear_csv};

@@ -9,12 +9,10 @@ use serde::{
 use serde_json::{Map, Value};
 
 use super::{
-    activities::ActivitySummary,
     catalogue::{self, FinishedRun, PARTS, RunFacts, Scalar},
-    creep::CreepSummary,
     error_estimate::ErrorEstimate,
     femur_pose::NeutralPose,
-    law_wear::LawWear,
+    parts::{ActivitySummary, CreepSummary, LawWear},
 };
 
 /// The results of a run in one table: `summary[&MASS_LOSS_MG]` is a number of the catalogue.

@@ -6,11 +6,11 @@ use std::{
 };
 
 use super::{
-    activities::{kinematics_file, listed_in},
     added::{AddedFiles, COMPARED, PLOTTED},
     cycle_files::{BODIES, KeptCycle},
+    files::part_file,
     folder::{FolderState, ResultsError, ResultsFolder, SIGNS_OF_A_RUN, TIME_SPENT, remove},
-    replace::beside,
+    parts::kinematics_file,
 };
 
 /// Pictures that `condyle report` adds to a run on request.
@@ -77,24 +77,20 @@ impl ResultsFolder {
         let frames = KeptCycle::BOTH
             .into_iter()
             .flat_map(|cycle| self.frames(cycle));
-        // Before the case, which tells their names.
-        let names = self.kinematics_of_activities().into_iter();
-        let names = names
+        // Before the case, from which their names are read.
+        let case = fs::read_to_string(self.path().join("case.toml")).unwrap_or_default();
+        let case: toml::Table = case.parse().unwrap_or_default();
+        let activities = case.get("activity").and_then(toml::Value::as_array);
+        let activities = activities.into_iter().flatten().enumerate();
+        let names = activities
+            .filter_map(|(number, one)| Some(kinematics_file(number, one.get("name")?.as_str()?)))
             .chain(named)
             .chain(inserts)
             .chain(frames)
             .chain(ADDED.iter().flat_map(AddedFiles::paths))
             .chain(["checkpoint".to_owned()]);
         let files = names.map(|name| self.path().join(name));
-        files.flat_map(|file| [beside(&file), file]).collect()
-    }
-
-    fn kinematics_of_activities(&self) -> Vec<String> {
-        let case = fs::read_to_string(self.path().join("case.toml")).unwrap_or_default();
-        let names = listed_in(&case).into_iter().enumerate();
-        names
-            .map(|(number, name)| kinematics_file(number, &name))
-            .collect()
+        files.flat_map(|file| [part_file(&file), file]).collect()
     }
 
     /// Returns the frames of a cycle, by their paths in the folder.

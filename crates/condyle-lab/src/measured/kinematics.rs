@@ -74,7 +74,17 @@ pub(crate) fn compare(
     measured: &Kinematics,
     run: &Table,
 ) -> Result<KinematicsComparison, CompareError> {
-    let (cycles_before, rows) = rows_of(run, measured.keys.cycle)?;
+    let cycles = column_of(run, "cycles")?;
+    let cycles_before = match measured.keys.cycle {
+        CycleWord::First => cycles.iter().copied().fold(f64::INFINITY, f64::min),
+        CycleWord::Last => cycles.iter().copied().fold(f64::NEG_INFINITY, f64::max),
+    };
+    let rows: Vec<usize> = (0..cycles.len())
+        .filter(|&row| cycles[row] == cycles_before)
+        .collect();
+    if rows.is_empty() {
+        return Err(CompareError::no_column("cycles"));
+    }
     let columns = measured
         .curves
         .iter()
@@ -86,23 +96,6 @@ pub(crate) fn compare(
         align: measured.keys.align.word(),
         columns,
     })
-}
-
-/// Cycles done before the chosen cycle, and its rows.
-fn rows_of(run: &Table, cycle: CycleWord) -> Result<(f64, Vec<usize>), CompareError> {
-    let cycles = column_of(run, "cycles")?;
-    let counts = cycles.iter().copied();
-    let chosen = match cycle {
-        CycleWord::First => counts.fold(f64::INFINITY, f64::min),
-        CycleWord::Last => counts.fold(f64::NEG_INFINITY, f64::max),
-    };
-    let rows: Vec<usize> = (0..cycles.len())
-        .filter(|&row| cycles[row] == chosen)
-        .collect();
-    if rows.is_empty() {
-        return Err(CompareError::no_column("cycles"));
-    }
-    Ok((chosen, rows))
 }
 
 fn column_of<'a>(run: &'a Table, column: &'static str) -> Result<&'a [f64], CompareError> {
@@ -117,20 +110,14 @@ fn column(
     rows: &[usize],
 ) -> Result<ColumnComparison, CompareError> {
     let (percents, values) = (column_of(run, "percent")?, column_of(run, curve.column)?);
-    let mut points: Vec<[f64; 3]> = rows
-        .iter()
-        .filter_map(|&row| {
-            let percent = percents[row];
-            let gap = measured.keys.largest_gap_percent;
-            Some([
-                percent,
-                values[row],
-                value_at(&curve.samples, percent, gap)?,
-            ])
-        })
-        .collect();
+    let gap = measured.keys.largest_gap_percent;
+    let point = |&row: &usize| {
+        let measured = value_at(&curve.samples, percents[row], gap)?;
+        Some([percents[row], values[row], measured])
+    };
+    let mut points: Vec<[f64; 3]> = rows.iter().filter_map(point).collect();
     if points.is_empty() {
-        let (column, gap) = (curve.column, measured.keys.largest_gap_percent);
+        let column = curve.column;
         return Err(CompareError::NotComparable(format!(
             "the measured points of `{column}` are all more than {gap} % of the cycle apart, so nothing is compared; raise \
              largest_gap_percent in [kinematics], or leave the column out"
@@ -194,28 +181,27 @@ pub(crate) fn value_at(samples: &[Sample], percent: f64, largest_gap: f64) -> Op
     if let Some(sample) = samples.iter().find(|s| (s.percent - percent).abs() < SAME) {
         return Some(sample.value);
     }
-    let (before, after) = around(samples, percent)?;
-    let gap = after.percent - before.percent;
-    let share = (percent - before.percent) / gap;
-    (gap <= largest_gap + SAME).then_some(before.value + share * (after.value - before.value))
-}
-
-/// Returns the neighbouring points, moved by a cycle where they lie beyond its end.
-fn around(samples: &[Sample], percent: f64) -> Option<(Sample, Sample)> {
-    let after = samples.partition_point(|sample| sample.percent < percent);
+    // Neighbours beyond an end of the cycle are those of the cycle before or after.
     let moved = |sample: &Sample, by: f64| Sample {
         percent: sample.percent + by,
         value: sample.value,
     };
-    let before = match after {
+    let place = samples.partition_point(|sample| sample.percent < percent);
+    let before = match place {
         0 => moved(samples.last()?, -CYCLE),
-        after => samples[after - 1],
+        place => samples[place - 1],
     };
-    let next = match samples.get(after) {
+    let after = match samples.get(place) {
         Some(sample) => *sample,
         None => moved(samples.first()?, CYCLE),
     };
-    (next.percent > before.percent).then_some((before, next))
+    let gap = after.percent - before.percent;
+    // A single sample is its own neighbour, a cycle away.
+    if gap <= 0.0 {
+        return None;
+    }
+    let share = (percent - before.percent) / gap;
+    (gap <= largest_gap + SAME).then_some(before.value + share * (after.value - before.value))
 }
 
 #[cfg(test)]

@@ -66,7 +66,7 @@ fn run_read(
         Found::Checkpoint(checkpoint, spent_s) => Start::Resume(checkpoint, spent_s),
         Found::Case | Found::Nothing => Start::Fresh,
     };
-    let means = RunContext {
+    let context = RunContext {
         threads: options.threads,
         cache: &options.cache,
         bodies: &SharedBodies::default(),
@@ -74,7 +74,7 @@ fn run_read(
         wear_law: None,
     };
     let is_fresh = matches!(start_from, Start::Fresh);
-    let mut run = Run::begin(case, means, start_from, inputs_blake3.clone(), on_event)?;
+    let mut run = Run::begin(case, context, start_from, inputs_blake3.clone(), on_event)?;
     let written = WrittenRun::new(options, lock, inputs_blake3, &run, is_fresh)?;
     let outcome = run.complete(&mut |run| written.write_update(run), on_event)?;
     if let Outcome::Done(summary) = &outcome {
@@ -166,7 +166,6 @@ impl WrittenRun {
         if let Some(femur) = &self.in_frames {
             self.folder.write_cycles(&run.march, femur, side)?;
         }
-        self.folder.write_pressures(&run.march)?;
         self.folder
             .write_update(&run.march, side, &self.inputs_blake3)?;
         let spent_s = run.spent().as_secs_f64();

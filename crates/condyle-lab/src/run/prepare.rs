@@ -39,6 +39,8 @@ pub(crate) fn build_sharing(
         .map_err(|source| RunError::of_build(case, source))
 }
 
+/// Settles the femur on the insert; rejects a march that needs more memory than its case allows, and one whose settled
+/// femur presses on a hole.
 pub(crate) fn start(
     case: &Case,
     test: WearTest,
@@ -48,26 +50,22 @@ pub(crate) fn start(
         shown: case.placement_at_its_key(&source, warnings),
         source,
     })?;
-    check_memory(case, &march)?;
-    check_at_rest(case, &march, warnings)?;
-    Ok(march)
-}
-
-/// Rejects a march whose settled femur presses on a hole.
-///
-/// # Errors
-/// [`BuildError::pressed_hole`].
-pub(crate) fn check_at_rest(
-    case: &Case,
-    march: &March,
-    warnings: &[BuildWarning],
-) -> Result<(), RunError> {
-    if !warnings.iter().any(BuildWarning::is_bridge) {
-        return Ok(());
+    let allowed_gb = case.limits.memory_gb;
+    let whole_surface = march.insert().surface_nodes().len() as f64;
+    // Most cases fit even with the whole surface in contact, which is known without solving a contact.
+    if 1e-3 * memory_mb_touching(case, &march, whole_surface, whole_surface) > allowed_gb {
+        let needed_gb = 1e-3 * memory_mb(case, &march, &AtRest::of(&march));
+        if needed_gb > allowed_gb {
+            return Err(RunError::memory(case, needed_gb));
+        }
     }
-    let at_rest = AtRest::of(march);
-    let touched = at_rest.touched.iter().map(|touched| touched.node as usize);
-    check_holes(case, march, warnings, touched, "as it settles")
+    // The contact at rest is solved only for a mesh with holes.
+    if warnings.iter().any(BuildWarning::is_bridge) {
+        let at_rest = AtRest::of(&march);
+        let touched = at_rest.touched.iter().map(|touched| touched.node as usize);
+        check_holes(case, &march, warnings, touched, "as it settles")?;
+    }
+    Ok(march)
 }
 
 /// Rejects a march in which the femur has pressed on a hole so far.
@@ -84,9 +82,8 @@ pub(crate) fn check_so_far(
     }
     let pressures = &march.state().first_pressure_mpa;
     let depths = &march.fields().wear_depth_mm;
-    let pressed = pressures.iter().zip(depths).enumerate();
-    let pressed = pressed.filter(|(_, (pressure, depth))| **pressure > 0.0 || **depth > 0.0);
-    let pressed = pressed.map(|(node, _)| node);
+    let nodes = 0..pressures.len().min(depths.len());
+    let pressed = nodes.filter(|&node| pressures[node] > 0.0 || depths[node] > 0.0);
     check_holes(case, march, warnings, pressed, "on its way")
 }
 
@@ -160,22 +157,4 @@ pub(crate) fn mean_load_n(march: &March) -> f64 {
     let looked_at = (0..LOOKED_AT).map(|part| part as f64 / LOOKED_AT as f64);
     let sum: f64 = looked_at.map(|phase| load.at(phase).0.abs()).sum();
     sum / LOOKED_AT as f64
-}
-
-/// Rejects a march that would need more memory than its case allows.
-///
-/// # Errors
-/// [`RunError::Memory`].
-pub(crate) fn check_memory(case: &Case, march: &March) -> Result<(), RunError> {
-    let allowed_gb = case.limits.memory_gb;
-    let whole_surface = march.insert().surface_nodes().len() as f64;
-    // Most cases fit even with the whole surface in contact, which is known without solving a contact.
-    if 1e-3 * memory_mb_touching(case, march, whole_surface, whole_surface) <= allowed_gb {
-        return Ok(());
-    }
-    let needed_gb = 1e-3 * memory_mb(case, march, &AtRest::of(march));
-    if needed_gb <= allowed_gb {
-        return Ok(());
-    }
-    Err(RunError::memory(case, needed_gb))
 }

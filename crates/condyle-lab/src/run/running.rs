@@ -22,7 +22,7 @@ pub(crate) enum Start {
     Resume(Box<Checkpoint>, f64),
 }
 
-/// The means of a run.
+/// The surroundings of a run.
 #[derive(Clone, Copy)]
 pub(crate) struct RunContext<'a> {
     pub threads: usize,
@@ -38,7 +38,7 @@ pub(crate) struct RunContext<'a> {
 pub(crate) struct Run<'a> {
     pub case: &'a Case,
     pub march: March,
-    means: RunContext<'a>,
+    context: RunContext<'a>,
     inputs_blake3: String,
     warnings: Vec<BuildWarning>,
     clock: Clock,
@@ -51,18 +51,18 @@ impl<'a> Run<'a> {
     /// Builds the bodies and starts the march, or continues from a checkpoint.
     pub fn begin(
         case: &'a Case,
-        means: RunContext<'a>,
+        context: RunContext<'a>,
         start_from: Start,
         inputs_blake3: String,
         on_event: &mut Listener<'_>,
     ) -> Result<Self, RunError> {
         let mut clock = Clock::default();
         let mut built =
-            clock.time(|| build_sharing(case, means.threads, means.cache, means.bodies))?;
+            clock.time(|| build_sharing(case, context.threads, context.cache, context.bodies))?;
         for warning in &built.warnings {
             let _ = on_event(RunEvent::Warning(warning.to_string()));
         }
-        if let Some(named) = means.wear_law {
+        if let Some(named) = context.wear_law {
             let cross_linking = &case.material.cross_linking;
             built.test.wear = cross_linking.under(named.clone()).law;
         }
@@ -77,7 +77,7 @@ impl<'a> Run<'a> {
         Ok(Self {
             case,
             march,
-            means,
+            context,
             inputs_blake3,
             warnings: built.warnings,
             clock,
@@ -104,7 +104,9 @@ impl<'a> Run<'a> {
         let mut kept_pairs = 0;
         let mut keep_all = |run: &Run<'a>| {
             let test = run.march.test();
-            kept_pairs = run.case.keep_compliance(test, run.means.cache, kept_pairs);
+            kept_pairs = run
+                .case
+                .keep_compliance(test, run.context.cache, kept_pairs);
             keep(run)
         };
         if self.march_on(&mut keep_all, on_event)?.is_continue()
@@ -113,19 +115,6 @@ impl<'a> Run<'a> {
             return Ok(Outcome::Done(Box::new(summary)));
         }
         Ok(Outcome::Interrupted(Reached::by(&self.march)))
-    }
-
-    /// Takes updates until all cycles are done, then returns the march and its results, without error estimate and
-    /// plausibility checks; `watch` receives the march before the first update and after each.
-    pub fn marched(mut self, watch: &mut dyn FnMut(&March)) -> Result<(March, Summary), RunError> {
-        watch(&self.march);
-        let mut keep = |run: &Run<'_>| {
-            watch(&run.march);
-            Ok(())
-        };
-        let _ = self.march_on(&mut keep, &mut |_| ControlFlow::Continue(()))?;
-        let summary = self.summary_without_error();
-        Ok((self.march, summary))
     }
 
     /// Takes updates until all cycles are done; a break if the user stops the run before.
@@ -141,31 +130,21 @@ impl<'a> Run<'a> {
             let updated = clock.time(|| march.update(&mut watch).map(|flow| flow.is_continue()));
             let is_updated = updated.map_err(|source| RunError::March {
                 source,
-                out: self.means.out.map(Path::to_path_buf),
+                out: self.context.out.map(Path::to_path_buf),
             })?;
-            flow = self.updated(is_updated, keep, on_event)?;
+            flow = ControlFlow::Break(());
+            if is_updated && let Some(update) = self.march.state().updates.last() {
+                keep(self)?;
+                // Checked after storing, so that the results so far show the hole.
+                check_so_far(self.case, &self.march, &self.warnings)?;
+                flow = on_event(RunEvent::Updated(update));
+            }
         }
         // A stop after the last update has no effect.
         if self.march.is_done() {
             flow = ControlFlow::Continue(());
         }
         Ok(flow)
-    }
-
-    /// Stores and reports an update; a break if there was none.
-    fn updated(
-        &self,
-        is_updated: bool,
-        keep: &mut Keep<'_, 'a>,
-        on_event: &mut Listener<'_>,
-    ) -> Result<ControlFlow<()>, RunError> {
-        let update = self.march.state().updates.last();
-        let Some(update) = update.filter(|_| is_updated) else {
-            return Ok(ControlFlow::Break(()));
-        };
-        keep(self)?;
-        check_so_far(self.case, &self.march, &self.warnings)?;
-        Ok(on_event(RunEvent::Updated(update)))
     }
 
     /// Returns the summary, with its error if the case requests it; a break if the user stops the run.
@@ -186,14 +165,11 @@ impl<'a> Run<'a> {
     }
 
     fn summary_without_error(&self) -> Summary {
+        let law = self.case.contact.law();
         let facts = RunFacts {
             wall_s: self.clock.spent.as_secs_f64(),
             wear_over_conventional: self.case.material.cross_linking.wear_over_conventional(),
-            pressure_law_peak_error_percent: self
-                .case
-                .contact
-                .law()
-                .and_then(PressureLawChoice::peak_error_percent),
+            pressure_law_peak_error_percent: law.and_then(PressureLawChoice::peak_error_percent),
         };
         let mut summary =
             Summary::new(&self.march, facts).expect("a march that is done has an update");
@@ -206,7 +182,7 @@ impl<'a> Run<'a> {
 
     fn wear_laws(&self) -> Vec<LawWear> {
         let wear = &self.case.wear;
-        match &self.means.wear_law {
+        match &self.context.wear_law {
             // For a law defined by a program it is unknown whether it is approximate.
             Some(named) => LawWear::of(&self.march, named.word, |word| {
                 word != named.word && wear.is_approximate(word)
@@ -232,7 +208,7 @@ pub(crate) fn march_watched(
     bodies: &SharedBodies,
     watch: &mut dyn FnMut(&March),
 ) -> Result<(March, Summary), RunError> {
-    let means = RunContext {
+    let context = RunContext {
         threads: 1,
         cache,
         bodies,
@@ -240,7 +216,15 @@ pub(crate) fn march_watched(
         wear_law: None,
     };
     let ignore = &mut |_: RunEvent<'_>| ControlFlow::Continue(());
-    Run::begin(case, means, Start::Fresh, String::new(), ignore)?.marched(watch)
+    let mut run = Run::begin(case, context, Start::Fresh, String::new(), ignore)?;
+    watch(&run.march);
+    let mut keep = |run: &Run<'_>| {
+        watch(&run.march);
+        Ok(())
+    };
+    let _ = run.march_on(&mut keep, ignore)?;
+    let summary = run.summary_without_error();
+    Ok((run.march, summary))
 }
 
 /// Options of a run in memory.
@@ -276,14 +260,14 @@ pub fn run_in_memory(
     on_event: &mut Listener<'_>,
 ) -> Result<Outcome, RunError> {
     let inputs_blake3 = case.inputs_blake3().map_err(RunError::Inputs)?;
-    let means = RunContext {
+    let context = RunContext {
         threads: how.threads,
         cache: &how.cache,
         bodies: &SharedBodies::default(),
         out: None,
         wear_law: how.wear_law.as_ref(),
     };
-    let mut run = Run::begin(case, means, Start::Fresh, inputs_blake3, on_event)?;
+    let mut run = Run::begin(case, context, Start::Fresh, inputs_blake3, on_event)?;
     keeper.settled(&run.march, &run.femur_triangles(FEMUR_TRIANGLES)?);
     let mut keep = |run: &Run<'_>| {
         keeper.updated(&run.march);

@@ -2,7 +2,7 @@
 
 use condyle::machine::knee::{AP, IE};
 
-use crate::cycle_motion::{joint_range, medial_load_share};
+use crate::parts::{joint_range, medial_load_share};
 
 use super::{Scalar, scalar::scalars};
 

@@ -32,43 +32,34 @@ pub struct Part {
     pub before: Option<&'static Scalar>,
 }
 
-/// Declares [`PARTS`]: key and type, the runs that have it, the number that it stands before, and a description.
+/// Declares [`PARTS`]: key and type, whether every run has it, the number that it stands before, and a description.
 macro_rules! parts {
-    ($($key:ident: $kind:ident in $runs:ident before $before:expr, $about:literal;)+) => {
+    ($($key:ident: $kind:ident, $is_always_there:literal, before $before:expr, $about:literal;)+) => {
         /// All parts, in the order of the file.
         pub static PARTS: &[Part] = &[$(Part {
             key: stringify!($key),
             kind: PartKind::$kind,
-            is_always_there: is_in!($runs),
+            is_always_there: $is_always_there,
             about: $about,
             before: $before,
         }),+];
     };
 }
 
-macro_rules! is_in {
-    (all) => {
-        true
-    };
-    (some) => {
-        false
-    };
-}
-
 parts! {
-    plausibility: Objects in all before Some(&CYCLES),
+    plausibility: Objects, true, before Some(&CYCLES),
         "Reasons to doubt the numbers, the worst first, each with `message` and `advice`.";
-    error: ObjectOrNull in all before Some(&WEAR_OVER_CONVENTIONAL),
+    error: ObjectOrNull, true, before Some(&WEAR_OVER_CONVENTIONAL),
         "Estimated discretisation errors by their parts; null if the case does not ask for them.";
-    wear_laws: Objects in all before Some(&WEAR_OVER_CONVENTIONAL),
+    wear_laws: Objects, true, before Some(&WEAR_OVER_CONVENTIONAL),
         "Wear by every law for the same histories, that of the run first; only that one moved the surface.";
-    activities: Objects in some before Some(&PEAK_PRESSURE_MPA),
+    activities: Objects, false, before Some(&PEAK_PRESSURE_MPA),
         "Motion, loads and wear of each of several activities.";
-    creep: Object in some before Some(&PEAK_PRESSURE_MPA),
+    creep: Object, false, before Some(&PEAK_PRESSURE_MPA),
         "Creep of an insert that creeps, and its separation from wear.";
-    neutral_pose: Object in all before Some(&UPDATES),
+    neutral_pose: Object, true, before Some(&UPDATES),
         "Pose of the settled femur in the insert frame: there AP, ML and IS read zero.";
-    warnings: Texts in all before Some(&WALL_S), "Corrections and doubts of the input.";
-    version: Text in all before None, "Version of condyle.";
-    inputs_blake3: Text in all before None, "Hash of case and meshes.";
+    warnings: Texts, true, before Some(&WALL_S), "Corrections and doubts of the input.";
+    version: Text, true, before None, "Version of condyle.";
+    inputs_blake3: Text, true, before None, "Hash of case and meshes.";
 }

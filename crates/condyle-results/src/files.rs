@@ -1,16 +1,40 @@
-//! `checksums`: the hash of every mesh of a run, by which damaged meshes are detected.
+//! Files of a results folder: atomic replacement, the hashes by which damaged meshes are detected, and the lock.
 //!
 //! A mesh does not change once it is written, so its hash is written with it, before the checkpoint that refers to
-//! it. Each line has the format of `b3sum`: `b3sum --check checksums` verifies all of them.
+//! it. Each line of `checksums` has the format of `b3sum`: `b3sum --check checksums` verifies all of them.
 
 use std::{
-    fs, io,
+    fs::{self, File, OpenOptions, TryLockError},
+    io::{self, ErrorKind, Write},
     path::{Path, PathBuf},
 };
 
 use thiserror::Error;
 
-use super::replace::replace_file;
+/// Writes `bytes` next to the file and renames them into its place, so that a run stopped
+/// at any time leaves the old file or the new one, never half of one.
+pub(super) fn replace_file(path: &Path, bytes: &[u8]) -> io::Result<()> {
+    let part = part_file(path);
+    fs::write(&part, bytes)?;
+    fs::rename(&part, path)
+}
+
+/// Replaces a file as [`replace_file`], and waits until it is on the disk.
+pub(super) fn replace_file_durably(path: &Path, bytes: &[u8]) -> io::Result<()> {
+    let part = part_file(path);
+    let mut file = File::create(&part)?;
+    file.write_all(bytes)?;
+    file.sync_data()?;
+    fs::rename(&part, path)
+}
+
+/// Returns the name of a file while it is written. It is always the same, so that a resumed run replaces the file of
+/// an interrupted one.
+pub(super) fn part_file(path: &Path) -> PathBuf {
+    let mut name = path.as_os_str().to_owned();
+    name.push(".part");
+    name.into()
+}
 
 pub(super) const CHECKSUMS: &str = "checksums";
 const GAP: &str = "  ";
@@ -103,6 +127,46 @@ fn listed(folder: &Path) -> Vec<(String, String)> {
         .collect()
 }
 
+/// The file that a run holds locked as long as it writes.
+pub(super) const LOCK: &str = "in_use";
+
+/// A folder that no other run writes into. The system releases the lock whenever the program ends; a file that
+/// remains does not lock out other runs.
+#[derive(Debug)]
+pub struct FolderLock {
+    path: PathBuf,
+    /// Holds the lock as long as it is open.
+    _file: File,
+}
+
+impl FolderLock {
+    /// Locks the existing folder `folder`; none if another run holds the lock.
+    pub(super) fn take(folder: &Path) -> io::Result<Option<Self>> {
+        let path = folder.join(LOCK);
+        let mut options = OpenOptions::new();
+        options.write(true).create(true).truncate(false);
+        loop {
+            let file = options.open(&path)?;
+            match file.try_lock() {
+                Err(TryLockError::WouldBlock) => return Ok(None),
+                // A file system without locks is better than no run.
+                Err(TryLockError::Error(error)) if error.kind() != ErrorKind::Unsupported => {
+                    return Err(error);
+                }
+                // A run that has just ended removed this file, so that a lock on it excludes no other run.
+                Ok(()) if !path.exists() => {}
+                Ok(()) | Err(_) => return Ok(Some(Self { path, _file: file })),
+            }
+        }
+    }
+}
+
+impl Drop for FolderLock {
+    fn drop(&mut self) {
+        let _ = fs::remove_file(&self.path);
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -127,5 +191,24 @@ mod tests {
             .expect_err("it is gone")
             .to_string();
         assert!(said.contains("cannot be read"), "{said}");
+    }
+
+    #[test]
+    fn one_at_a_time_and_nothing_is_left_behind() {
+        let folder = tempfile::tempdir().expect("a folder can be made");
+        let take = || FolderLock::take(folder.path()).expect("it can be written");
+        let first = take();
+        assert!(first.is_some() && take().is_none());
+        drop(first);
+        assert!(!folder.path().join(LOCK).exists());
+        assert!(take().is_some());
+    }
+
+    #[test]
+    fn a_file_that_a_killed_run_left_locks_no_run_out() {
+        let folder = tempfile::tempdir().expect("a folder can be made");
+        fs::write(folder.path().join(LOCK), "").expect("it can be written");
+        let taken = FolderLock::take(folder.path());
+        assert!(taken.expect("it can be written").is_some());
     }
 }

@@ -1,0 +1,314 @@
+//! Entries of `summary.json` that are not single numbers: activities, the wear of every law, and creep.
+
+use condyle::{
+    evolve::{CreepRecord, March, MarchState, UpdateRecord},
+    machine::{
+        CycleRow, JointIndex,
+        knee::{AP, IE, KNEE, MEDIAL},
+    },
+};
+use serde::{Deserialize, Serialize};
+
+/// Motion, loads and wear of one of several activities; units are in the names.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct ActivitySummary {
+    /// Its name in the case.
+    pub name: String,
+    /// Its share of all cycles.
+    pub share_of_cycles: f64,
+    /// Its motions and loads, in the columns of `kinematics.csv`.
+    pub kinematics_file: String,
+    /// Its part of the mass worn, mg: the wear of each place is divided by pressure times sliding there.
+    pub mass_loss_mg: f64,
+    /// Its part of the volume worn, mm3.
+    pub volume_loss_mm3: f64,
+    /// Wear of its cycles alone, with their own principal direction, mm3.
+    pub volume_loss_alone_mm3: f64,
+    /// Highest pressure in any of its cycles, MPa.
+    pub peak_pressure_mpa: f64,
+    /// Largest contact area in any of its cycles, mm2.
+    pub peak_contact_area_mm2: f64,
+    /// Highest axial force of its first cycle, N.
+    pub peak_axial_force_n: f64,
+    /// Range of AP in its first cycle, mm.
+    pub ap_range_mm: f64,
+    /// Range of IE in its first cycle, degrees.
+    pub ie_range_deg: f64,
+    /// Medial part of the axial force in its first cycle.
+    pub medial_load_share: f64,
+}
+
+impl ActivitySummary {
+    /// Returns the activities of a march with several activities; empty for a march with one.
+    pub fn of(march: &March) -> Vec<Self> {
+        let (test, state) = (march.test(), march.state());
+        if test.activities.len() < 2 {
+            return Vec::new();
+        }
+        let activities = test.activities.iter().zip(&state.activities).enumerate();
+        let summaries = activities.filter_map(|(number, (activity, state))| {
+            let rows: &[CycleRow] = &state.first_and_last.as_ref()?.0.rows;
+            let wear = &state.wear;
+            Some(Self {
+                name: activity.name.clone(),
+                share_of_cycles: activity.share,
+                kinematics_file: kinematics_file(number, &activity.name),
+                mass_loss_mg: test.density_mg_per_mm3 * wear.volume_mm3,
+                volume_loss_mm3: wear.volume_mm3,
+                volume_loss_alone_mm3: wear.alone_mm3,
+                peak_pressure_mpa: wear.peak_pressure_mpa,
+                peak_contact_area_mm2: wear.peak_contact_area_mm2,
+                peak_axial_force_n: rows.iter().map(|row| row.axial_force_n).fold(0.0, f64::max),
+                ap_range_mm: joint_range(rows, AP),
+                ie_range_deg: joint_range(rows, IE),
+                medial_load_share: medial_load_share(rows),
+            })
+        });
+        summaries.collect()
+    }
+}
+
+/// Returns the name of the file with the motions and loads of activity number `number`. The first activity has the
+/// file name of a run with one activity.
+pub fn kinematics_file(number: usize, name: &str) -> String {
+    if number == 0 {
+        return "kinematics.csv".to_owned();
+    }
+    format!("kinematics_{name}.csv")
+}
+
+/// Returns the largest less smallest position of a joint, in the unit of files.
+pub fn joint_range(rows: &[CycleRow], joint: JointIndex) -> f64 {
+    let values = || rows.iter().map(|row| joint.of(&row.positions));
+    let (low, high) = (
+        values().fold(f64::INFINITY, f64::min),
+        values().fold(f64::NEG_INFINITY, f64::max),
+    );
+    KNEE.joint(joint).kind().in_files(high - low)
+}
+
+pub(super) fn medial_load_share(rows: &[CycleRow]) -> f64 {
+    let medial: f64 = rows.iter().map(|row| row.region_force_n[MEDIAL]).sum();
+    let whole: f64 = rows.iter().map(|row| row.axial_force_n).sum();
+    medial / whole
+}
+
+/// Wear by one law: the wear of the run for the law that moved the surface, and the wear predicted for the same
+/// histories for every other law.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct LawWear {
+    /// The word for the law.
+    pub law: String,
+    /// True of the law that moved the surface, with the constants of the case; the others have their defaults.
+    pub moved_the_surface: bool,
+    /// True if its formula or a constant was quoted from memory.
+    pub approximate: bool,
+    /// Mass, mg.
+    pub mass_loss_mg: f64,
+    /// Mean mass in a million cycles, mg.
+    pub mass_loss_mg_per_million_cycles: f64,
+    /// Volume, from depth times area, mm3.
+    pub volume_loss_mm3: f64,
+    /// Deepest wear, mm.
+    pub max_depth_mm: f64,
+    /// Part of the volume worn at pressures and cross-shear outside the range that the law was fitted to, %; none if
+    /// the range is not known.
+    pub outside_of_fit_percent: Option<f64>,
+}
+
+impl LawWear {
+    /// Returns the wear of a march by its law, called `word`, then by its comparison laws. `is_approximate` returns
+    /// whether the law of a word was quoted from memory.
+    pub fn of(march: &March, word: &str, is_approximate: impl Fn(&str) -> bool) -> Vec<Self> {
+        let state = march.state();
+        let Some(last) = state.updates.last() else {
+            return Vec::new();
+        };
+        let density = march.test().density_mg_per_mm3;
+        let law = |word: &str, volume_mm3: f64, depth_mm, outside_mm3: Option<f64>| Self {
+            law: word.to_owned(),
+            moved_the_surface: false,
+            approximate: is_approximate(word),
+            mass_loss_mg: density * volume_mm3,
+            mass_loss_mg_per_million_cycles: density * volume_mm3 / last.cycles * 1e6,
+            volume_loss_mm3: volume_mm3,
+            max_depth_mm: depth_mm,
+            // Both volumes are sums of extrapolated steps, whose rounding may lead to slightly more than 100 %.
+            outside_of_fit_percent: outside_mm3.map(|outside_mm3| {
+                (100.0 * outside_mm3 / volume_mm3.max(f64::MIN_POSITIVE)).clamp(0.0, 100.0)
+            }),
+        };
+        let chosen = Self {
+            moved_the_surface: true,
+            ..law(
+                word,
+                last.volume_loss_mm3,
+                last.max_depth_mm,
+                state.outside_mm3,
+            )
+        };
+        let others = state.comparison_laws.iter().map(|other| {
+            let (volume_mm3, depth_mm) = (other.volume_mm3, other.max_depth_mm());
+            law(&other.word, volume_mm3, depth_mm, other.outside_mm3)
+        });
+        std::iter::once(chosen).chain(others).collect()
+    }
+}
+
+/// Cycles after which laboratories take penetration to grow by wear alone.
+const MILLION: f64 = 1e6;
+
+/// Creep of a finished run; units are in the names.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct CreepSummary {
+    /// Volume by which the surface has sunk without loss of mass, mm3.
+    pub volume_mm3: f64,
+    /// Deepest creep, mm.
+    pub max_depth_mm: f64,
+    /// Deepest penetration, wear and creep together, mm.
+    pub max_penetration_mm: f64,
+    /// Wear at that place, mm.
+    pub wear_there_mm: f64,
+    /// Creep at that place, mm.
+    pub creep_there_mm: f64,
+    /// Deepest place that a scan would find once the insert has rested without load, mm.
+    pub max_unloaded_depth_mm: f64,
+    /// The deepest penetration after a million cycles; none for a shorter test.
+    pub first_million: Option<Penetration>,
+    /// The line that a laboratory fits to its scans from a million cycles on; none of fewer than two scans.
+    pub line_from_a_million: Option<ScanLine>,
+}
+
+/// The deepest penetration and its parts, mm.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Penetration {
+    /// Wear and creep together.
+    pub penetration_mm: f64,
+    /// Wear there.
+    pub wear_mm: f64,
+    /// Creep there.
+    pub creep_mm: f64,
+}
+
+/// A line through the deepest place of unloaded scans against cycles.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct ScanLine {
+    /// Its slope, which laboratories take for wear: mm in a million cycles.
+    pub rise_mm_per_million_cycles: f64,
+    /// Its value at no cycles, which they take for creep and bedding in, mm.
+    pub at_no_cycles_mm: f64,
+}
+
+impl CreepSummary {
+    /// Returns the creep of a finished march, if its insert creeps.
+    pub fn of(state: &MarchState) -> Option<Self> {
+        let last = state.updates.last()?.creep?;
+        Some(Self {
+            volume_mm3: last.volume_mm3,
+            max_depth_mm: last.max_depth_mm,
+            max_penetration_mm: last.max_penetration_mm,
+            wear_there_mm: last.wear_there_mm,
+            creep_there_mm: last.creep_there_mm,
+            max_unloaded_depth_mm: last.max_unloaded_mm,
+            first_million: Penetration::at(&state.updates, MILLION),
+            line_from_a_million: ScanLine::through(&state.updates, MILLION),
+        })
+    }
+}
+
+impl Penetration {
+    /// Returns the penetration after a number of cycles, linear between updates; none for a shorter test.
+    fn at(updates: &[UpdateRecord], cycles: f64) -> Option<Self> {
+        let after = updates.iter().position(|update| update.cycles >= cycles)?;
+        let end = updates[after].creep?;
+        let before = after.checked_sub(1).map(|before| &updates[before]);
+        let start = before.and_then(|before| before.creep);
+        let began = before.map_or(0.0, |before| before.cycles);
+        let part = (cycles - began) / (updates[after].cycles - began);
+        let between = |value: fn(&CreepRecord) -> f64| {
+            let from = start.as_ref().map_or(0.0, value);
+            from + part * (value(&end) - from)
+        };
+        Some(Self {
+            penetration_mm: between(|record| record.max_penetration_mm),
+            wear_mm: between(|record| record.wear_there_mm),
+            creep_mm: between(|record| record.creep_there_mm),
+        })
+    }
+}
+
+impl ScanLine {
+    /// Returns the least-squares line through the scans from a number of cycles on.
+    fn through(updates: &[UpdateRecord], from: f64) -> Option<Self> {
+        let scan = |update: &UpdateRecord| Some((update.cycles, update.creep?.max_unloaded_mm));
+        let scans = updates.iter().filter(|update| update.cycles >= from);
+        let scans: Vec<(f64, f64)> = scans.filter_map(scan).collect();
+        let mean = |values: &dyn Fn(&(f64, f64)) -> f64| {
+            scans.iter().map(values).sum::<f64>() / scans.len() as f64
+        };
+        let (cycles, depth) = (mean(&|scan| scan.0), mean(&|scan| scan.1));
+        let spread = mean(&|scan| (scan.0 - cycles).powi(2));
+        // Scans at one number of cycles have no slope.
+        if scans.len() < 2 || spread == 0.0 {
+            return None;
+        }
+        let slope = mean(&|scan| (scan.0 - cycles) * (scan.1 - depth)) / spread;
+        Some(Self {
+            rise_mm_per_million_cycles: slope * MILLION,
+            at_no_cycles_mm: depth - slope * cycles,
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn update(cycles: f64, penetration_mm: f64, wear_mm: f64, unloaded_mm: f64) -> UpdateRecord {
+        let creep = CreepRecord {
+            volume_mm3: 0.0,
+            max_depth_mm: 0.0,
+            max_penetration_mm: penetration_mm,
+            wear_there_mm: wear_mm,
+            creep_there_mm: penetration_mm - wear_mm,
+            max_unloaded_mm: unloaded_mm,
+        };
+        UpdateRecord {
+            cycles,
+            volume_loss_mm3: 0.0,
+            volume_loss_mesh_mm3: 0.0,
+            mass_loss_mg: 0.0,
+            max_depth_mm: wear_mm,
+            peak_pressure_mpa: 0.0,
+            peak_contact_area_mm2: 0.0,
+            cycles_solved: 1.0,
+            repeats: true,
+            worst_quality: 1.0,
+            creep: Some(creep),
+            under_surface: None,
+        }
+    }
+
+    #[test]
+    fn verify_a_million_lies_between_updates() {
+        let updates = [
+            update(8e5, 0.10, 0.02, 0.06),
+            update(1.2e6, 0.14, 0.03, 0.08),
+        ];
+        let found = Penetration::at(&updates, 1e6).expect("it is reached");
+        assert!((found.penetration_mm - 0.12).abs() < 1e-12);
+        assert!((found.wear_mm - 0.025).abs() < 1e-12 && (found.creep_mm - 0.095).abs() < 1e-12);
+        assert_eq!(Penetration::at(&updates[..1], 1e6), None);
+        let first = Penetration::at(&updates[1..], 1e6).expect("it is reached");
+        assert!((first.penetration_mm - 0.14 / 1.2).abs() < 1e-12);
+    }
+
+    #[test]
+    fn verify_a_straight_rise_is_met_by_the_line() {
+        let scans = [1e6, 2e6, 4e6].map(|cycles| update(cycles, 0.0, 0.0, 0.05 + 2e-8 * cycles));
+        let line = ScanLine::through(&scans, 1e6).expect("three are enough");
+        assert!((line.rise_mm_per_million_cycles - 0.02).abs() < 1e-12);
+        assert!((line.at_no_cycles_mm - 0.05).abs() < 1e-12);
+        assert_eq!(ScanLine::through(&scans[..1], 1e6), None);
+    }
+}
