@@ -18,7 +18,7 @@ use condyle_results::{
     Summary,
     catalogue::{self, Scalar},
 };
-use serde::Serialize;
+use serde_json::json;
 
 use crate::{
     answers::table,
@@ -92,31 +92,24 @@ pub fn converge(
     options: &ConvergeOptions,
     listener: &mut Listener<'_>,
 ) -> Result<Convergence, StudyError> {
-    let plan = plan(case_path, over)?;
+    let (plan, values) = plan(case_path, over)?;
     let input = &plan.study().inputs[0];
     let mut cases = Vec::new();
-    for test in tests(&plan) {
+    for test in (0..plan.tests()).filter_map(|row| plan.test(row)) {
         let mut case = plan.case_of(&test)?;
         // The study itself shows the errors that each run would otherwise estimate.
         case.accuracy.estimate = false;
         cases.push(case);
     }
     if !options.resume && holds_anything(&options.out)? {
-        let problem =
-            "the folder is not empty; give another one with --out, or go on with --resume";
+        let problem = "the folder is not empty; give another one with --out, or resume its study with --resume";
         return Err(StudyError::folder(&options.out, problem));
     }
-    let points = run_points(&plan, &cases, options, listener)?;
-    let step = |point: &Point| {
-        if input.is_whole {
-            1.0 / point.value
-        } else {
-            point.value
-        }
-    };
+    let points = run_points(&plan, &values, &cases, options, listener)?;
+    let step = |value: &f64| if input.is_whole { 1.0 / value } else { *value };
     let convergence = Convergence {
         key: input.key.clone(),
-        steps: points.iter().map(step).collect(),
+        steps: values.iter().map(step).collect(),
         points,
     };
     for (name, text) in [
@@ -133,55 +126,44 @@ pub fn converge(
 /// Runs the case of every test, and returns the points from coarse to fine.
 fn run_points(
     plan: &Plan,
+    values: &[f64],
     cases: &[Case],
     options: &ConvergeOptions,
     listener: &mut Listener<'_>,
 ) -> Result<Vec<Point>, StudyError> {
-    let input = &plan.study().inputs[0];
+    let key = &plan.study().inputs[0].key;
     let work = |test: &Test, reporter: &Reporter<'_, Ran>| {
-        let value = value_of(test);
-        let ran = run(
-            &cases[test.row as usize],
-            &folder_name(input, value),
-            options,
-            reporter,
-        );
+        let row = test.row as usize;
+        let value = values[row];
+        let ran = run(&cases[row], &folder_name(key, value), options, reporter);
         if let Ok(Some(summary)) = &ran {
-            let (mass, depth) = (
-                summary[&catalogue::MASS_LOSS_MG],
-                summary[&catalogue::MAX_DEPTH_MM],
-            );
-            let message = format!(
-                "{} = {value}: {mass:.3} mg worn, {depth:.4} mm deep",
-                input.key
-            );
+            let mass = summary[&catalogue::MASS_LOSS_MG];
+            let depth = summary[&catalogue::MAX_DEPTH_MM];
+            let message = format!("{key} = {value}: {mass:.3} mg worn, {depth:.4} mm deep");
             let _ = reporter.report(StudyEvent::Message(message));
         }
         ran
     };
     let mut points = Vec::new();
-    for (test, ran) in tests(plan).zip(run_all(plan, options.threads, &work, listener)?) {
-        let value = value_of(&test);
+    for (&value, ran) in values
+        .iter()
+        .zip(run_all(plan, options.threads, &work, listener)?)
+    {
         let ran = ran.map_err(|source| StudyError::RunWith {
-            number: format!("{} = {value}", input.key),
+            number: format!("{key} = {value}"),
             source: Box::new(source),
         })?;
         points.push(Point {
             value,
-            folder: folder_name(input, value),
+            folder: folder_name(key, value),
             summary: *ran.ok_or(StudyError::Interrupted)?,
         });
     }
     Ok(points)
 }
 
-/// Returns the tests of a plan in the order of their rows.
-fn tests(plan: &Plan) -> impl Iterator<Item = Test> {
-    (0..plan.tests()).filter_map(|row| plan.test(row))
-}
-
-/// One test for each value, from coarse to fine.
-fn plan(case_path: &Path, over: &str) -> Result<Plan, StudyError> {
+/// Returns the plan with one test for each value, and the values from coarse to fine.
+fn plan(case_path: &Path, over: &str) -> Result<(Plan, Vec<f64>), StudyError> {
     let no_key = || {
         let problem = format!("`{over}` is no key with values; write them as `updates=1,2,5,10`");
         StudyError::Plan(problem)
@@ -221,23 +203,16 @@ fn plan(case_path: &Path, over: &str) -> Result<Plan, StudyError> {
             "`{key}` has the value {value} twice; write each once"
         )));
     }
-    let levels = Levels(values.into_iter().map(Level::Number).collect());
+    let levels = Levels(values.iter().copied().map(Level::Number).collect());
     let mut input = Input::new(&path, Variation::Levels(LevelKeys { levels }));
     input.is_whole = is_whole;
     study.inputs = vec![input];
-    Plan::of(study)
-}
-
-fn value_of(test: &Test) -> f64 {
-    match test.values[0] {
-        Some(Level::Number(value)) => value,
-        _ => f64::NAN,
-    }
+    Ok((Plan::of(study)?, values))
 }
 
 /// Returns the last word of the key and the value, such as `updates-10`.
-fn folder_name(input: &Input, value: f64) -> String {
-    format!("{}-{value}", last_word(&input.key))
+fn folder_name(key: &str, value: f64) -> String {
+    format!("{}-{value}", last_word(key))
 }
 
 fn last_word(key: &str) -> &str {
@@ -310,27 +285,31 @@ impl Convergence {
     }
 
     fn json(&self) -> String {
-        let by_key = |of: fn(&Self, &Scalar) -> Vec<f64>, row: usize| {
-            compared()
-                .map(|output| (output.key, of(self, output)[row]))
-                .collect()
+        let by_key = |of: fn(&Self, &Scalar) -> Vec<f64>, row: usize| -> BTreeMap<_, f64> {
+            let values = compared().map(|output| (output.key, of(self, output)[row]));
+            values.collect()
         };
-        let run = |(row, point): (usize, &'_ Point)| Run {
-            value: point.value,
-            folder: point.folder.clone(),
-            results: by_key(Self::values, row),
-            cycles_solved: point.summary[&catalogue::CYCLES_SOLVED],
-            differences_percent: by_key(Self::differences_percent, row),
-            inputs_blake3: point.summary.inputs_blake3.clone(),
+        let run = |(row, point): (usize, &Point)| {
+            let mut run = json!({
+                "value": point.value,
+                "folder": point.folder,
+                "cycles_solved": point.summary[&catalogue::CYCLES_SOLVED],
+                "differences_percent": by_key(Self::differences_percent, row),
+                "inputs_blake3": point.summary.inputs_blake3,
+            });
+            for (key, value) in by_key(Self::values, row) {
+                run[key] = value.into();
+            }
+            run
         };
-        let extrapolations = compared().map(|output| (output.key, self.extrapolation(output)));
-        let file = File {
-            version: env!("CARGO_PKG_VERSION"),
-            key: &self.key,
-            finest: self.points.last().map_or(f64::NAN, |point| point.value),
-            runs: self.points.iter().enumerate().map(run).collect(),
-            extrapolations: extrapolations.collect(),
-        };
+        let limits = compared().map(|output| (output.key, self.extrapolation(output)));
+        let file = json!({
+            "version": env!("CARGO_PKG_VERSION"),
+            "key": self.key,
+            "finest": self.points.last().map(|point| point.value),
+            "runs": self.points.iter().enumerate().map(run).collect::<Vec<_>>(),
+            "extrapolations": limits.collect::<BTreeMap<_, _>>(),
+        });
         let text = serde_json::to_string_pretty(&file);
         text.expect("numbers and text always serialise") + "\n"
     }
@@ -454,26 +433,4 @@ fn significant(value: f64) -> String {
     };
     let decimals = (4 - magnitude).max(0) as usize;
     format!("{value:.decimals$}")
-}
-
-/// The contents of `converge.json`.
-#[derive(Serialize)]
-struct File<'a> {
-    version: &'static str,
-    key: &'a str,
-    finest: f64,
-    runs: Vec<Run>,
-    extrapolations: BTreeMap<&'static str, Extrapolation>,
-}
-
-/// One run of `converge.json`.
-#[derive(Serialize)]
-struct Run {
-    value: f64,
-    folder: String,
-    #[serde(flatten)]
-    results: BTreeMap<&'static str, f64>,
-    cycles_solved: f64,
-    differences_percent: BTreeMap<&'static str, f64>,
-    inputs_blake3: String,
 }

@@ -10,10 +10,10 @@ use condyle_report::{
 use crate::{
     answers::{
         Answers,
+        data::Spread,
         effects::Effect,
         ranking::{Best, Front, Ranking},
         shown,
-        spread::Spread,
     },
     error::StudyError,
     plan::Plan,

@@ -182,21 +182,6 @@ impl Plan {
         self.study.assignments(test.alternative, &test.values)
     }
 
-    /// Returns the values of a test in the table; if the test sets no value, that of the case.
-    pub(crate) fn written_values(&self, test: &Test) -> Vec<Option<Level>> {
-        let inputs = self.study.inputs.iter().zip(&test.values);
-        let value = |(input, value): (&Input, &Option<Level>)| {
-            value.clone().or_else(|| self.study.value_of_case(input))
-        };
-        inputs.map(value).collect()
-    }
-
-    /// Returns the name of the design of a test; none if the study compares no designs.
-    pub(crate) fn design_of(&self, test: &Test) -> Option<&str> {
-        let design = self.study.alternatives.get(test.alternative)?;
-        Some(&design.name)
-    }
-
     /// Returns the columns of the table for the inputs and the outputs.
     pub(crate) fn columns(&self) -> (Vec<&str>, Vec<&'static str>) {
         let inputs = self.study.inputs.iter().map(|input| input.key.as_str());

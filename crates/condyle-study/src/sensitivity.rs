@@ -141,10 +141,9 @@ fn moved(case: &Case, keys: &[&str], is_factor: bool, by: f64) -> (String, Vec<A
     (words, set.collect())
 }
 
-/// Returns the compared outputs of a test.
 fn results(values: &[f64]) -> Results {
-    let value = |output: &'static Scalar| (output.key, output_value(values, output));
-    compared().map(value).collect()
+    let outputs = compared().map(|output| (output.key, output_value(values, output)));
+    outputs.collect()
 }
 
 impl Changed {
@@ -185,16 +184,10 @@ impl Sensitivity {
         let titles: Vec<String> = compared().map(Scalar::title).collect();
         let mut head = vec!["assumption"];
         head.extend(titles.iter().map(String::as_str));
-        let as_given = vec!["as given".to_owned()];
-        let values = compared().map(|output| output.text(self.as_given[output.key]));
-        let as_given = as_given.into_iter().chain(values).collect();
-        let shown: Vec<&Changed> = self
-            .changed
-            .iter()
-            .filter(|one| !is_without_effect(one))
-            .collect();
+        let mut as_given = vec!["as given".to_owned()];
+        as_given.extend(compared().map(|output| output.text(self.as_given[output.key])));
+        let shown = self.changed.iter().filter(|one| !is_without_effect(one));
         let shown: Vec<_> = shown
-            .into_iter()
             .filter_map(|one| Some((one, one.found.as_ref()?, one.above_percent.as_ref()?)))
             .collect();
         let mut rows = table(&head, &shown, |(one, found, above)| {

@@ -438,20 +438,22 @@ fn select(columns: &[&str], more: &str) -> String {
 fn cells(plan: &Plan, test: &Test, result: &TestResult) -> Vec<Value> {
     let text = |text: &str| Value::Text(text.to_owned());
     let mut cells = vec![Value::Integer(test.row as i64)];
-    cells.extend(plan.design_of(test).map(text));
+    let design = plan.study().alternatives.get(test.alternative);
+    cells.extend(design.map(|design| text(&design.name)));
     cells.extend(match result {
         Ok(_) => [text("done"), Value::Null],
         Err(reason) => [text("failed"), text(reason)],
     });
-    cells.extend(
-        plan.written_values(test)
-            .into_iter()
-            .map(|level| match level {
-                Some(Level::Number(number)) => Value::Real(number),
-                Some(Level::Word(word)) => Value::Text(word),
-                None => Value::Null,
-            }),
-    );
+    let inputs = plan.study().inputs.iter().zip(&test.values);
+    cells.extend(inputs.map(|(input, value)| {
+        // An input that the test does not set has the value of the case.
+        let value = value.clone();
+        match value.or_else(|| plan.study().value_of_case(input)) {
+            Some(Level::Number(number)) => Value::Real(number),
+            Some(Level::Word(word)) => Value::Text(word),
+            None => Value::Null,
+        }
+    }));
     let (_, outputs) = plan.columns();
     cells.extend((0..outputs.len()).map(|place| {
         let value = result.as_ref().ok().map(|values| values[place]);

@@ -4,7 +4,7 @@ use condyle_case::study::Design;
 use serde::Serialize;
 
 use crate::{
-    answers::{data::Data, spread::is_sampled},
+    answers::data::{Data, is_sampled},
     design::Walk,
     random::Random,
     statistics::{extent, mean, rank_correlation, standard_deviation},

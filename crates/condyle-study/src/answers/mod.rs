@@ -1,21 +1,19 @@
 //! The answers of a study, computed from its stored tests.
 
-mod data;
+pub(crate) mod data;
 pub(crate) mod effects;
 pub(crate) mod indices;
 pub(crate) mod ranking;
-pub(crate) mod spread;
 
 use condyle_lab::aligned;
 use serde::Serialize;
 
 use crate::{
     answers::{
-        data::Data,
+        data::{Data, Spread},
         effects::{Effect, Elementary},
         indices::Indices,
         ranking::{Best, Front, Ranking},
-        spread::Spread,
     },
     error::StudyError,
     plan::Plan,
