@@ -160,7 +160,7 @@ fn a_run_of_another_version_is_not_gone_on_with() {
     let error = run(&case, &[], &options(out, true), &mut go_on).unwrap_err();
     let said = error.to_string();
     assert!(
-        said.contains("begun by condyle 0.0.1") && said.contains("run the case again"),
+        said.contains("started by condyle 0.0.1") && said.contains("run the case again"),
         "{said}"
     );
     assert!(!error.is_physics() && error.in_case().is_none());

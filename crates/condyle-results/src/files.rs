@@ -44,7 +44,7 @@ const GAP: &str = "  ";
 pub enum DamagedFile {
     /// The bytes have changed.
     #[error(
-        "{}: the file is damaged: its bytes are not those that the run wrote (its hash is in {CHECKSUMS}); put it back \
+        "{}: the file is damaged: its bytes are not those that the run wrote (its hash is in {CHECKSUMS}); restore it \
          from a copy, or run the case again with --force",
         file.display()
     )]
@@ -54,7 +54,7 @@ pub enum DamagedFile {
     },
     /// The file is missing or cannot be read.
     #[error(
-        "{}: the run wrote this file, and it cannot be read: {source}; put it back from a copy, or run the case again with \
+        "{}: the run wrote this file, and it cannot be read: {source}; restore it from a copy, or run the case again with \
          --force",
         file.display()
     )]

@@ -69,30 +69,30 @@ pub enum FolderState {
     /// It holds a run, as this file shows.
     #[error(
         "the folder already holds a run ({0} is there); \
-         give another folder with --out, go on with --resume, or write over it with --force"
+         give another folder with --out, resume it with --resume, or replace it with --force"
     )]
     Run(&'static str),
     /// It holds a file with a name that runs use, and nothing to resume.
     #[error(
-        "the folder already holds a run or a part of one ({0} is there, and no checkpoint to go on from); \
-         give another folder with --out, or take the file away yourself"
+        "the folder already holds a run or a part of one ({0} is there, and no checkpoint to resume from); \
+         give another folder with --out, or remove the file yourself"
     )]
     PartOfRun(&'static str),
     /// It holds a run that is done.
     #[error(
         "the folder already holds a run, which is done (summary.json is there); \
-         give another folder with --out, or write over it with --force: there is nothing left to --resume"
+         give another folder with --out, or replace it with --force: there is nothing left to --resume"
     )]
     DoneRun,
     /// It holds a file that a run would replace and that belongs to no run.
     #[error(
-        "{0} is there, but no checkpoint, so that it may be something else than a run; \
-         give another folder with --out, or take the file away yourself"
+        "{0} is there, but no checkpoint, so that it may not belong to a run; \
+         give another folder with --out, or remove the file yourself"
     )]
     NoWholeRun(&'static str),
     /// It holds a file that the new run reads.
     #[error(
-        "the run reads {} of the folder that it would write over; give another folder with --out",
+        "the run reads {} of the folder that it would replace; give another folder with --out",
         .0.display()
     )]
     Input(PathBuf),
@@ -103,17 +103,17 @@ pub enum FolderState {
     )]
     InUse,
     /// The path is a file.
-    #[error("this is a file and no folder; give another folder with --out")]
+    #[error("this is a file, not a folder; give another folder with --out")]
     File,
     /// It holds no run to resume.
     #[error(
-        "the folder holds no run to go on with: there is no checkpoint, and no case.toml of this case; \
-         leave out --resume to begin one"
+        "the folder holds no run to resume: there is no checkpoint, and no case.toml of this case; \
+         omit --resume to start one"
     )]
     NoRun,
     /// It holds a run that another version began.
     #[error(
-        "the run in this folder was begun by condyle {version}, and this is {}; \
+        "the run in this folder was started by condyle {version}, and this is {}; \
          resume it with that version, or run the case again into another folder",
         env!("CARGO_PKG_VERSION")
     )]
@@ -123,7 +123,7 @@ pub enum FolderState {
     },
     /// It holds a run of another case.
     #[error(
-        "the run in this folder is one of another case or other meshes; give another folder with --out"
+        "the run in this folder is of another case or other meshes; give another folder with --out"
     )]
     OtherCase,
 }

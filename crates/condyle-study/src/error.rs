@@ -78,7 +78,7 @@ impl StudyError {
 
     pub(crate) fn no_shards() -> Self {
         let problem =
-            "a search goes from test to test, and cannot be cut into shards; run it on one machine";
+            "the tests of a search depend on earlier ones, so that it cannot be cut into shards; run it on one machine";
         Self::Plan(problem.to_owned())
     }
 

@@ -395,7 +395,7 @@ impl Plan {
         }
         test.ok_or_else(|| {
             StudyError::Plan(format!(
-                "row {row} of a search is known once it has been tried; run the study first"
+                "row {row} of a search is known after the search has reached it; run the study first"
             ))
         })
     }

@@ -300,7 +300,7 @@ fn what_several_tests_cannot_tell_is_said() {
             ],
         ]
         .concat(),
-        &["1 measured rate cannot tell 2 constants"],
+        &["1 measured rate cannot determine 2 constants"],
     );
     bench.write(
         "measured-flatter.toml",

@@ -117,5 +117,5 @@ fn a_run_of_a_changed_case_is_gone_on_with_by_the_same_changes() {
     let again = bench.say(&resume);
     assert_eq!((again.code, &again.out), (Some(0), &first.out));
     let other = bench.say(&["run", "case.toml", "-o", "out", "--resume"]);
-    other.assert_refused(2, &["one of another case"]);
+    other.assert_refused(2, &["is of another case"]);
 }

@@ -76,7 +76,7 @@ fn a_file_in_place_of_the_folder() {
     let bench = Bench::with_case(SMALL);
     bench.write("out", "mine");
     let said = bench.say(&["run", "case.toml", "--out", "out"]);
-    said.assert_refused(2, &["out: this is a file and no folder", "--out"]);
+    said.assert_refused(2, &["out: this is a file, not a folder", "--out"]);
     assert_eq!(fs::read_to_string(bench.path("out")).unwrap(), "mine");
 }
 
@@ -84,7 +84,7 @@ fn a_file_in_place_of_the_folder() {
 fn resume_needs_a_run() {
     let bench = Bench::with_case(SMALL);
     let said = bench.say(&["run", "case.toml", "--out", "out", "--resume"]);
-    said.assert_refused(2, &["holds no run to go on with", "leave out --resume"]);
+    said.assert_refused(2, &["holds no run to resume", "omit --resume"]);
     assert!(!bench.path("out").exists());
 }
 
@@ -95,7 +95,7 @@ fn resume_with_a_changed_case_is_refused() {
     let before = files_but_wall_time(&bench.path("out"));
     bench.write("case.toml", &SMALL.replace("updates = 3", "updates = 4"));
     let said = bench.say(&["run", "case.toml", "--out", "out", "--resume"]);
-    said.assert_refused(2, &["is one of another case or other meshes", "--out"]);
+    said.assert_refused(2, &["is of another case or other meshes", "--out"]);
     assert_eq!(files_but_wall_time(&bench.path("out")), before);
 }
 
@@ -187,11 +187,11 @@ fn what_is_said_of_a_folder_fits_the_run_in_it() {
     bench.run_into("out");
     let said = || bench.say(&["run", "case.toml", "--out", "out"]);
     said().assert_refused(2, &["a run, which is done", "--out", "--force"]);
-    assert!(!said().err.contains("go on with --resume"));
+    assert!(!said().err.contains("resume it with --resume"));
     fs::remove_file(bench.path("out/summary.json")).unwrap();
     said().assert_refused(
         2,
-        &["already holds a run", "go on with --resume", "--force"],
+        &["already holds a run", "resume it with --resume", "--force"],
     );
 }
 
@@ -299,7 +299,7 @@ fn a_run_stopped_before_its_first_file_is_gone_on_with() {
     fs::create_dir(bench.path("out")).unwrap();
     bench.write("out/notes.txt", "mine");
     let said = bench.say(&["run", "case.toml", "--out", "out", "--resume"]);
-    said.assert_refused(2, &["holds no run to go on with"]);
+    said.assert_refused(2, &["holds no run to resume"]);
 }
 
 #[test]

@@ -20,7 +20,6 @@ const MIN_PEAK_MPA: f64 = 1.0;
 const BEND: f64 = 0.01;
 /// Step of the finite differences in the logarithm of strain.
 const STEP: f64 = 1e-3;
-/// Iterations of the fit.
 const MAX_ROUNDS: usize = 15;
 /// The fit ends with an iteration that reduces the sum of squares by a smaller part than this.
 const MIN_GAIN: f64 = 1e-4;
@@ -87,6 +86,7 @@ impl Fit<'_> {
             }
             let step = damped.cholesky()?.solve(&gradient);
             let next = self.trial(&best.logarithms - step, &best.lower_mm);
+            // Short steps along the gradient where the slopes mislead, Gauss-Newton steps where they hold.
             if next.squares() < best.squares() {
                 *damping *= 0.2;
                 return Some(next);
@@ -184,7 +184,6 @@ impl Fit<'_> {
 const FORCE_TOLERANCE_N: f64 = 0.05;
 /// A region that carries less counts as unloaded, N.
 const MIN_FORCE_N: f64 = 1.0;
-/// Iterations of the balance.
 const MAX_ITERATIONS: usize = 30;
 /// Lowering of the femur by which the stiffness of the regions is found, mm.
 const PROBE_MM: f64 = 1e-4;
@@ -284,6 +283,7 @@ impl Target {
             let probe = lower_mm.map(|lower| lower + PROBE_MM);
             let more = forces(&evaluate(contact, &self.lowered(probe)));
             for region in 0..MAX_REGIONS {
+                // A region out of contact has no stiffness; it approaches by bounded steps.
                 let stiffness = (more[region] - found[region]) / PROBE_MM;
                 let step = missing[region] / stiffness.max(1.0);
                 lower_mm[region] += step.clamp(-MAX_STEP_MM, MAX_STEP_MM);

@@ -97,29 +97,29 @@ struct HeldOut {
 /// Fits a pressure table with which the foundation of a case presses as its deformable insert does, under the forces of
 /// the first cycle of its first activity; then runs both.
 ///
-/// `tell` receives the name of each step as it begins.
+/// `on_step` receives the name of each step as it begins.
 ///
 /// # Errors
 /// The case does not run with one of the two models.
 pub fn calibrate(
     request: &CalibrateRequest,
-    tell: &mut dyn FnMut(&str),
+    on_step: &mut dyn FnMut(&str),
 ) -> Result<CalibratedLaw, RunError> {
     let case = Case::read_changed(&request.case, &request.changes)?;
-    tell("the deformable insert");
+    on_step("the deformable insert");
     let mut recorded = Recorded::default();
     let deformable = with_deformable(&case);
     let deformable = run(&deformable, &mut |march| recorded.see(march))?;
-    tell("the fit");
+    on_step("the fit");
     let (table, increments) = recorded.fitted(&case, &deformable.march);
-    tell("the foundation with the table");
+    on_step("the foundation with the table");
     let (left, left_before) = errors(&case, &table, &deformable)?;
     let worst = |cycle: &CycleErrors| cycle.peak_pressure.most_percent;
     let worst = worst(&left.first_cycle).max(worst(&left.last_cycle));
     let peak_error_percent = (worst * 10.0).ceil() / 10.0;
     let mut held_out = Vec::new();
     for path in &request.held_out {
-        tell(&format!("{}", path.display()));
+        on_step(&path.display().to_string());
         let case = Case::read_changed(path, &[])?;
         let deformable = run(&with_deformable(&case), &mut |_| ())?;
         let (left, left_before) = errors(&case, &table, &deformable)?;
@@ -289,7 +289,6 @@ struct StanceErrors {
     of_highest_percent: f64,
 }
 
-/// Errors of a cycle of the foundation.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 struct CycleErrors {
     peak_pressure: StanceErrors,
@@ -352,7 +351,6 @@ impl CycleErrors {
     }
 }
 
-/// Rows of the first activity's first and last cycle.
 fn first_and_last(march: &March) -> [&[CycleRow]; 2] {
     let cycles = march.state().activities[0].first_and_last.as_ref();
     let (first, last) = cycles.expect("a finished march has solved cycles");
@@ -396,11 +394,12 @@ impl CalibratedLaw {
     /// Returns a page in Markdown: the errors of a run, by increment, and on other cases, and the table.
     pub fn markdown(&self) -> String {
         let mut page = format!(
-            "# Calibrated pressure law\n\nWith this table the peak pressure of the rigid model is off by {} % at most in \
-             stance, in the first cycle and the last.\n\n",
+            "# Calibrated pressure law\n\nWith this table the peak pressure of the rigid model in stance differs by up to \
+             {} %, in the first and the last cycle.\n\n",
             self.peak_error_percent
         );
-        page += "Off the deformable insert, with the law before and with the table; stance has a fifth of the highest axial force and more:\n\n";
+        page += "Differences from the deformable insert, with the law before and with the table; in stance the axial force is at \
+                 least a fifth of the highest:\n\n";
         page += &self.table_of_left();
         if !self.held_out.is_empty() {
             page += "\nCases that the table was not fitted to, with their own law and with the table:\n";
@@ -411,17 +410,9 @@ impl CalibratedLaw {
             page += &format!("\n`{case}`\n\n{table}");
         }
         page += "\nUnder the forces of the deformable insert, where it was fitted (unworn):\n\n";
-        let head = [
-            "% of cycle",
-            "axial force, N",
-            "peak, MPa: deformable",
-            "table",
-            "area, mm2: deformable",
-            "table",
-            "force at the same approach, N",
-            "deeper by, mm",
-        ];
-        let mut rows = vec![head.map(str::to_owned).to_vec()];
+        let head = "% of cycle|axial force, N|peak, MPa: deformable|table|area, mm2: deformable|table|\
+                    force at the same approach, N|deeper by, mm";
+        let mut rows = vec![head.split('|').map(str::to_owned).collect()];
         rows.extend(self.increments.iter().map(|increment| {
             vec![
                 format!("{:.1}", increment.percent),
@@ -457,44 +448,38 @@ fn table_of_errors(before: &RunErrors, after: &RunErrors) -> String {
     aligned(&rows)
 }
 
-/// Returns the names and the texts of the errors of a run.
 fn in_words(errors: &RunErrors) -> [(&'static str, String); 9] {
     let in_stance = |off: StanceErrors| {
         let (mean, most, highest) = (off.mean_percent, off.most_percent, off.of_highest_percent);
         format!("{mean:.1} % (most {most:.1} %, of the highest {highest:+.1} %)")
     };
     let (first, last) = (&errors.first_cycle, &errors.last_cycle);
+    let [pressure, last_pressure, area, last_area] = [
+        first.peak_pressure,
+        last.peak_pressure,
+        first.contact_area,
+        last.contact_area,
+    ]
+    .map(in_stance);
+    let mass = format!(
+        "{:+.2} % ({:.2} mg, {:.2} on the deformable insert)",
+        errors.mass_loss_percent, errors.mass_loss_mg, errors.deformable_mass_loss_mg
+    );
+    let depth = format!(
+        "{:+.2} % ({:.4} mm, {:.4} on the deformable insert)",
+        errors.max_depth_percent, errors.max_depth_mm, errors.deformable_max_depth_mm
+    );
     let (wall_s, deformable_s) = (errors.wall_s, errors.deformable_wall_s);
+    let time = format!("{wall_s:.2} s ({deformable_s:.2} s on the deformable insert)");
     [
-        (
-            "peak pressure in stance, first cycle",
-            in_stance(first.peak_pressure),
-        ),
-        ("the same, last cycle", in_stance(last.peak_pressure)),
-        (
-            "contact area in stance, first cycle",
-            in_stance(first.contact_area),
-        ),
-        ("the same, last cycle", in_stance(last.contact_area)),
+        ("peak pressure in stance, first cycle", pressure),
+        ("the same, last cycle", last_pressure),
+        ("contact area in stance, first cycle", area),
+        ("the same, last cycle", last_area),
         ("AP, first cycle", format!("{:.3} mm", first.ap_mm)),
         ("IE, first cycle", format!("{:.3} degrees", first.ie_deg)),
-        (
-            "mass lost",
-            format!(
-                "{:+.2} % ({:.2} mg, {:.2} on the deformable insert)",
-                errors.mass_loss_percent, errors.mass_loss_mg, errors.deformable_mass_loss_mg
-            ),
-        ),
-        (
-            "deepest wear",
-            format!(
-                "{:+.2} % ({:.4} mm, {:.4} on the deformable insert)",
-                errors.max_depth_percent, errors.max_depth_mm, errors.deformable_max_depth_mm
-            ),
-        ),
-        (
-            "time",
-            format!("{wall_s:.2} s ({deformable_s:.2} s on the deformable insert)"),
-        ),
+        ("mass lost", mass),
+        ("deepest wear", depth),
+        ("time", time),
     ]
 }

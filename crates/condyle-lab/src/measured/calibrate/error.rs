@@ -1,6 +1,5 @@
 //! The reasons why no constants of a wear law can be found.
 
-use condyle::evolve::MarchError;
 use condyle_case::{case::ConstantError, config::Problems};
 use thiserror::Error;
 
@@ -30,23 +29,11 @@ pub enum CalibrateError {
         /// The reason.
         source: Box<RunError>,
     },
-    /// The physics could not be solved with other constants.
-    #[error("with {constants}: {source}")]
-    March {
-        /// The constants.
-        constants: String,
-        /// The reason.
-        source: MarchError,
-    },
 }
 
 impl CalibrateError {
     /// Returns whether the physics could not be solved, as opposed to bad input.
     pub fn is_physics(&self) -> bool {
-        match self {
-            Self::March { .. } => true,
-            Self::Run { source, .. } => source.is_physics(),
-            _ => false,
-        }
+        matches!(self, Self::Run { source, .. } if source.is_physics())
     }
 }

@@ -19,7 +19,6 @@ const DIFFERENCE: f64 = 0.05;
 /// Smallest singular value of the slopes, relative to the largest, that determines the parameters.
 const MIN_SINGULAR: f64 = 1e-6;
 
-/// The start of a search.
 pub(crate) struct Start {
     pub(crate) at: Vec<f64>,
     /// Least and most of each parameter.
@@ -37,7 +36,6 @@ pub(crate) struct Fit {
     pub(crate) spread: Option<Spread>,
 }
 
-/// The uncertainty of the parameters.
 #[derive(Clone, Debug)]
 pub(crate) struct Spread {
     /// Scatter of one observation of weight 1, as a part of its rate.
@@ -108,7 +106,7 @@ impl<'a> Search<'a> {
         if tests < constants {
             let s = if tests == 1 { "" } else { "s" };
             return Err(CalibrateError::Unsuitable(format!(
-                "{tests} measured rate{s} cannot tell {constants} constants; give as many tests as constants, or fewer \
+                "{tests} measured rate{s} cannot determine {constants} constants; give as many tests as constants, or fewer \
                  --constant"
             )));
         }
@@ -189,11 +187,16 @@ impl<'a> Search<'a> {
         let mut change = f64::INFINITY;
         for _ in 0..MAX_STEPS {
             let step = self.step()?;
-            change = self.change_of(&step);
+            // The largest relative change of a rate.
+            let changes = &self.slopes * &step;
+            let changes = changes.iter().zip(self.observations);
+            let changes = changes.map(|(change, of)| (change / of.weight.sqrt()).abs());
+            change = changes.fold(0.0, f64::max);
             if change <= SETTLED {
                 return Ok(());
             }
             let better = self.go(model, &(part * step))?;
+            // After a step that was too long, half of the next; its slopes are better already.
             part = if better { 1.0 } else { 0.5 * part };
         }
         let left_percent = 100.0 * change;
@@ -203,24 +206,15 @@ impl<'a> Search<'a> {
         )))
     }
 
-    /// Returns the Gauss-Newton step.
     fn step(&self) -> Result<DVector<f64>, CalibrateError> {
         let parts = self.slopes.clone().svd(true, true);
         let [most, least] = [parts.singular_values.max(), parts.singular_values.min()];
+        // Rates without a slope in some direction would send the step to infinity.
         if least.is_nan() || least <= MIN_SINGULAR * most {
             return Err(undetermined());
         }
         let step = parts.solve(&-self.residuals(&self.rates), 0.0);
         step.map_err(|_| undetermined())
-    }
-
-    /// Returns the largest relative change of a rate in a step.
-    fn change_of(&self, step: &DVector<f64>) -> f64 {
-        let change = &self.slopes * step;
-        let parts = change.iter().zip(self.observations);
-        parts
-            .map(|(change, of)| (change / of.weight.sqrt()).abs())
-            .fold(0.0, f64::max)
     }
 
     /// Tries a step, updates the slopes along it by Broyden's formula, and keeps it if it reduces the residuals.
@@ -249,6 +243,7 @@ impl<'a> Search<'a> {
     /// Returns a parameter after a step, shortened where it is too long or leaves the limits.
     fn after(&self, number: usize, step: f64) -> f64 {
         let (was, [least, most]) = (self.at[number], self.limits[number]);
+        // A parameter keeps its sign: a law may have no value at the other one.
         let sign = was.signum();
         let cut = if was == 0.0 {
             step
@@ -275,6 +270,7 @@ impl<'a> Search<'a> {
         let covariance = inverse.ok_or_else(undetermined)? * variance;
         let half = |number: usize| {
             let wide = quantile * covariance[(number, number)].sqrt();
+            // Wide enough to exceed the noise of the rates, narrow enough for a straight slope.
             wide.clamp(0.01 * size(self.at[number]), 0.3 * size(self.at[number]))
         };
         Ok(Some(Spread {
@@ -307,8 +303,8 @@ impl<'a> Search<'a> {
 
 /// Returns the error for constants whose effects on the rates cannot be separated.
 fn undetermined() -> CalibrateError {
-    let problem = "these tests do not tell the constants apart: some change of them leaves every rate as it is; give tests \
-                   that differ more in what the law goes by, or fewer --constant";
+    let problem = "these tests do not determine the constants: some change of them changes no rate; give tests that differ more \
+                   in the quantities of the law, or fewer --constant";
     CalibrateError::Unsuitable(problem.to_owned())
 }
 
@@ -321,9 +317,7 @@ fn size(parameter: f64) -> f64 {
     }
 }
 
-/// A law and its free parameters.
 pub(crate) struct Free {
-    /// The law at the start of the search.
     pub(crate) law: Wear,
     free: Parameters,
 }
@@ -371,7 +365,6 @@ impl Free {
         }
     }
 
-    /// Returns the law with these parameters.
     pub(crate) fn law(&self, at: &[f64]) -> Result<Wear, ConstantError> {
         match &self.free {
             Parameters::Level => self.law.scaled(at[0]),
@@ -419,7 +412,6 @@ impl Free {
         }
     }
 
-    /// Returns the parameter of the constant at `place`.
     pub(crate) fn parameter_of(&self, place: usize) -> usize {
         match &self.free {
             Parameters::Level => 0,
@@ -628,7 +620,7 @@ mod tests {
         let error = fit(&mut { alike }, start(2), &two[..1], 0.95).unwrap_err();
         assert_eq!(
             error.to_string(),
-            "1 measured rate cannot tell 2 constants; give as many tests as constants, or fewer --constant"
+            "1 measured rate cannot determine 2 constants; give as many tests as constants, or fewer --constant"
         );
         let mut seed = 3;
         let mut noise = |_: &[f64]| Ok(vec![1.0 + uniform(&mut seed)]);

@@ -3,15 +3,12 @@
 mod error;
 mod fit;
 
-use std::{
-    ops::ControlFlow,
-    path::{Path, PathBuf},
-};
+use std::path::{Path, PathBuf};
 
-use condyle::{evolve::Progress, wear::Archard};
+use condyle::wear::Archard;
 use condyle_case::{
     cache::Cache,
-    case::{Case, Wear},
+    case::{Case, SharedBodies, Wear},
 };
 use serde::Serialize;
 
@@ -24,7 +21,7 @@ use crate::{
         compare,
         gravimetric::{GravimetricComparison, Interval},
     },
-    run::prepare::{build, start},
+    run::running::march_watched,
 };
 
 /// A request for a calibration.
@@ -174,7 +171,12 @@ pub fn calibrate(
     let predicted: Vec<Case> = predicted.collect::<Result<_, _>>()?;
     let mut trials = Vec::new();
     let mut model = |at: &[f64]| {
-        let trial = trial(&tests, &free.law(at)?)?;
+        let law = free.law(at)?;
+        let rates = tests.iter().map(|test| test.rate(&law));
+        let trial = Trial {
+            constants: law.constants().to_vec(),
+            mg_per_million_cycles: rates.collect::<Result<_, _>>()?,
+        };
         tried(&trial);
         trials.push(trial.clone());
         Ok(trial.mg_per_million_cycles)
@@ -225,15 +227,6 @@ fn read(pairs: &[(PathBuf, PathBuf)]) -> Result<Vec<Test>, CalibrateError> {
     Ok(tests)
 }
 
-fn trial(tests: &[Test], law: &Wear) -> Result<Trial, CalibrateError> {
-    let rates = tests.iter().map(|test| test.rate(law));
-    Ok(Trial {
-        constants: law.constants().to_vec(),
-        mg_per_million_cycles: rates.collect::<Result<_, _>>()?,
-    })
-}
-
-/// Predicts a case with the constants found.
 fn predict(path: &Path, case: &Case, free: &Free, fit: &Fit) -> Result<Prediction, CalibrateError> {
     let lost = |at: &[f64]| -> Result<(f64, f64), CalibrateError> {
         let losses = losses(case, &free.law(at)?)?;
@@ -307,7 +300,7 @@ fn results(
             .map(|spread| 100.0 * spread.scatter),
         degrees_of_freedom: spread.map_or(0, |spread| spread.freedom),
         without_interval: spread.is_none().then_some(
-            "as many constants were found as there are measured rates, and no rate has a scatter of its own; weigh more \
+            "as many constants were found as there are measured rates, and no rate has a known scatter; weigh more \
              specimens, or more often",
         ),
         predictions,
@@ -330,7 +323,6 @@ fn results(
     }
 }
 
-/// Returns the interval of a parameter.
 fn interval_of(fit: &Fit, number: usize) -> Option<Interval> {
     let spread = fit.spread.as_ref()?;
     let slopes: Vec<f64> = (0..fit.at.len())
@@ -396,7 +388,7 @@ impl Test {
         Ok(Self {
             weighed: comparison.gravimetric.ok_or_else(|| {
                 let problem =
-                    "the measured data have no [gravimetric] table, which a wear law is calibrated by";
+                    "the measured data have no [gravimetric] table, which the calibration of a wear law needs";
                 CalibrateError::Unsuitable(problem.to_owned())
             })?,
             case: Case::read(&results.join("case.toml"))?,
@@ -410,8 +402,8 @@ impl Test {
         let mg_per_million_cycles = self.weighed.aim().mg_per_million_cycles;
         if mg_per_million_cycles <= 0.0 || !mg_per_million_cycles.is_finite() {
             return Err(CalibrateError::Unsuitable(format!(
-                "the measured wear rate is {mg_per_million_cycles:.3} mg per million cycles: there are no constants that \
-                 make a prediction of it; check the masses and the soak controls"
+                "the measured wear rate is {mg_per_million_cycles:.3} mg per million cycles: no constants \
+                 reproduce it; check the masses and the soak controls"
             )));
         }
         if self.weighed.predicted.mg_per_million_cycles <= 0.0 {
@@ -439,23 +431,12 @@ impl Test {
 pub(crate) fn losses(case: &Case, law: &Wear) -> Result<Vec<(f64, f64)>, CalibrateError> {
     let mut case = case.clone();
     case.wear = law.clone();
-    let failed = |source| CalibrateError::Run {
+    let (cache, bodies) = (Cache::off(), SharedBodies::default());
+    let marched = march_watched(&case, &cache, &bodies, &mut |_| ());
+    let (march, _) = marched.map_err(|source| CalibrateError::Run {
         constants: in_words(law),
         source: Box::new(source),
-    };
-    let built = build(&case, 1, &Cache::off()).map_err(failed)?;
-    let mut march = start(&case, built.test, &built.warnings).map_err(failed)?;
-    let mut go_on = |_: Progress| ControlFlow::Continue(());
-    while !march.is_done() {
-        let update = march.update(&mut go_on);
-        let update = update.map_err(|source| CalibrateError::March {
-            constants: in_words(law),
-            source,
-        })?;
-        if update.is_break() {
-            break;
-        }
-    }
+    })?;
     let updates = march.state().updates.iter();
     let losses = updates.map(|update| (update.cycles, update.mass_loss_mg));
     Ok(std::iter::once((0.0, 0.0)).chain(losses).collect())

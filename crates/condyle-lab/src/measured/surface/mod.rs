@@ -251,6 +251,7 @@ fn errors(compared: &Compared, nodes: &[usize]) -> SurfaceErrors {
 
 fn fields(unworn: &SurfaceFields, compared: &Compared) -> SurfaceFields {
     let pairs = || compared.scanned_mm.iter().zip(&compared.predicted_mm);
+    // Zero times NaN is NaN: no prediction is shown where there is no scan.
     let predicted = pairs().map(|(scanned, predicted)| predicted + 0.0 * scanned);
     let difference = pairs().map(|(scanned, predicted)| scanned - predicted);
     SurfaceFields {
@@ -275,7 +276,6 @@ const MIN_DETERMINANT: f64 = 1e-3;
 pub(crate) struct Compared {
     pub predicted_mm: Vec<f64>,
     pub scanned_mm: Vec<f64>,
-    /// Share of the area of each node.
     pub areas_mm2: Vec<f64>,
 }
 
@@ -292,10 +292,12 @@ pub(crate) fn compared(
     farthest_mm: f64,
 ) -> Compared {
     let soundings = soundings(sheet, scan, farthest_mm);
+    // A coarse scan needs a wide radius; a fine one is averaged over an edge of the mesh, which reduces its noise.
     let radius = edge_mm(unworn).max(SPACINGS * spacing_mm(&soundings));
     let tree = RTree::bulk_load(soundings);
     let depth_of = |point: &Vec3| sheet.foot(point).map_or(f64::NAN, |foot| -foot.height_mm);
     let scanned = |node: usize| {
+        // At the border half of the points around a node are missing, which would tilt its plane.
         if sheet.is_border(node) {
             return f64::NAN;
         }

@@ -19,7 +19,6 @@ const REACH_MM: f64 = 15.0;
 /// Factor by which that distance shrinks in each step, down to `farthest_mm`, to exclude points that do not belong to
 /// the surface.
 const REACH_SHRINKS: f64 = 0.8;
-/// Largest number of steps.
 const MAX_STEPS: usize = 300;
 /// A shorter step, at the scan's radius of gyration, ends the registration, mm.
 const REST_MM: f64 = 1e-6;
@@ -33,8 +32,8 @@ const TUKEY: f64 = 4.685;
 const SCALE_OF_MEDIAN: f64 = 1.4826;
 /// Smallest scale of residuals, mm: round-off of a scan without noise.
 const MIN_SCALE_MM: f64 = 1e-7;
-const SCAN_SLIDES: &str = "the surface that the scan is laid onto does not fix its place: it can slide or turn along \
-    itself; scan more of the insert, or fit all of it (fit = \"all\" in [surface])";
+const SCAN_SLIDES: &str = "the fitted surface does not determine the position of the scan, which can slide or rotate along \
+    it; scan more of the insert, or fit all of it (fit = \"all\" in [surface])";
 /// A motion with a smaller eigenvalue, relative to the largest, is not determined by the surface.
 const MIN_RESISTANCE: f64 = 1e-7;
 
@@ -63,7 +62,6 @@ pub struct Registration {
 }
 
 impl Registration {
-    /// Moves a point of the scan by the registration.
     pub(crate) fn moved(&self, point: &Vec3) -> Vec3 {
         self.motion.transform_point(&(*point).into()).coords
     }
@@ -89,7 +87,7 @@ pub(crate) fn register(
         let fit = Fit::of(&pairs).ok_or_else(|| {
             let (near, points) = (pairs.len(), places.points.len());
             CompareError::NotComparable(format!(
-                "only {near} of {points} points of the scan come near the insert where they are to be laid onto it; check \
+                "only {near} of {points} points of the scan are near the fitted part of the insert; check \
                  length_unit, axes, start_mm and the fit region in [surface]"
             ))
         })?;
@@ -101,10 +99,11 @@ pub(crate) fn register(
         if is_last || (steps == MAX_STEPS && step_mm < NEARLY_REST_MM) {
             return Ok(fit.registration(motion, steps));
         }
+        // A wide reach finds the surface from afar; the narrow one at the end excludes other parts of the scan.
         reach = (reach * REACH_SHRINKS).max(scan.keys.farthest_mm);
     }
     Err(CompareError::NotComparable(format!(
-        "the scan does not come to rest on the insert within {MAX_STEPS} steps: the last moved it by {step_mm:.4} mm; start \
+        "the registration of the scan does not converge within {MAX_STEPS} steps: the last moved it by {step_mm:.4} mm; start \
          it nearer with axes and start_mm in [surface]"
     )))
 }
@@ -228,6 +227,7 @@ impl Fit {
 
     /// Returns the motion that minimises the residuals; none if the surface does not determine it.
     fn step(&self) -> Option<Isometry3<f64>> {
+        // Turns are scaled by the radius of gyration, so that all six eigenvalues are comparable.
         let resistances = self.matrix.symmetric_eigenvalues();
         if resistances.min() <= MIN_RESISTANCE * resistances.max() {
             return None;
@@ -295,7 +295,6 @@ pub(crate) struct Sheet<'a> {
 
 /// The nearest place of a surface to a point.
 pub(crate) struct Foot {
-    /// Corners of the triangle.
     pub corners: [u32; 3],
     /// Share of each corner, adding to 1.
     pub weights: [f64; 3],
@@ -504,7 +503,7 @@ mod tests {
         // Chaos: with another compiler it may be another of these scans.
         let restless = (3..8).find_map(|seed| {
             let said = register(&noisy(seed), &sheet, &depth).err()?.to_string();
-            said.contains("does not come to rest").then_some(said)
+            said.contains("does not converge").then_some(said)
         });
         let said = restless.expect("one of them");
         assert!(said.contains("within 300 steps"), "{said}");
