@@ -9,7 +9,7 @@ use condyle_lab::{
 
 use crate::{
     arguments::{Calibrate, CalibrateWear},
-    output::{self, Done, Failure, Lines, line, tell},
+    output::{self, Done, Failure, Lines, line, note},
 };
 
 const PAGE: &str = "calibration.md";
@@ -26,7 +26,7 @@ pub fn calibrate(arguments: &Calibrate) -> Done {
         changes: arguments.changes.set.clone(),
         held_out: arguments.hold_out.clone(),
     };
-    let law = fit(&request, &mut |step| tell(format_args!("solving: {step}")));
+    let law = fit(&request, &mut |step| note(format_args!("solving: {step}")));
     let law = law.inspect_err(|_| {
         // The folder is still empty.
         let _ = fs::remove_dir(out);
@@ -68,7 +68,7 @@ pub fn calibrate_wear(arguments: &CalibrateWear) -> Done {
     let calibration = find_constants(&request, &mut |trial: &Trial| {
         let constants = listed(&trial.constants, |value| format!("{value:.4e}"));
         let rates = listed(&trial.mg_per_million_cycles, |rate| format!("{rate:.3}"));
-        tell(format_args!("{constants}: {rates} mg per million cycles"));
+        note(format_args!("{constants}: {rates} mg per million cycles"));
     })?;
     if arguments.json {
         return output::print(&output::json(&calibration));

@@ -24,12 +24,12 @@ pub fn compare(arguments: &Compare) -> Done {
         written.push(condyle_report::write_readable_report(results)?.0);
     }
     if arguments.json {
-        return output::print_beside(&comparison.json(), out);
+        return output::print_with_folder(&comparison.json(), out);
     }
     let mut lines = tables(&comparison);
     let files = written.iter().map(|path| path.display().to_string());
     line!(lines, "wrote {}", files.collect::<Vec<_>>().join(", "));
-    output::print_beside(lines.text(), out)
+    output::print_with_folder(lines.text(), out)
 }
 
 fn tables(comparison: &Comparison) -> Lines {

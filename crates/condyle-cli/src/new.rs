@@ -15,7 +15,7 @@ use condyle_lab::{Preview, RunError};
 
 use crate::{
     arguments::{Export, New},
-    output::{self, Done, Failure, tell},
+    output::{self, Done, Failure, note},
 };
 
 /// The schema file next to a case, which the case names in its first line.
@@ -62,7 +62,7 @@ fn drawn(case: &Path) -> Option<PathBuf> {
                 .map_err(|error| format!("{}: {error}", picture.display()))
         });
     if let Err(why) = &drawn {
-        tell(format_args!("warning: no picture: {why}"));
+        note(format_args!("warning: no picture: {why}"));
     }
     drawn.is_ok().then_some(picture)
 }
@@ -81,7 +81,7 @@ fn text(arguments: &New) -> Result<String, DraftError> {
     let folder = arguments.case.parent();
     let folder = folder.filter(|folder| *folder != Path::new(""));
     let drafted = draft.drafted(folder.unwrap_or(Path::new(".")))?;
-    drafted.remarks.iter().for_each(tell);
+    drafted.remarks.iter().for_each(note);
     Ok(drafted.text)
 }
 
@@ -102,10 +102,7 @@ pub fn export(arguments: &Export) -> Done {
 /// Fails as a run of the same case would.
 fn export_failure(case: &Case, error: ExportError) -> Failure {
     Failure::from(match error {
-        ExportError::Build(source) => RunError::Build {
-            shown: case.at_its_key(&source),
-            source: Box::new(source),
-        },
+        ExportError::Build(source) => RunError::Case(case.at_its_key(&source)),
         ExportError::Placement(source) => RunError::Placement {
             shown: case.placement_at_its_key(&source, &[]),
             source,

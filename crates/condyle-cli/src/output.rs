@@ -127,7 +127,7 @@ fn printable(words: impl Display) -> String {
 }
 
 /// Prints a line on standard error; its words may come from a file or the command line.
-pub fn tell(words: impl Display) {
+pub fn note(words: impl Display) {
     show(&printable(words));
 }
 
@@ -138,7 +138,7 @@ fn show(text: &str) {
 
 pub fn warn(warnings: impl IntoIterator<Item = impl Display>) {
     for warning in warnings {
-        tell(format_args!("warning: {warning}"));
+        note(format_args!("warning: {warning}"));
     }
 }
 
@@ -148,7 +148,7 @@ pub fn print(text: &str) -> Done {
 }
 
 /// Prints `text`, of which more is kept in `folder`.
-pub fn print_beside(text: &str, folder: &Path) -> Done {
+pub fn print_with_folder(text: &str, folder: &Path) -> Done {
     let kept = format!("; the results are kept in {}", folder.display());
     ended(write(text), &kept)
 }

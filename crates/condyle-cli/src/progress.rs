@@ -15,7 +15,7 @@ use condyle_lab::{Reached, RunEvent};
 use condyle_study::{Progress, StudyEvent};
 use indicatif::{ProgressBar, ProgressStyle};
 
-use crate::output::{self, tell};
+use crate::output::{self, note};
 
 /// Returns a flag that the first Ctrl-C (or SIGTERM) raises; a second ends the program at once.
 fn stop_on_interrupt() -> Arc<AtomicBool> {
@@ -28,7 +28,7 @@ fn stop_on_interrupt() -> Arc<AtomicBool> {
         }
     });
     if let Err(error) = set {
-        tell(format_args!(
+        note(format_args!(
             "warning: Ctrl-C will end the run at once: {error}"
         ));
     }
@@ -77,7 +77,7 @@ impl RunProgress {
                 bar.set_message(format!("update {}", progress.update));
             }
             (RunEvent::Estimating, Some(bar)) => bar.set_message("estimating the error"),
-            (RunEvent::Updated(update), None) => tell(format_args!(
+            (RunEvent::Updated(update), None) => note(format_args!(
                 "{:.0} cycles: {:.3} mg worn, {:.4} mm deep",
                 update.cycles, update.mass_loss_mg, update.max_depth_mm
             )),
@@ -98,7 +98,7 @@ impl RunProgress {
             bar.set_position(self.ticks(reached.cycles));
             self.bar = Some(bar);
         } else if reached.updates > 0 {
-            tell(format_args!("resumed: {}", in_words(reached)));
+            note(format_args!("resumed: {}", in_words(reached)));
         }
     }
 }
@@ -150,8 +150,8 @@ impl StudyProgress {
             StudyEvent::Progress(progress) => self.print(*progress),
             StudyEvent::Message(message) if self.messages.insert(message.clone()) => {
                 match &self.bar {
-                    Some(bar) => bar.suspend(|| tell(message)),
-                    None => tell(message),
+                    Some(bar) => bar.suspend(|| note(message)),
+                    None => note(message),
                 }
             }
             _ => {}
@@ -179,7 +179,7 @@ impl StudyProgress {
             tests,
         } = progress;
         if kept == before && before > 0 && self.lines == 0 {
-            tell(format_args!("resumed: {before} of {tests} tests are kept"));
+            note(format_args!("resumed: {before} of {tests} tests are kept"));
         }
         let line = kept * MAX_LINES / tests.max(1);
         if kept == before || line == self.lines {
@@ -188,7 +188,7 @@ impl StudyProgress {
         self.lines = line;
         let spent_s = self.started.elapsed().as_secs_f64();
         let left_s = spent_s / (kept - before) as f64 * tests.saturating_sub(kept) as f64;
-        tell(format_args!("{kept} of {tests} tests, {left_s:.0} s left"));
+        note(format_args!("{kept} of {tests} tests, {left_s:.0} s left"));
     }
 }
 

@@ -13,7 +13,7 @@ use condyle_results::PLOTTED;
 
 use crate::{
     arguments::{PictureFormat, Plot, Report},
-    output::{self, Done, Failure, Lines, line, tell},
+    output::{self, Done, Failure, Lines, line, note},
 };
 
 pub fn report(arguments: &Report) -> Done {
@@ -64,7 +64,7 @@ fn of_one(folder: &Path, has_pictures: bool) -> Done {
 /// test.
 pub fn note_unfinished(folder: &Path) {
     if folder.join("checkpoint").exists() && !folder.join("summary.json").exists() {
-        tell(format_args!(
+        note(format_args!(
             "note: the run in {} is not finished (there is no summary.json); its results so far are shown",
             folder.display()
         ));

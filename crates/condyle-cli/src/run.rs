@@ -11,7 +11,7 @@ use condyle_results::{
 
 use crate::{
     arguments::Run,
-    output::{self, Done, Failure, Lines, line, tell},
+    output::{self, Done, Failure, Lines, line, note},
     progress::{self, RunProgress},
     run_tables,
 };
@@ -33,7 +33,7 @@ pub fn run(arguments: &Run) -> Done {
     match outcome {
         Outcome::Done(summary) => print_summary(&summary, &options.out, arguments.json),
         Outcome::DoneBefore(summary) => {
-            tell("this run is done already: nothing was computed");
+            note("this run is done already: nothing was computed");
             print_summary(&summary, &options.out, arguments.json)
         }
         Outcome::Interrupted(reached) => Err(Failure::interrupted(format_args!(
@@ -56,7 +56,7 @@ fn resuming_command(arguments: &Run, out: &Path) -> String {
 
 fn print_summary(summary: &Summary, out: &Path, json: bool) -> Done {
     if json {
-        return output::print_beside(&output::json(summary), out);
+        return output::print_with_folder(&output::json(summary), out);
     }
     let mut lines = Lines::default();
     // Reasons to doubt the run come before its numbers.
@@ -90,7 +90,7 @@ fn print_summary(summary: &Summary, out: &Path, json: bool) -> Done {
         out.join("report.html").display(),
         series.collect::<Vec<_>>().join(", ")
     );
-    output::print_beside(lines.text(), out)
+    output::print_with_folder(lines.text(), out)
 }
 
 type SummaryLine = (&'static str, String);
@@ -106,7 +106,7 @@ fn rows(summary: &Summary) -> Vec<SummaryLine> {
             rows.push((scalar.label, words));
             continue;
         }
-        // "contact evaluations a cycle" goes on the line of "contact evaluations", as "... a cycle".
+        // "contact evaluations a cycle" continues the line of "contact evaluations", as "... a cycle".
         let of_label = rows
             .iter()
             .rposition(|(label, _)| scalar.label.starts_with(label));

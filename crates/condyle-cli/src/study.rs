@@ -19,7 +19,7 @@ use crate::{
     arguments::{
         Converge, RunRow, Sensitivity, Study, StudyCommand, StudyExport, StudyMerge, Uncertainty,
     },
-    output::{self, Done, Failure, tell},
+    output::{self, Done, Failure, note},
     progress::{RunProgress, StudyProgress},
 };
 
@@ -55,7 +55,7 @@ pub fn converge(arguments: &Converge) -> Done {
         let path = out.join("converge.json");
         let text = fs::read_to_string(&path)
             .map_err(|error| Failure::bad_input(format_args!("{}: {error}", path.display())))?;
-        return output::print_beside(&text, out);
+        return output::print_with_folder(&text, out);
     }
     print_with_picture(&convergence.markdown(), out, "converge.svg")
 }
@@ -103,7 +103,7 @@ impl From<StudyError> for Failure {
             StudyError::Study(problems) => Self::from(&problems),
             StudyError::Run(error) => error.into(),
             StudyError::RunWith { number, source } => {
-                tell(format_args!("in the run with {number}:"));
+                note(format_args!("in the run with {number}:"));
                 Self::from(&*source)
             }
             StudyError::Interrupted => Self::interrupted(
@@ -143,7 +143,7 @@ fn run(arguments: &Study) -> Done {
     if shard.is_whole() {
         return answered(&plan, &options.out, arguments.json);
     }
-    tell(format_args!(
+    note(format_args!(
         "shard {shard} is done, in {}; join all shards with: condyle study merge {} FOLDERS",
         options.out.display(),
         path.display()
@@ -155,7 +155,7 @@ fn run(arguments: &Study) -> Done {
 fn answered(plan: &Plan, out: &Path, json: bool) -> Done {
     let answers = write_answers(plan, out)?;
     if json {
-        return output::print_beside(&output::json(&answers), out);
+        return output::print_with_folder(&output::json(&answers), out);
     }
     print_with_picture(&answers.markdown(), out, "study.html")
 }
@@ -164,7 +164,7 @@ fn answered(plan: &Plan, out: &Path, json: bool) -> Done {
 fn print_with_picture(text: &str, out: &Path, name: &str) -> Done {
     let (folder, picture) = (out.display(), out.join(name));
     let text = format!("{text}\nresults in {folder}; open {}\n", picture.display());
-    output::print_beside(&text, out)
+    output::print_with_folder(&text, out)
 }
 
 fn export(arguments: &StudyExport) -> Done {
@@ -190,7 +190,7 @@ fn run_row(arguments: &RunRow) -> Done {
         threads: 1,
         cache: Cache::of_user(),
     };
-    plan.assignments(&test).iter().for_each(tell);
+    plan.assignments(&test).iter().for_each(note);
     let case = plan.case_of(&test)?;
     let outcome = {
         let mut progress = RunProgress::new();
@@ -201,7 +201,7 @@ fn run_row(arguments: &RunRow) -> Done {
     }
     let (folder, page) = (options.out.display(), options.out.join("report.html"));
     let text = format!("results in {folder}; open {}\n", page.display());
-    output::print_beside(&text, &options.out)
+    output::print_with_folder(&text, &options.out)
 }
 
 fn merged(arguments: &StudyMerge) -> Done {
@@ -210,7 +210,7 @@ fn merged(arguments: &StudyMerge) -> Done {
     let out = out.unwrap_or_else(|| default_folder(&arguments.study, Shard::WHOLE));
     let (kept, tests) = (merge(&plan, &arguments.shards, &out)?, plan.tests());
     if kept < tests {
-        tell(format_args!(
+        note(format_args!(
             "{kept} of {tests} tests are there; finish the shards and merge again, or continue here with: condyle study {} --out {}",
             arguments.study.display(),
             out.display()

@@ -76,7 +76,7 @@ impl Preview {
         let warnings: Vec<String> = built.warnings.iter().map(ToString::to_string).collect();
         let march = clock.time(|| start(&case, built.test, &built.warnings))?;
         let triangles = case.femur_triangles(march.test(), FEMUR_TRIANGLES);
-        let triangles = triangles.map_err(|source| RunError::of_build(&case, source))?;
+        let triangles = triangles.map_err(|source| RunError::of_build(&case, &source))?;
         let at_rest = AtRest::of(&march);
         let file = case.femur.file();
         let femur = BodyFacts::of(

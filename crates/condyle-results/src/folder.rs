@@ -32,12 +32,12 @@ use condyle_mesh::formats::MeshFileError;
 #[derive(Debug, Error)]
 pub enum ResultsError {
     /// A folder whose state does not permit the run.
-    #[error("{}: {state}", folder.display())]
+    #[error("{}: {problem}", folder.display())]
     Folder {
         /// The folder.
         folder: PathBuf,
         /// Its state and the remedy.
-        state: FolderState,
+        problem: String,
     },
     /// A checkpoint that cannot be read.
     #[error("{}: the checkpoint cannot be used: {source}", file.display())]
@@ -61,80 +61,6 @@ pub enum ResultsError {
     /// An insert that cannot be written.
     #[error(transparent)]
     Insert(#[from] MeshFileError),
-}
-
-/// The state of a folder that cannot take a run.
-#[derive(Debug, Error)]
-pub enum FolderState {
-    /// It holds a run, as this file shows.
-    #[error(
-        "the folder already holds a run ({0} is there); \
-         give another folder with --out, resume it with --resume, or replace it with --force"
-    )]
-    Run(&'static str),
-    /// It holds a file with a name that runs use, and nothing to resume.
-    #[error(
-        "the folder already holds a run or a part of one ({0} is there, and no checkpoint to resume from); \
-         give another folder with --out, or remove the file yourself"
-    )]
-    PartOfRun(&'static str),
-    /// It holds a run that is done.
-    #[error(
-        "the folder already holds a run, which is done (summary.json is there); \
-         give another folder with --out, or replace it with --force: there is nothing left to --resume"
-    )]
-    DoneRun,
-    /// It holds a file that a run would replace and that belongs to no run.
-    #[error(
-        "{0} is there, but no checkpoint, so that it may not belong to a run; \
-         give another folder with --out, or remove the file yourself"
-    )]
-    NoWholeRun(&'static str),
-    /// It holds a file that the new run reads.
-    #[error(
-        "the run reads {} of the folder that it would replace; give another folder with --out",
-        .0.display()
-    )]
-    Input(PathBuf),
-    /// Another run is writing.
-    #[error(
-        "another run is writing into this folder; \
-         wait until it has ended, or give another folder with --out"
-    )]
-    InUse,
-    /// The path is a file.
-    #[error("this is a file, not a folder; give another folder with --out")]
-    File,
-    /// It holds no run to resume.
-    #[error(
-        "the folder holds no run to resume: there is no checkpoint, and no case.toml of this case; \
-         omit --resume to start one"
-    )]
-    NoRun,
-    /// It holds a run that another version began.
-    #[error(
-        "the run in this folder was started by condyle {version}, and this is {}; \
-         resume it with that version, or run the case again into another folder",
-        env!("CARGO_PKG_VERSION")
-    )]
-    OtherVersion {
-        /// The version that began it.
-        version: String,
-    },
-    /// It holds a run of another case.
-    #[error(
-        "the run in this folder is of another case or other meshes; give another folder with --out"
-    )]
-    OtherCase,
-}
-
-impl FolderState {
-    pub(super) fn of(self, path: &Path) -> ResultsError {
-        ResultsError::Folder {
-            folder: path.to_owned(),
-            state: self,
-        }
-    }
 }
 
 /// The folder of a run; its writers fail with [`ResultsError::Refused`].
@@ -192,23 +118,37 @@ impl ResultsFolder {
     /// # Errors
     /// A folder that holds a run, done or not, or a file in its place.
     pub fn free(path: &Path) -> Result<(), ResultsError> {
-        let is_there = |name: &&&str| path.join(name).exists();
-        if path.exists() && !path.is_dir() {
-            return Err(FolderState::File.of(path));
-        }
-        if is_there(&&"checkpoint") && is_there(&&"summary.json") {
-            return Err(FolderState::DoneRun.of(path));
-        }
-        let Some(&file) = SIGNS_OF_A_RUN.iter().find(is_there) else {
+        let Some(file) = Self::sign_of_a_run(path)? else {
             return Ok(());
         };
-        let can_be_resumed = file == "case.toml" || is_there(&&"checkpoint");
-        let state = if can_be_resumed {
-            FolderState::Run(file)
+        let [is_begun, has_summary] =
+            ["checkpoint", "summary.json"].map(|name| path.join(name).exists());
+        let problem = if is_begun && has_summary {
+            "the folder already holds a run, which is done (summary.json is there); give another folder with --out, or \
+             replace it with --force: there is nothing left to --resume"
+                .to_owned()
+        } else if is_begun || file == "case.toml" {
+            format!(
+                "the folder already holds a run ({file} is there); give another folder with --out, resume it with \
+                 --resume, or replace it with --force"
+            )
         } else {
-            FolderState::PartOfRun(file)
+            format!(
+                "the folder already holds a run or a part of one ({file} is there, and no checkpoint to resume from); give \
+                 another folder with --out, or remove the file yourself"
+            )
         };
-        Err(state.of(path))
+        Err(unusable(path, problem))
+    }
+
+    /// Returns the first file in `path` with a name that runs use, if there is one.
+    pub(super) fn sign_of_a_run(path: &Path) -> Result<Option<&'static str>, ResultsError> {
+        if path.exists() && !path.is_dir() {
+            let problem = "this is a file, not a folder; give another folder with --out";
+            return Err(unusable(path, problem));
+        }
+        let is_there = |name: &&str| path.join(name).exists();
+        Ok(SIGNS_OF_A_RUN.into_iter().find(is_there))
     }
 
     /// Locks the folder at `path`, so that no other run writes into it; none if the folder does not exist.
@@ -220,7 +160,11 @@ impl ResultsFolder {
             return Ok(None);
         }
         let taken = FolderLock::take(path).map_err(refused(path))?;
-        taken.map(Some).ok_or(FolderState::InUse.of(path))
+        taken.map(Some).ok_or_else(|| {
+            let problem = "another run is writing into this folder; wait until it has ended, or give another folder with \
+                           --out";
+            unusable(path, problem)
+        })
     }
 
     /// Creates the folder of a run, unless it exists.
@@ -249,7 +193,11 @@ impl ResultsFolder {
             return match fs::read_to_string(folder.file("case.toml")) {
                 Ok(text) if text == case_toml => Ok(Found::Case),
                 Err(_) if folder.was_only_made() => Ok(Found::Nothing),
-                Ok(_) | Err(_) => Err(FolderState::NoRun.of(path)),
+                Ok(_) | Err(_) => {
+                    let problem = "the folder holds no run to resume: there is no checkpoint, and no case.toml of this \
+                                   case; omit --resume to start one";
+                    Err(unusable(path, problem))
+                }
             };
         }
         let file = folder.file("checkpoint");
@@ -257,11 +205,16 @@ impl ResultsFolder {
         let checkpoint = Checkpoint::from_bytes(&bytes)
             .map_err(|source| ResultsError::Checkpoint { file, source })?;
         if checkpoint.inputs_blake3 != inputs_blake3 {
-            return Err(FolderState::OtherCase.of(path));
+            let problem = "the run in this folder is of another case or other meshes; give another folder with --out";
+            return Err(unusable(path, problem));
         }
         if checkpoint.version != env!("CARGO_PKG_VERSION") {
-            let version = checkpoint.version;
-            return Err(FolderState::OtherVersion { version }.of(path));
+            let (version, own) = (checkpoint.version, env!("CARGO_PKG_VERSION"));
+            let problem = format!(
+                "the run in this folder was started by condyle {version}, and this is {own}; resume it with that version, or \
+                 run the case again into another folder"
+            );
+            return Err(unusable(path, problem));
         }
         // Before the checkpoint is used: a damaged mesh of an earlier update would stay in the series.
         check_all(&folder.path)?;
@@ -426,12 +379,19 @@ impl ResultsFolder {
     }
 }
 
+/// Creates the error for a folder whose state does not permit the run.
+pub(super) fn unusable(folder: &Path, problem: impl Into<String>) -> ResultsError {
+    ResultsError::Folder {
+        folder: folder.to_owned(),
+        problem: problem.into(),
+    }
+}
+
 fn refused(file: &Path) -> impl FnOnce(io::Error) -> ResultsError {
     let file = file.to_owned();
     move |source| ResultsError::Refused { file, source }
 }
 
-/// Removes a file if it exists.
 pub(super) fn remove(file: &Path) -> Result<(), ResultsError> {
     match fs::remove_file(file) {
         Err(source) if source.kind() != io::ErrorKind::NotFound => Err(refused(file)(source)),

@@ -45,7 +45,7 @@ pub use femur_pose::{NeutralPose, femur_pose_csv};
 #[cfg(feature = "file-system")]
 pub use files::{DamagedFile, FolderLock, check_file};
 #[cfg(feature = "file-system")]
-pub use folder::{FolderState, Found, ResultsError, ResultsFolder};
+pub use folder::{Found, ResultsError, ResultsFolder};
 pub use insert_fields::{
     InsertFields, NODE_FIELDS, NodeField, insert_file_name, insert_pvd, insert_vtu,
 };

@@ -9,14 +9,13 @@ use super::{
     added::{AddedFiles, COMPARED, PLOTTED},
     cycle_files::{BODIES, KeptCycle},
     files::part_file,
-    folder::{FolderState, ResultsError, ResultsFolder, SIGNS_OF_A_RUN, TIME_SPENT, remove},
+    folder::{ResultsError, ResultsFolder, SIGNS_OF_A_RUN, TIME_SPENT, remove, unusable},
     parts::kinematics_file,
 };
 
 /// Pictures that `condyle report` adds to a run on request.
 const PICTURES: [&str; 3] = ["wear_map.svg", "wear.svg", "kinematics.svg"];
 
-/// Files that commands add in folders of their own.
 const ADDED: [AddedFiles; 2] = [COMPARED, PLOTTED];
 
 impl ResultsFolder {
@@ -27,23 +26,28 @@ impl ResultsFolder {
     /// A folder with files of a run's names that has no checkpoint, so that they may belong to
     /// another program; one of whose files the new run reads; a file in its place.
     pub fn may_be_written_over(path: &Path, read: &[&Path]) -> Result<(), ResultsError> {
-        let state = match Self::free(path) {
-            Err(ResultsError::Folder { state, .. }) => state,
-            other => return other,
+        let Some(file) = Self::sign_of_a_run(path)? else {
+            return Ok(());
         };
-        match state {
-            FolderState::PartOfRun(file) => Err(FolderState::NoWholeRun(file).of(path)),
-            FolderState::Run(file) if !path.join("checkpoint").exists() => {
-                Err(FolderState::NoWholeRun(file).of(path))
-            }
-            FolderState::Run(_) | FolderState::DoneRun => {
-                let files = Self::existing(path).files_of_a_run();
-                match read.iter().find(|file| is_among(file, &files)) {
-                    Some(file) => Err(FolderState::Input(file.to_path_buf()).of(path)),
-                    None => Ok(()),
-                }
-            }
-            other => Err(other.of(path)),
+        if !path.join("checkpoint").exists() {
+            return Err(unusable(
+                path,
+                format!(
+                    "{file} is there, but no checkpoint, so that it may not belong to a run; give another folder with --out, or \
+                 remove the file yourself"
+                ),
+            ));
+        }
+        let files = Self::existing(path).files_of_a_run();
+        match read.iter().find(|file| is_among(file, &files)) {
+            Some(file) => Err(unusable(
+                path,
+                format!(
+                    "the run reads {} of the folder that it would replace; give another folder with --out",
+                    file.display()
+                ),
+            )),
+            None => Ok(()),
         }
     }
 

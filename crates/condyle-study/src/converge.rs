@@ -65,7 +65,6 @@ pub struct Convergence {
     pub steps: Vec<f64>,
 }
 
-/// Returns the results that are compared.
 fn compared() -> impl Iterator<Item = &'static Scalar> {
     const KEYS: [&str; 5] = [
         "mass_loss_mg",

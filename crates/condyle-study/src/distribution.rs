@@ -59,7 +59,6 @@ fn quantile(variation: &Variation, share: f64) -> f64 {
     }
 }
 
-/// Returns the quantile of the standard normal distribution.
 pub(crate) fn normal_quantile(share: f64) -> f64 {
     Normal::standard().inverse_cdf(share)
 }

@@ -274,7 +274,6 @@ impl TestBench {
         Ok(catalogue::outputs().map(|output| summary[output]).collect())
     }
 
-    /// Runs a case.
     pub(crate) fn summary(&self, case: &Case) -> Result<Summary, RunError> {
         batch_run(case, &self.cache, &self.bodies)
     }

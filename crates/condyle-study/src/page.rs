@@ -147,7 +147,6 @@ fn elementary(answers: &Answers) -> Option<Picture> {
     Some(("morris.svg", caption.to_owned(), svg))
 }
 
-/// Returns the largest effects on an output.
 fn effects_on<'a>(answers: &'a Answers, output: &str) -> Vec<&'a Effect> {
     let mut own = answers.effects_on(output);
     own.truncate(MAX_INPUTS);

@@ -140,7 +140,6 @@ impl Plan {
         })
     }
 
-    /// Returns the values of the inputs at these places.
     pub(crate) fn values_at(&self, places: &[Place]) -> Vec<Option<Level>> {
         let inputs = self.study.inputs.iter().zip(places);
         let value = |(input, place): (&Input, &Place)| match *place {
@@ -192,7 +191,6 @@ impl Plan {
     }
 }
 
-/// Returns the value of an output among the outputs of a test.
 pub(crate) fn output_value(values: &[f64], output: &Scalar) -> f64 {
     let place = catalogue::outputs().position(|one| one.key == output.key);
     place.map_or(f64::NAN, |place| values[place])
@@ -203,7 +201,6 @@ pub(crate) fn designs(study: &Study) -> usize {
     study.alternatives.len().max(1)
 }
 
-/// Returns the number of values of each input.
 fn counts(study: &Study, points: u64) -> Vec<u64> {
     let count = |input: &Input| match &input.variation {
         Variation::Levels(keys) => keys.levels.0.len() as u64,
@@ -245,12 +242,10 @@ impl Shard {
         self.of == 1
     }
 
-    /// Returns whether a row is one of its tests.
     pub(crate) fn has(&self, row: u64) -> bool {
         row % self.of == self.number - 1
     }
 
-    /// Returns the number of its tests in a study of `tests` tests.
     pub(crate) fn count(&self, tests: u64) -> u64 {
         (tests + self.of - self.number) / self.of
     }

@@ -19,7 +19,6 @@ const MIN_STEP: f64 = 1e-3;
 pub(crate) type Evaluate<'a> =
     dyn FnMut(&[Test]) -> Result<Option<Vec<TestResult>>, StudyError> + 'a;
 
-/// The state of a search at its end.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Searched {
     pub generations: u64,
@@ -123,7 +122,6 @@ pub(crate) struct Evolution {
     rates: Rates,
 }
 
-/// Learning rates and sizes.
 struct Rates {
     /// Points of a generation.
     size: usize,

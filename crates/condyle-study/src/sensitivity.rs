@@ -33,7 +33,6 @@ pub struct Sensitivity {
 /// Values by the keys of the outputs.
 type Results = BTreeMap<&'static str, f64>;
 
-/// A test with one assumption changed.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 struct Changed {
     assumption: &'static str,
@@ -88,7 +87,6 @@ pub fn sensitivity(
 
 type NamedChange = (&'static str, String, Vec<Assignment>);
 
-/// Returns every change of a case, in the order of the table.
 fn changes_of(case: &Case) -> Vec<NamedChange> {
     let mut changes = Vec::new();
     for [name, keys, kind, values] in records(ASSUMPTIONS) {

@@ -21,7 +21,6 @@ use crate::{
 
 /// Name of the file in the study's folder.
 pub(crate) const DATABASE: &str = "study.db";
-/// Version of the tables.
 const FORMAT: &str = "1";
 /// Longest time for which a reading process may delay a write.
 const MAX_WAIT: Duration = Duration::from_secs(60);
@@ -87,7 +86,6 @@ impl Store {
         Self::connect(path)
     }
 
-    /// Opens the database of `plan` in `folder`.
     pub(crate) fn existing(folder: &Path, plan: &Plan) -> Result<Self, StudyError> {
         let store = Self::read(folder)?;
         store.check_tests(folder, plan)?;
@@ -119,7 +117,6 @@ impl Store {
         })
     }
 
-    /// Creates the tables in one transaction.
     fn create(&self, plan: &Plan, shard: Shard) -> Result<(), StudyError> {
         let study = plan.study();
         let (inputs, outputs) = plan.columns();
@@ -169,7 +166,6 @@ impl Store {
         self.first_row(query, name, |row| row.get(0))
     }
 
-    /// Returns the first row that a query finds, if it finds one.
     fn first_row<T>(
         &self,
         query: &str,
@@ -421,7 +417,6 @@ pub(crate) fn holds_anything(folder: &Path) -> Result<bool, StudyError> {
     }
 }
 
-/// Returns a name as SQL quotes it.
 fn quoted(name: &str) -> String {
     format!("\"{}\"", name.replace('"', "\"\""))
 }
@@ -464,7 +459,6 @@ fn cells(plan: &Plan, test: &Test, result: &TestResult) -> Vec<Value> {
     cells
 }
 
-/// Returns a cell of CSV, quoted where needed.
 fn csv_cell(text: &str) -> String {
     if text.contains([',', '"', '\n', '\r']) {
         format!("\"{}\"", text.replace('"', "\"\""))

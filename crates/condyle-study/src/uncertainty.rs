@@ -111,7 +111,6 @@ pub struct UncertaintyOptions {
 /// The uncertainty of the results of a case.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Uncertainty {
-    /// Tests that are done.
     runs: usize,
     /// The reasons of those that failed.
     not_run: Vec<String>,
@@ -119,7 +118,6 @@ pub struct Uncertainty {
     inputs: Vec<Share>,
     /// Inputs for which the case has no key.
     left_out: Vec<&'static str>,
-    /// The results, by their keys.
     numbers: BTreeMap<&'static str, Spread>,
 }
 

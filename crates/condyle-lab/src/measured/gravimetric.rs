@@ -33,11 +33,11 @@ pub struct GravimetricComparison {
     pub predicted: Rate,
     /// Predicted over measured rate, of the line through all, less one, percent.
     pub predicted_above_measured_percent: f64,
-    /// Whether the predicted rate lies within the range of the specimens.
+    /// True if the predicted rate lies within the range of the specimens.
     pub inside_range_of_specimens: bool,
-    /// Whether it lies within the interval of the line through all weighings.
+    /// True if it lies within the interval of the line through all weighings.
     pub inside_interval_of_weighings: bool,
-    /// Whether it lies within the interval of the mean of the specimens; none for one specimen.
+    /// True if it lies within the interval of the mean of the specimens; none for one specimen.
     pub inside_interval_of_specimens: Option<bool>,
     /// The kind of rate that calibration fits.
     #[serde(skip)]
@@ -55,7 +55,7 @@ pub struct Weighing {
     pub loss_mg: Vec<f64>,
     /// Predicted loss, mg; none after the run's end.
     pub predicted_loss_mg: Option<f64>,
-    /// Whether the weighing is used for the lines.
+    /// True if the weighing is used for the lines.
     pub in_line: bool,
 }
 

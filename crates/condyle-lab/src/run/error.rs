@@ -16,20 +16,12 @@ use thiserror::Error;
 /// A failed run.
 #[derive(Debug, Error)]
 pub enum RunError {
-    /// The case file has problems.
+    /// The case file has problems, its bodies cannot be built, or a run would need more memory than it allows.
     #[error(transparent)]
     Case(#[from] Problems),
     /// The case cannot be changed as requested.
     #[error(transparent)]
     Change(#[from] AssignmentError),
-    /// The bodies of the case cannot be built.
-    #[error("{shown}")]
-    Build {
-        /// The cause.
-        source: Box<BuildError>,
-        /// The same at the key of the case that causes it.
-        shown: Problems,
-    },
     /// A mesh that can no longer be read.
     #[error("a mesh of the case cannot be read: {0}; check the paths in the case")]
     Inputs(#[source] io::Error),
@@ -44,14 +36,6 @@ pub enum RunError {
     Placement {
         /// The cause.
         source: PlacementError,
-        /// The same at the key of the case that causes it.
-        shown: Problems,
-    },
-    /// A run that needs more memory than its case allows.
-    #[error("{shown}")]
-    Memory {
-        /// The memory that it needs, GB.
-        needed_gb: f64,
         /// The same at the key of the case that causes it.
         shown: Problems,
     },
@@ -75,23 +59,16 @@ impl From<ChangeError> for RunError {
 }
 
 impl RunError {
-    pub(crate) fn of_build(case: &Case, source: BuildError) -> Self {
-        Self::Build {
-            shown: case.at_its_key(&source),
-            source: Box::new(source),
-        }
+    pub(crate) fn of_build(case: &Case, source: &BuildError) -> Self {
+        Self::Case(case.at_its_key(source))
     }
 
     pub(crate) fn memory(case: &Case, needed_gb: f64) -> Self {
         let allowed_gb = case.limits.memory_gb;
-        let message = format!(
+        Self::Case(case.memory_at_its_key(format!(
             "a run needs about {needed_gb:.1} GB of memory, and [limits] memory_gb allows {allowed_gb} GB; use a larger \
              edge_mm, fewer layers or fewer increments, or allow more"
-        );
-        Self::Memory {
-            needed_gb,
-            shown: case.memory_at_its_key(message),
-        }
+        )))
     }
 
     /// Returns whether the physics could not be solved, as opposed to bad input.
@@ -109,15 +86,8 @@ impl RunError {
     /// Returns the error with its place in the case file, if it has one.
     pub fn in_case(&self) -> Option<&Problems> {
         match self {
-            Self::Case(shown)
-            | Self::Build { shown, .. }
-            | Self::Placement { shown, .. }
-            | Self::Memory { shown, .. } => Some(shown),
-            Self::Change(_)
-            | Self::Inputs(_)
-            | Self::Results(_)
-            | Self::Report(_)
-            | Self::March { .. } => None,
+            Self::Case(shown) | Self::Placement { shown, .. } => Some(shown),
+            _ => None,
         }
     }
 }

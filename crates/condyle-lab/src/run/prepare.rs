@@ -36,7 +36,7 @@ pub(crate) fn build_sharing(
     bodies: &SharedBodies,
 ) -> Result<Built, RunError> {
     case.build_sharing(threads, cache, bodies)
-        .map_err(|source| RunError::of_build(case, source))
+        .map_err(|source| RunError::of_build(case, &source))
 }
 
 /// Settles the femur on the insert; rejects a march that needs more memory than its case allows, and one whose settled
@@ -104,7 +104,7 @@ fn check_holes(
     };
     let file = case.insert.file().map(DataFile::path);
     let source = BuildError::pressed_hole(file.unwrap_or(Path::new("")), hole, when);
-    Err(RunError::of_build(case, source))
+    Err(RunError::of_build(case, &source))
 }
 
 /// Memory of the program without a case, MB.

@@ -87,7 +87,7 @@ impl<'a> Run<'a> {
     /// Returns the femur as triangles: those of its mesh, or about `about` triangles.
     pub fn femur_triangles(&self, about: f64) -> Result<TriangleMesh, RunError> {
         let triangles = self.case.femur_triangles(self.march.test(), about);
-        triangles.map_err(|source| RunError::of_build(self.case, source))
+        triangles.map_err(|source| RunError::of_build(self.case, &source))
     }
 
     /// Time spent on the solver so far.

@@ -53,12 +53,12 @@ scalars! { "Computation";
         .count()
         .listed();
 
-    /// Steps of central differences. Of the explicit integrator, where the case asks for it.
+    /// Steps of central differences. Of the explicit integrator, in cases that select it.
     EXPLICIT_STEPS = Scalar::sometimes("explicit_steps", "explicit steps", 0, |run| Some(explicit(run)?.explicit_steps as f64))
         .count()
         .listed();
 
-    /// Largest inertia added by the explicit integrator. A part of the machine's own, to allow the step asked for.
+    /// Largest inertia added by the explicit integrator. A part of the machine's own, to allow the requested step.
     ADDED_INERTIA = Scalar::sometimes("added_inertia", "inertia added", 3, |run| Some(explicit(run)?.added_inertia))
         .exact()
         .listed();

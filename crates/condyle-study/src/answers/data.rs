@@ -18,7 +18,7 @@ pub(crate) struct Data<'a> {
     pub inputs: Vec<Column>,
     /// The outputs of the study, with a value for each test.
     pub outputs: Vec<(&'static Scalar, Vec<f64>)>,
-    /// Whether each test is done and within every limit.
+    /// True for each test that is done and within every limit.
     pub within: Vec<bool>,
 }
 
@@ -55,15 +55,13 @@ pub(crate) struct Spread {
     pub output: &'static str,
     pub title: &'static str,
     pub unit: &'static str,
-    /// Tests that count.
     pub tests: usize,
-    /// Whether the tests are a random sample, so that shares of them are probabilities.
+    /// True if the tests are a random sample, so that shares of them are probabilities.
     pub is_sample: bool,
     pub least: f64,
     pub most: f64,
     pub mean: f64,
     pub standard_deviation: f64,
-    /// The quantiles of [`PERCENTILES`].
     pub percentiles: [f64; 7],
     pub beyond: Vec<Beyond>,
     #[serde(skip)]

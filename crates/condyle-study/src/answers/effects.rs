@@ -95,7 +95,6 @@ fn slices(sorted: &[(f64, f64)]) -> Vec<&[(f64, f64)]> {
     }
 }
 
-/// Returns the mean of the input and of the output.
 fn means(slice: &[(f64, f64)]) -> (f64, f64) {
     let (x, y): (Vec<f64>, Vec<f64>) = slice.iter().copied().unzip();
     (mean(&x), mean(&y))

@@ -37,7 +37,6 @@ pub struct Answers {
     pub(crate) best: Option<Best>,
 }
 
-/// The number of tests that failed for one reason.
 #[derive(Clone, Debug, Serialize)]
 pub(crate) struct FailedTests {
     reason: String,

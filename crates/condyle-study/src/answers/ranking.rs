@@ -35,7 +35,6 @@ pub(crate) struct RankedDesign {
     pub best: f64,
     /// The probability of beating each design of the list, ties counted half.
     pub beats: Vec<f64>,
-    /// The 95 % intervals of these.
     pub beats_intervals: Vec<[f64; 2]>,
 }
 
@@ -207,7 +206,6 @@ pub(crate) struct Front {
     pub others: Vec<(f64, f64)>,
 }
 
-/// Points of the picture.
 const MAX_POINTS: usize = 1000;
 
 impl Front {

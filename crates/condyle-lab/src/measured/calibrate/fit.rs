@@ -23,7 +23,7 @@ pub(crate) struct Start {
     pub(crate) at: Vec<f64>,
     /// Least and most of each parameter.
     pub(crate) limits: Vec<[f64; 2]>,
-    /// Whether rates are nearly proportional to the only parameter, so that the first slope needs no run.
+    /// True if rates are nearly proportional to the only parameter, so that the first slope needs no run.
     pub(crate) in_proportion: bool,
 }
 

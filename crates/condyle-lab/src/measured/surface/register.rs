@@ -304,7 +304,7 @@ pub(crate) struct Foot {
     pub normal: Vec3,
     /// Distance of the point above the surface, negative below it, mm.
     pub height_mm: f64,
-    /// Whether the place is on the border, so that the point may lie beyond it.
+    /// True if the place is on the border, so that the point may lie beyond it.
     pub on_border: bool,
 }
 
@@ -423,7 +423,7 @@ mod tests {
     fn a_plane_leaves_the_scan_free_to_slide() {
         let fit = Fit::of(&pairs(|_, _| Vec3::y())).unwrap();
         assert!(fit.step().is_none());
-        assert!(SCAN_SLIDES.contains("it can slide or turn along itself"));
+        assert!(SCAN_SLIDES.contains("can slide or rotate along it"));
     }
 
     #[test]
