@@ -40,6 +40,7 @@ pub fn converge(arguments: &Converge) -> Done {
         resume: arguments.resume,
         cache: Cache::of_user(),
     };
+    // The progress bar ends with this block, before anything is printed.
     let convergence = {
         let mut progress = StudyProgress::new(true);
         let mut listener = |event: &_| progress.show(event);

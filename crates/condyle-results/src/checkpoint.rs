@@ -45,6 +45,7 @@ impl Checkpoint {
     /// # Errors
     /// Bytes of another program or version, or damaged ones.
     pub fn from_bytes(bytes: &[u8]) -> Result<Self, CheckpointError> {
+        // The hash is checked before the bytes are parsed: a damaged length could ask for any amount of memory.
         let guarded = bytes.strip_prefix(MAGIC).ok_or(CheckpointError::Foreign)?;
         let (hash, content) = guarded
             .split_at_checked(HASH_LENGTH)

@@ -120,8 +120,15 @@ impl ErrorEstimate {
                 ] {
                     estimate.errors.entry(key).or_default().set(part, error);
                 }
-                if let Err(why) = error {
-                    estimate.leave_out(part, scalar, why);
+                // A reason that the mass loss has too is stored once, for all numbers.
+                if let Err(why) = error
+                    && estimate.not_estimated.get(part.name()) != Some(&why)
+                {
+                    let name = match *scalar == MASS_LOSS_MG {
+                        true => part.name().to_owned(),
+                        false => format!("{}_of_{}", part.name(), scalar.stem()),
+                    };
+                    estimate.not_estimated.insert(name, why);
                 }
             }
         }
@@ -149,19 +156,6 @@ impl ErrorEstimate {
     pub fn of(&self, scalar: &Scalar) -> QuantityError<'_> {
         self.get(scalar)
             .expect("the error of the number is estimated")
-    }
-
-    /// Stores the reason why a part has no estimate; only once if the mass loss has the same reason.
-    fn leave_out(&mut self, part: Part, scalar: &Scalar, why: String) {
-        if self.not_estimated.get(part.name()) == Some(&why) {
-            return;
-        }
-        let name = if *scalar == MASS_LOSS_MG {
-            part.name().to_owned()
-        } else {
-            format!("{}_of_{}", part.name(), scalar.stem())
-        };
-        self.not_estimated.insert(name, why);
     }
 }
 

@@ -368,6 +368,7 @@ impl ResultsFolder {
     fn replace(&self, name: &str, bytes: &[u8]) -> Result<(), ResultsError> {
         let file = self.file(name);
         replace_file(&file, bytes).map_err(refused(&file))?;
+        // After the file: a run that is stopped between them writes both again when it resumes.
         if is_listed(name) {
             write_checksum(&self.path, name, bytes).map_err(refused(&file))?;
         }

@@ -224,6 +224,7 @@ impl Penetration {
         let before = after.checked_sub(1).map(|before| &updates[before]);
         let start = before.and_then(|before| before.creep);
         let began = before.map_or(0.0, |before| before.cycles);
+        // Before the first update there is no creep.
         let part = (cycles - began) / (updates[after].cycles - began);
         let between = |value: fn(&CreepRecord) -> f64| {
             let from = start.as_ref().map_or(0.0, value);

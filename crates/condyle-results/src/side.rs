@@ -89,6 +89,7 @@ pub(super) fn triangle_on_side([a, b, c]: [u32; 3], side: Side) -> [u32; 3] {
 pub(super) fn mesh_on_side(mesh: &HexMesh, side: Side) -> HexMesh {
     match side {
         Side::Right => mesh.clone(),
+        // Mirrored corners would give negative volumes; each face is listed the other way round.
         Side::Left => HexMesh {
             nodes: mesh
                 .nodes

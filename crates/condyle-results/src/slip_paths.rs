@@ -1,14 +1,8 @@
 //! `slip_paths.csv`: slip of the femur past some places of the insert in the last cycle.
 
-use std::fmt::Write;
+use condyle::{Vec3, evolve::March};
 
-use condyle::{
-    Vec3,
-    evolve::{March, SolvedCycle},
-};
-
-use super::side::Side;
-use super::side::point_on_side;
+use super::side::{Side, point_on_side};
 
 /// Distance of the other places of a side from its deepest one, mm.
 const AROUND_MM: f64 = 6.0;
@@ -22,7 +16,22 @@ pub(super) fn slip_paths_csv(march: &March, side: Side) -> Option<String> {
     let depth_mm = &march.fields().wear_depth_mm;
     let nodes = places(&cycle.surface.positions, depth_mm);
     for (path, node) in nodes.into_iter().enumerate() {
-        add_path(&mut text, path + 1, &cycle, node, side);
+        let (path, place) = (
+            path + 1,
+            point_on_side(&cycle.surface.positions[node], side),
+        );
+        for (increment, row) in cycle.rows.iter().enumerate() {
+            let Some(moment) = cycle.moment(increment, node) else {
+                continue;
+            };
+            let [anterior, lateral] = moment.slip_mm;
+            let right = match side {
+                Side::Right => lateral,
+                Side::Left => -lateral,
+            };
+            let (x, z, percent, pressure) = (place.x, place.z, row.percent, moment.pressure_mpa);
+            text += &format!("{path},{x},{z},{percent},{pressure},{anterior},{right}\n");
+        }
     }
     Some(text)
 }
@@ -39,10 +48,10 @@ fn places(positions: &[Vec3], depth_mm: &[f64]) -> Vec<usize> {
         let middle = positions[deepest];
         let around = [[0.0, 0.0], [1.0, 0.0], [-1.0, 0.0], [0.0, 1.0], [0.0, -1.0]];
         for [x, z] in around {
-            let node = nearest(
-                positions,
-                [middle.x + AROUND_MM * x, middle.z + AROUND_MM * z],
-            );
+            let (x, z) = (middle.x + AROUND_MM * x, middle.z + AROUND_MM * z);
+            let distance = |node: usize| (positions[node].x - x).hypot(positions[node].z - z);
+            let nearest = |&a: &usize, &b: &usize| distance(a).total_cmp(&distance(b));
+            let node = (0..positions.len()).min_by(nearest).unwrap_or(0);
             // On a coarse mesh one node may be nearest to several places.
             if !nodes.contains(&node) {
                 nodes.push(node);
@@ -50,34 +59,6 @@ fn places(positions: &[Vec3], depth_mm: &[f64]) -> Vec<usize> {
         }
     }
     nodes
-}
-
-fn nearest(positions: &[Vec3], [x, z]: [f64; 2]) -> usize {
-    let distance = |node: usize| (positions[node].x - x).hypot(positions[node].z - z);
-    let nodes = 0..positions.len();
-    nodes
-        .min_by(|&a, &b| distance(a).total_cmp(&distance(b)))
-        .unwrap_or(0)
-}
-
-fn add_path(text: &mut String, path: usize, cycle: &SolvedCycle<'_>, node: usize, side: Side) {
-    let place = point_on_side(&cycle.surface.positions[node], side);
-    for (increment, row) in cycle.rows.iter().enumerate() {
-        let Some(moment) = cycle.moment(increment, node) else {
-            continue;
-        };
-        let [anterior, lateral] = moment.slip_mm;
-        let right = match side {
-            Side::Right => lateral,
-            Side::Left => -lateral,
-        };
-        let (x, z, percent, pressure) = (place.x, place.z, row.percent, moment.pressure_mpa);
-        writeln!(
-            text,
-            "{path},{x},{z},{percent},{pressure},{anterior},{right}"
-        )
-        .expect("writing to a string cannot fail");
-    }
 }
 
 #[cfg(test)]

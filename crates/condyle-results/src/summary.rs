@@ -165,6 +165,7 @@ impl<'de> Deserialize<'de> for Summary {
 
 /// Takes a part out of the entries; its default where it is missing, or of another form in another version.
 fn part<T: DeserializeOwned + Default>(entries: &mut Map<String, Value>, key: &str) -> T {
+    // A summary of another version is read as far as it can be, so that old results stay readable.
     let entry = entries.remove(key).map(serde_json::from_value);
     entry.and_then(Result::ok).unwrap_or_default()
 }

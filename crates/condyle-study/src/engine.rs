@@ -15,6 +15,7 @@ use std::{
 use condyle_case::{
     cache::Cache,
     case::{Case, SharedBodies},
+    config::Problems,
 };
 use condyle_lab::{RunError, batch_run};
 use condyle_results::{Summary, catalogue};
@@ -198,12 +199,14 @@ fn run_tests<T: Send>(
     listener: &mut Listener<'_>,
 ) -> Result<(), StudyError> {
     let (tests, stop) = (Mutex::new(tests), AtomicBool::new(false));
+    // A full channel makes workers wait, so that results cannot pile up in memory.
     let (sender, receiver) = sync_channel(MAX_WAITING);
     thread::scope(|scope| {
         for _ in 0..threads.max(1) {
             let (sender, tests, stop) = (sender.clone(), &tests, &stop);
             scope.spawn(move || work_off(tests, work, &Reporter { sender, stop }));
         }
+        // Each worker has its own sender: without this one the channel closes when the last worker ends.
         drop(sender);
         let started = listener(&StudyEvent::Progress(*progress));
         let mut take_in = |messages: Vec<Message<T>>, listener: &mut Listener<'_>| {
@@ -270,7 +273,13 @@ impl TestBench {
     /// Runs a test of a plan. A failure is a result: it does not stop the study.
     pub fn run(&self, plan: &Plan, test: &Test) -> TestResult {
         let summary = plan.case_of(test).and_then(|case| self.summary(&case));
-        let summary = summary.map_err(|error| reason(&error))?;
+        let summary = summary.map_err(|error| {
+            // The first line of the first problem: reasons are counted and listed.
+            let problems = error.in_case().map(Problems::problems);
+            let problem = problems.and_then(<[_]>::first);
+            let words = problem.map_or_else(|| error.to_string(), ToString::to_string);
+            words.lines().next().unwrap_or_default().trim().to_owned()
+        })?;
         Ok(catalogue::outputs().map(|output| summary[output]).collect())
     }
 
@@ -284,13 +293,4 @@ impl Default for TestBench {
         let (bodies, cache) = (SharedBodies::default(), Cache::of_user());
         Self { bodies, cache }
     }
-}
-
-/// Returns the first line of an error, and the first of several problems.
-fn reason(error: &RunError) -> String {
-    let problem = error
-        .in_case()
-        .and_then(|problems| problems.problems().first());
-    let words = problem.map_or_else(|| error.to_string(), ToString::to_string);
-    words.lines().next().unwrap_or_default().trim().to_owned()
 }

@@ -70,6 +70,7 @@ fn finest_triple(steps: &[f64]) -> Option<([usize; 3], f64)> {
 
 fn of_triple([coarse, middle, fine]: [f64; 3], ratio: f64) -> Extrapolation {
     let (first, last) = (middle - coarse, fine - middle);
+    // Differences of round-off have random signs and would be taken for oscillation.
     let noise = SAME_RESULT * fine.abs();
     if first.abs() <= noise && last.abs() <= noise {
         return Extrapolation::Unchanged;

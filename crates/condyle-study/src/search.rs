@@ -221,6 +221,7 @@ impl Evolution {
             + gain(rates.of_step) * self.whitened(mean_step);
         self.generation += 1;
         let length = self.path_of_step.norm();
+        // The path starts at zero and is shorter at first than in the long run; the power is bounded only for its type.
         let forgotten = (1.0 - rates.of_step).powi(2 * self.generation.min(1 << 20) as i32);
         let is_slow = length / (1.0 - forgotten).sqrt()
             < (1.4 + 2.0 / (self.mean.len() as f64 + 1.0)) * rates.length;

@@ -216,6 +216,7 @@ impl Store {
             return Ok(());
         };
         let places = vec!["?"; first.len()].join(", ");
+        // Two machines may have run the same test; both results are the same.
         let insert = format!("INSERT OR IGNORE INTO tests VALUES ({places})");
         self.checked(|connection| {
             let transaction = connection.unchecked_transaction()?;
@@ -301,6 +302,7 @@ impl Store {
     pub(crate) fn column(&self, plan: &Plan, name: &str) -> Result<Column, StudyError> {
         let column = quoted(name);
         self.checked(|connection| {
+            // Words are numbered in alphabetical order, which does not depend on the order of the tests.
             let words = format!(
                 "SELECT DISTINCT {column} FROM tests WHERE typeof({column}) = 'text' ORDER BY {column}"
             );

@@ -83,6 +83,7 @@ impl Scatter {
         });
         let scaled = self.keys.iter().filter_map(|&key| {
             let mean = case.number_at_or_written(key)?;
+            // A part of a value of 0 is no scatter: such a key is left out.
             let scale = if self.is_part { mean } else { 1.0 };
             let standard_deviation = scale * self.deviation;
             (standard_deviation != 0.0).then_some(ScaledKey {

@@ -82,6 +82,7 @@ impl WornSurface {
         nodes.select_nth_unstable_by(count - 1, |a, b| a.0.total_cmp(&b.0));
         let (mut sum, mut whole) = (0.0, 0.0);
         for (apart2, depth) in &nodes[..count] {
+            // A node at the place itself has nearly all the weight.
             let weight = apart2.max(f64::EPSILON).recip();
             sum += weight * depth;
             whole += weight;

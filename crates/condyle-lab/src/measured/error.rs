@@ -1,12 +1,14 @@
-//! The reasons why a run and a measurement cannot be compared.
+//! The reasons why a run and a measurement cannot be compared, or no constants of a wear law found from them.
 
 use std::path::{Path, PathBuf};
 
-use condyle_case::config::Problems;
+use condyle_case::{case::ConstantError, config::Problems};
 use condyle_mesh::formats::MeshFileError;
 use condyle_report::ReportError;
 use condyle_results::DamagedFile;
 use thiserror::Error;
+
+use crate::RunError;
 
 /// The reason why a run and a measurement cannot be compared.
 #[derive(Debug, Error)]
@@ -58,5 +60,37 @@ impl CompareError {
             "the run ends before the second weighing that counts: it reaches {weighings} of them, of which two are \
              needed; run more cycles ([march] cycles), or lower fit_from_cycles"
         ))
+    }
+}
+
+/// The reason why no constants of a wear law can be found.
+#[derive(Debug, Error)]
+pub enum CalibrateError {
+    /// The comparison with the weighings failed.
+    #[error(transparent)]
+    Compare(#[from] CompareError),
+    /// The case of a results folder, or one to predict.
+    #[error(transparent)]
+    Case(#[from] Problems),
+    /// A value that a constant does not accept.
+    #[error("no constants can be found: {0}")]
+    Constant(#[from] ConstantError),
+    /// Tests and constants that do not match; the text includes the remedy.
+    #[error("{0}")]
+    Unsuitable(String),
+    /// A run with other constants failed.
+    #[error("with {constants}: {source}")]
+    Run {
+        /// The constants.
+        constants: String,
+        /// The reason.
+        source: Box<RunError>,
+    },
+}
+
+impl CalibrateError {
+    /// Returns whether the physics could not be solved, as opposed to bad input.
+    pub fn is_physics(&self) -> bool {
+        matches!(self, Self::Run { source, .. } if source.is_physics())
     }
 }

@@ -208,6 +208,7 @@ fn weighings(measured: &Gravimetric, run: &Table) -> Result<Vec<Weighing>, Compa
     let weighing = |(row, &cycles): (usize, &f64)| {
         let gains: Vec<f64> = measured.soaks.iter().map(|soak| gain(soak, row)).collect();
         let soak_gain_mg = if gains.is_empty() { 0.0 } else { mean(&gains) };
+        // Polyethylene absorbs fluid: a worn specimen gains as much as an unloaded control.
         let loss = |specimen: &Specimen| soak_gain_mg - gain(specimen, row);
         Weighing {
             cycles,

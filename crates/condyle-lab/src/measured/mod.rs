@@ -16,12 +16,12 @@ use condyle_case::{case::Side, measured::Measured};
 use condyle_report::Results;
 use serde::Serialize;
 
-pub use error::CompareError;
+pub use error::{CalibrateError, CompareError};
 
 pub use crate::measured::{
     calibrate::{
-        CalibrateError, CalibratedConstant, CalibratedTest, Calibration, CalibrationRequest,
-        Estimate, Prediction, Trial, calibrate,
+        CalibratedConstant, CalibratedTest, Calibration, CalibrationRequest, Estimate, Prediction,
+        Trial, calibrate,
     },
     gravimetric::{GravimetricComparison, Interval, Rate, Weighing},
     kinematics::{ColumnComparison, Errors, KinematicsComparison, PhaseErrors},

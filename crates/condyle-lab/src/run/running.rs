@@ -103,10 +103,9 @@ impl<'a> Run<'a> {
     ) -> Result<Outcome, RunError> {
         let mut kept_pairs = 0;
         let mut keep_all = |run: &Run<'a>| {
-            let test = run.march.test();
-            kept_pairs = run
-                .case
-                .keep_compliance(test, run.context.cache, kept_pairs);
+            let (case, test) = (run.case, run.march.test());
+            // After every update, so that an interrupted run need not compute the compliance again.
+            kept_pairs = case.keep_compliance(test, run.context.cache, kept_pairs);
             keep(run)
         };
         if self.march_on(&mut keep_all, on_event)?.is_continue()

@@ -50,6 +50,7 @@ pub(crate) fn effects(data: &Data<'_>) -> Vec<Effect> {
             let every = pairs.len().div_ceil(MAX_POINTS).max(1);
             let points = pairs.iter().copied().step_by(every).collect();
             let correlation = rank_correlation(&pairs);
+            // Equal inputs are sorted by the output, so that sums do not depend on the order of the tests.
             pairs.sort_by(|one, other| one.0.total_cmp(&other.0).then(one.1.total_cmp(&other.1)));
             let slices = slices(&pairs);
             let means: Vec<(f64, f64)> = slices.iter().map(|slice| means(slice)).collect();

@@ -114,6 +114,7 @@ impl Bases {
             total += (a - c).powi(2);
         }
         let variance = squares / (2.0 * count) - (sum / (2.0 * count)).powi(2);
+        // A constant output has no variance to divide by; no input explains any of it.
         if variance <= 0.0 || count == 0.0 {
             return (0.0, 0.0);
         }

@@ -55,6 +55,7 @@ impl Ranking {
         let output = study.answers.rank_by;
         let values = store.column(data.plan, output.key)?.values;
         let count = designs(study);
+        // A design that fails under hard disturbances would otherwise be compared under easy ones only.
         let common: Vec<usize> = (0..values.len() / count)
             .filter(|row| {
                 let of_designs = &values[row * count..(row + 1) * count];

@@ -43,6 +43,7 @@ pub(crate) fn one_at_a_time_places(row: u64, counts: &[u64]) -> Vec<Place> {
 
 /// Returns the value `number` of `count` evenly spaced ones.
 fn along(number: u64, count: u64) -> Place {
+    // A single value lies at the low end.
     Place::Along(number as f64 / (count - 1).max(1) as f64)
 }
 
@@ -73,6 +74,7 @@ pub(crate) struct Permutation {
 
 impl Permutation {
     pub fn new(count: u64, numbers: &mut Random) -> Self {
+        // The smallest even number of bits that holds the count: fewer than four numbers per result are permuted again.
         let bits = u64::BITS - (count.max(2) - 1).leading_zeros();
         Self {
             count,

@@ -4,7 +4,7 @@ use condyle_case::case::{ConstantError, Wear};
 use nalgebra::{DMatrix, DVector};
 
 use crate::measured::{
-    calibrate::CalibrateError,
+    error::CalibrateError,
     gravimetric::{Observation, student},
 };
 
@@ -75,11 +75,19 @@ pub(crate) fn fit(
 ) -> Result<Fit, CalibrateError> {
     let mut search = Search::begin(model, start, observations)?;
     search.settle(model)?;
-    let spread = search.spread(confidence)?;
-    let spread = match spread {
-        Some(rough) => search.with_slopes_across(model, rough, confidence)?,
-        None => None,
-    };
+    let mut spread = search.spread(confidence)?;
+    if let Some(rough) = spread {
+        // Broyden's slopes are exact only along the steps made; these are across the interval itself.
+        for (number, &half) in rough.half.iter().enumerate() {
+            let slope = search.slope(model, number, [half; 2])?;
+            search.slopes.set_column(number, &slope);
+        }
+        let fine = search.spread(confidence)?;
+        spread = fine.map(|fine| Spread {
+            half: rough.half,
+            ..fine
+        });
+    }
     Ok(Fit {
         rates: search.rates,
         at: search.at,
@@ -279,24 +287,6 @@ impl<'a> Search<'a> {
             quantile,
             half: (0..self.at.len()).map(half).collect(),
             covariance,
-        }))
-    }
-
-    /// Returns the uncertainty from slopes across the interval itself: Broyden's slopes are exact only along the
-    /// steps made.
-    fn with_slopes_across(
-        &mut self,
-        model: &mut Model<'_>,
-        rough: Spread,
-        confidence: f64,
-    ) -> Result<Option<Spread>, CalibrateError> {
-        for (number, &half) in rough.half.iter().enumerate() {
-            let slope = self.slope(model, number, [half; 2])?;
-            self.slopes.set_column(number, &slope);
-        }
-        Ok(self.spread(confidence)?.map(|fine| Spread {
-            half: rough.half,
-            ..fine
         }))
     }
 }

@@ -1,6 +1,5 @@
 //! The constants of a wear law that reproduce the wear of weighed specimens, with their intervals.
 
-mod error;
 mod fit;
 
 use std::path::{Path, PathBuf};
@@ -12,13 +11,11 @@ use condyle_case::{
 };
 use serde::Serialize;
 
-pub use error::CalibrateError;
-
 use crate::{
     measured::{
-        CompareError,
         calibrate::fit::{Fit, Free, fit, in_words},
         compare,
+        error::{CalibrateError, CompareError},
         gravimetric::{GravimetricComparison, Interval},
     },
     run::running::march_watched,

@@ -206,23 +206,18 @@ impl Fit {
         };
         let mut weights = 0.0;
         for pair in pairs {
-            weights += fit.add(pair, scale);
+            let weight = tukey(pair.height_mm / scale);
+            let turn = (pair.point - middle).cross(&pair.normal) / gyration_mm;
+            let shift = pair.normal;
+            let row = Vector6::new(turn.x, turn.y, turn.z, shift.x, shift.y, shift.z);
+            fit.matrix += row * row.transpose() * weight;
+            fit.right_side -= row * (weight * pair.height_mm);
+            fit.residual_rms_mm += weight * pair.height_mm.powi(2);
+            fit.points += usize::from(weight > 0.0);
+            weights += weight;
         }
         fit.residual_rms_mm = (fit.residual_rms_mm / weights).sqrt();
         Some(fit)
-    }
-
-    /// Adds a pair with its weight, which it returns.
-    fn add(&mut self, pair: &Pair, scale: f64) -> f64 {
-        let weight = tukey(pair.height_mm / scale);
-        let turn = (pair.point - self.middle).cross(&pair.normal) / self.gyration_mm;
-        let shift = pair.normal;
-        let row = Vector6::new(turn.x, turn.y, turn.z, shift.x, shift.y, shift.z);
-        self.matrix += row * row.transpose() * weight;
-        self.right_side -= row * (weight * pair.height_mm);
-        self.residual_rms_mm += weight * pair.height_mm.powi(2);
-        self.points += usize::from(weight > 0.0);
-        weight
     }
 
     /// Returns the motion that minimises the residuals; none if the surface does not determine it.
