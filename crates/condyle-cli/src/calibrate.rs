@@ -9,7 +9,7 @@ use condyle_lab::{
 
 use crate::{
     arguments::{Calibrate, CalibrateWear},
-    output::{self, Done, Failure, Lines, line, note},
+    output::{self, Done, Failure, Lines, note},
 };
 
 const PAGE: &str = "calibration.md";
@@ -37,14 +37,15 @@ pub fn calibrate(arguments: &Calibrate) -> Done {
     }
     let mut lines = Lines::default();
     lines.line(law.table_of_left().trim_end());
-    line!(
-        lines,
-        "the peak pressure in stance differs by up to {} %, in the first and the last cycle; every run with the table \
+    lines.line(format!("the peak pressure in stance differs by up to {} %, in the first and the last cycle; every run with the table \
          reports this",
-        law.peak_error_percent
-    );
+        law.peak_error_percent));
     let (page, case) = (out.join(PAGE), out.join(CASE));
-    line!(lines, "more in {}; run {}", page.display(), case.display());
+    lines.line(format!(
+        "more in {}; run {}",
+        page.display(),
+        case.display()
+    ));
     output::print(lines.text())
 }
 
@@ -91,8 +92,7 @@ fn table(calibration: &Calibration) -> Lines {
         None => ", without an interval".to_owned(),
     };
     for test in &calibration.tests {
-        line!(
-            lines,
+        lines.line(format!(
             "{}: measured rate ({}) {:.3} mg per million cycles{}; fitted {:.3}, {:+.1} %",
             test.results.display(),
             test.measured_by,
@@ -102,44 +102,43 @@ fn table(calibration: &Calibration) -> Lines {
             )),
             test.fitted_mg_per_million_cycles,
             test.fitted_above_measured_percent
-        );
+        ));
     }
     if let Some(times) = &calibration.times_as_much {
         let interval = ends(times.interval, |end| format!("{end:.4}"));
         let first = calibration.tests[0].results.display();
         let (law, value) = (calibration.law, times.value);
-        line!(
-            lines,
+        lines.line(format!(
             "{law} wears {value:.4} times as much as in {first}{interval}"
-        );
+        ));
     }
     for constant in &calibration.constants {
         let interval = ends(constant.found.interval, |end| format!("{end:.4e}"));
         let (name, value, was) = (constant.name, constant.found.value, constant.run_with);
-        line!(lines, "{name} {value:.4e}{interval}; the run had {was:.4e}");
+        lines.line(format!(
+            "{name} {value:.4e}{interval}; the run had {was:.4e}"
+        ));
     }
     if let Some(scatter) = calibration.scatter_percent {
         let freedom = calibration.degrees_of_freedom;
-        line!(
-            lines,
+        lines.line(format!(
             "specimens scatter by {scatter:.1} % around it, {freedom} degrees of freedom"
-        );
+        ));
     }
     if let Some(why) = calibration.without_interval {
-        line!(lines, "no interval: {why}");
+        lines.line(format!("no interval: {why}"));
     }
     for prediction in &calibration.predictions {
         let interval = ends(prediction.interval_mg, |end| format!("{end:.2}"));
         let (mass, millions) = (prediction.mass_loss_mg, prediction.cycles / 1e6);
         let case = prediction.case.display();
-        line!(
-            lines,
+        lines.line(format!(
             "{case} would lose {mass:.2} mg in {millions} million cycles{interval}"
-        );
+        ));
     }
     for constant in &calibration.constants {
         let (name, value) = (constant.name, constant.found.value);
-        line!(lines, "for the case: [wear] {name} = {value:.4e}");
+        lines.line(format!("for the case: [wear] {name} = {value:.4e}"));
     }
     lines
 }

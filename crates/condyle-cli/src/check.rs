@@ -6,7 +6,7 @@ use condyle_lab::{BodyFacts, InsertFacts, Preview};
 
 use crate::{
     arguments::Check,
-    output::{self, Done, Failure, Lines, line},
+    output::{self, Done, Failure, Lines},
 };
 
 pub fn check(arguments: &Check) -> Done {
@@ -25,12 +25,12 @@ pub fn check(arguments: &Check) -> Done {
     }
     let mut lines = Lines::default();
     for (name, value) in rows(&preview) {
-        line!(lines, "{name:<28}{value}");
+        lines.line(format!("{name:<28}{value}"));
     }
     if let Some(path) = &arguments.picture {
-        line!(lines, "{:<28}{}", "picture", path.display());
+        lines.line(format!("{:<28}{}", "picture", path.display()));
     }
-    line!(lines, "{}: the case is good", arguments.case.display());
+    lines.line(format!("{}: the case is good", arguments.case.display()));
     output::print(lines.text())
 }
 

@@ -8,7 +8,7 @@ use condyle_results::COMPARED;
 
 use crate::{
     arguments::Compare,
-    output::{self, Done, Lines, line},
+    output::{self, Done, Lines},
     report::note_unfinished,
 };
 
@@ -28,7 +28,7 @@ pub fn compare(arguments: &Compare) -> Done {
     }
     let mut lines = tables(&comparison);
     let files = written.iter().map(|path| path.display().to_string());
-    line!(lines, "wrote {}", files.collect::<Vec<_>>().join(", "));
+    lines.line(format!("wrote {}", files.collect::<Vec<_>>().join(", ")));
     output::print_with_folder(lines.text(), out)
 }
 
@@ -51,42 +51,30 @@ fn add_kinematics(kinematics: &KinematicsComparison, lines: &mut Lines) {
         "mean" => "; the mean difference is subtracted from the errors",
         _ => "",
     };
-    line!(
-        lines,
+    lines.line(format!(
         "Kinematics, {} cycle: predicted minus measured{aligned}",
         kinematics.cycle
-    );
-    line!(
-        lines,
-        "{:<28}{:>10}{:>10}{:>10}{:>8}{:>10}",
-        "",
-        "mean abs",
-        "rms",
-        "largest",
-        "at %",
-        "mean"
-    );
+    ));
+    lines.line("                              mean abs       rms   largest    at %      mean");
     for column in &kinematics.columns {
         let mean = format!("{:>10.3}", column.mean_difference);
-        line!(
-            lines,
+        lines.line(format!(
             "{:<28}{}{mean}",
             column.column,
             errors(&column.errors)
-        );
+        ));
         for phase in &column.phases {
             let (start, end) = (phase.start_percent, phase.end_percent);
             let name = format!("  {} {start}-{end} %", phase.phase);
             let text = phase.errors.as_ref().map(errors);
-            line!(
-                lines,
+            lines.line(format!(
                 "{name:<28}{}",
                 text.unwrap_or_else(|| "      not measured".to_owned())
-            );
+            ));
         }
         if column.compared < column.instants {
             let (compared, all) = (column.compared, column.instants);
-            line!(lines, "  measured at {compared} of {all} instants");
+            lines.line(format!("  measured at {compared} of {all} instants"));
         }
     }
     lines.line("");
@@ -103,19 +91,15 @@ fn errors(errors: &Errors) -> String {
 }
 
 fn add_gravimetric(gravimetric: &GravimetricComparison, lines: &mut Lines) {
-    line!(
-        lines,
+    lines.line(format!(
         "Wear by weighing, {}",
         soak(gravimetric.soak_controls)
-    );
-    line!(
-        lines,
-        "{:<28}{:>12}  {:>19}{:>10}",
-        "",
-        "mg/10^6",
-        format!("{} % interval", gravimetric.confidence_percent),
-        "R2"
-    );
+    ));
+    let interval_head = format!("{} % interval", gravimetric.confidence_percent);
+    lines.line(format!(
+        "{:>40}  {interval_head:>19}{:>10}",
+        "mg/10^6", "R2"
+    ));
     let means = [
         &gravimetric.all,
         &gravimetric.mean_of_specimens,
@@ -130,40 +114,33 @@ fn add_gravimetric(gravimetric: &GravimetricComparison, lines: &mut Lines) {
             rate.mg_per_million_cycles,
             r_squared.unwrap_or_default(),
         );
-        line!(lines, "{name:<28}{value:>12.3}  {ends:>19}{r2:>10}");
+        lines.line(format!("{name:<28}{value:>12.3}  {ends:>19}{r2:>10}"));
     }
-    line!(
-        lines,
+    lines.line(format!(
         "predicted is {:+.1} % of the measured rate, the line through all weighings",
         gravimetric.predicted_above_measured_percent
-    );
+    ));
     let range = &gravimetric.range_of_specimens_mg_per_million_cycles;
-    line!(
-        lines,
+    lines.line(format!(
         "the prediction is {} the range of the specimens, {}",
         inside(gravimetric.inside_range_of_specimens),
         interval(range)
-    );
-    line!(
-        lines,
+    ));
+    lines.line(format!(
         "  {} the interval of the line through all weighings",
         inside(gravimetric.inside_interval_of_weighings)
-    );
+    ));
     if let Some(is_inside) = gravimetric.inside_interval_of_specimens {
-        line!(
-            lines,
+        lines.line(format!(
             "  {} the interval of the mean of the specimens",
             inside(is_inside)
-        );
+        ));
     }
     let missed = gravimetric.weighings.iter();
     let missed = missed.filter(|weighing| weighing.in_line && weighing.predicted_loss_mg.is_none());
     let count = missed.count();
     if count > 0 {
-        line!(
-            lines,
-            "note: the run ends before {count} of the weighings, which the prediction's line leaves out"
-        );
+        lines.line(format!("note: the run ends before {count} of the weighings, which the prediction's line leaves out"));
     }
     lines.line("");
 }
@@ -187,24 +164,13 @@ fn inside(is_inside: bool) -> &'static str {
 fn add_surface(surface: &SurfaceComparison, lines: &mut Lines) {
     let registration = &surface.registration;
     lines.line("Worn surface: scanned minus predicted depth, mm");
-    line!(
-        lines,
-        "  registered by a rotation of {:.3} deg and a shift of {:.3} mm; {} points fitted, {:.4} mm rms remaining, standard error {:.4} mm",
+    lines.line(format!("  registered by a rotation of {:.3} deg and a shift of {:.3} mm; {} points fitted, {:.4} mm rms remaining, standard error {:.4} mm",
         registration.angle_deg,
         registration.shift_mm,
         registration.points,
         registration.residual_rms_mm,
-        registration.weakest_standard_error_mm
-    );
-    line!(
-        lines,
-        "{:<28}{:>10}{:>10}{:>10}{:>12}",
-        "",
-        "mean",
-        "mean abs",
-        "rms",
-        "area mm2"
-    );
+        registration.weakest_standard_error_mm));
+    lines.line("                                  mean  mean abs       rms    area mm2");
     add_errors("everywhere", &surface.everywhere, lines);
     if let Some(scars) = &surface.in_scars {
         add_errors("in the scars", scars, lines);
@@ -212,14 +178,12 @@ fn add_surface(surface: &SurfaceComparison, lines: &mut Lines) {
     add_place("worst difference", &surface.worst, lines);
     add_place("deepest predicted", &surface.deepest_predicted, lines);
     add_place("deepest scanned", &surface.deepest_scanned, lines);
-    line!(
-        lines,
+    lines.line(format!(
         "volume over the area scanned: {:.2} mm3 scanned, {:.2} mm3 predicted",
-        surface.scanned_volume_mm3,
-        surface.predicted_volume_mm3
-    );
+        surface.scanned_volume_mm3, surface.predicted_volume_mm3
+    ));
     for note in &surface.notes {
-        line!(lines, "note: {note}");
+        lines.line(format!("note: {note}"));
     }
     lines.line("");
 }
@@ -231,10 +195,9 @@ fn add_errors(name: &str, errors: &SurfaceErrors, lines: &mut Lines) {
         rms_mm,
         area_mm2,
     } = errors;
-    line!(
-        lines,
+    lines.line(format!(
         "{name:<28}{mean_mm:>10.4}{mean_absolute_mm:>10.4}{rms_mm:>10.4}{area_mm2:>12.0}"
-    );
+    ));
 }
 
 fn add_place(name: &str, place: &NodeDepths, lines: &mut Lines) {
@@ -246,8 +209,5 @@ fn add_place(name: &str, place: &NodeDepths, lines: &mut Lines) {
         difference_mm,
         ..
     } = place;
-    line!(
-        lines,
-        "{name:<28}{difference_mm:>+10.4} at x {x_mm:.1}, z {z_mm:.1} (scanned {scanned_mm:.4}, predicted {predicted_mm:.4})"
-    );
+    lines.line(format!("{name:<28}{difference_mm:>+10.4} at x {x_mm:.1}, z {z_mm:.1} (scanned {scanned_mm:.4}, predicted {predicted_mm:.4})"));
 }

@@ -6,7 +6,7 @@ use condyle_report::runs::{Differences, Run};
 
 use crate::{
     arguments::Diff,
-    output::{self, Done, Lines, line},
+    output::{self, Done, Lines},
     report::note_unfinished,
 };
 
@@ -25,9 +25,9 @@ pub fn diff(arguments: &Diff) -> Done {
     }
     let mut lines = Lines::default();
     let [first, second] = &differences.runs;
-    line!(lines, "A  {first}\nB  {second}");
+    lines.line(format!("A  {first}\nB  {second}"));
     for note in &differences.notes {
-        line!(lines, "note: {note}");
+        lines.line(format!("note: {note}"));
     }
     add_settings(&differences, &mut lines);
     add_numbers(&differences, &mut lines);
@@ -47,7 +47,7 @@ fn add_settings(differences: &Differences, lines: &mut Lines) {
     for one in &differences.settings {
         let [first, second] =
             [&one.first, &one.second].map(|value| value.as_deref().unwrap_or("-"));
-        line!(lines, "  {:<38}  {first}  {second}", one.key);
+        lines.line(format!("  {:<38}  {first}  {second}", one.key));
     }
 }
 
@@ -55,28 +55,17 @@ fn add_numbers(differences: &Differences, lines: &mut Lines) {
     if differences.numbers.is_empty() {
         return;
     }
-    line!(
-        lines,
-        "{:<40}{:>12}{:>12}{:>12}{:>10}{:>10}  {}",
-        "numbers, by size over errors",
-        "A",
-        "B",
-        "B - A",
-        "%",
-        "errors",
-        "that is"
-    );
+    lines.line("numbers, by size over errors                       A           B       B - A         %    errors  that is");
     for one in &differences.numbers {
         let percent = or_dash(one.difference_percent, |percent| format!("{percent:+.2}"));
         let errors = or_dash(one.errors(), |errors| digits(errors, 2));
         let difference = digits(one.difference, 4);
         let [first, second] = [one.first, one.second].map(|value| digits(value, 5));
-        line!(
-            lines,
+        lines.line(format!(
             "  {:<38}{first:>12}{second:>12}{difference:>12}{percent:>10}{errors:>10}  {}",
             one.key,
             one.verdict()
-        );
+        ));
     }
 }
 
@@ -84,28 +73,21 @@ fn add_curves(differences: &Differences, lines: &mut Lines) {
     if differences.curves.is_empty() {
         return;
     }
-    line!(
-        lines,
-        "{:<40}{:>12}{:>12}{:>12}{:>10}",
-        "curves, by size over range",
-        "rms",
-        "% of range",
-        "largest",
-        "at %"
+    lines.line(
+        "curves, by size over range                       rms  % of range     largest      at %",
     );
     for one in differences.curves.iter().take(MAX_CURVES) {
         let name = format!("{}, {} cycle", one.column, one.cycle);
         let of_range = or_dash(one.rms_percent_of_range, |percent| format!("{percent:.2}"));
         let [rms, largest] = [one.rms, one.largest].map(|value| digits(value, 4));
-        line!(
-            lines,
+        lines.line(format!(
             "  {name:<38}{rms:>12}{of_range:>12}{largest:>12}{:>10.1}",
             one.largest_at_percent
-        );
+        ));
     }
     let left = differences.curves.len().saturating_sub(MAX_CURVES);
     if left > 0 {
-        line!(lines, "  and {left} more that differ less");
+        lines.line(format!("  and {left} more that differ less"));
     }
 }
 
@@ -113,25 +95,16 @@ fn add_maps(differences: &Differences, lines: &mut Lines) {
     if differences.maps.is_empty() {
         return;
     }
-    line!(
-        lines,
-        "{:<40}{:>12}{:>12}{:>12}  {}",
-        "maps, by size over largest value",
-        "largest",
-        "%",
-        "mean size",
-        "at x, z, mm"
+    lines.line(
+        "maps, by size over largest value             largest           %   mean size  at x, z, mm",
     );
     for one in &differences.maps {
         let percent = or_dash(one.largest_percent, |percent| format!("{percent:+.2}"));
         let [largest, mean] = [one.largest, one.mean_absolute].map(|value| digits(value, 4));
-        line!(
-            lines,
+        lines.line(format!(
             "  {:<38}{largest:>12}{percent:>12}{mean:>12}  {:.1}, {:.1}",
-            one.field,
-            one.x_mm,
-            one.z_mm
-        );
+            one.field, one.x_mm, one.z_mm
+        ));
     }
 }
 

@@ -208,12 +208,3 @@ impl Lines {
         &self.text
     }
 }
-
-/// Adds a line of formatted words.
-macro_rules! line {
-    ($lines:expr, $($words:tt)*) => {
-        $lines.line(format_args!($($words)*))
-    };
-}
-
-pub(crate) use line;

@@ -13,7 +13,7 @@ use condyle_results::PLOTTED;
 
 use crate::{
     arguments::{PictureFormat, Plot, Report},
-    output::{self, Done, Failure, Lines, line, note},
+    output::{self, Done, Failure, Lines, note},
 };
 
 pub fn report(arguments: &Report) -> Done {
@@ -55,7 +55,7 @@ fn of_one(folder: &Path, has_pictures: bool) -> Done {
     }
     let mut lines = Lines::default();
     for path in written {
-        line!(lines, "wrote {}", path.display());
+        lines.line(format!("wrote {}", path.display()));
     }
     output::print(lines.text())
 }
@@ -90,7 +90,7 @@ pub fn plot(arguments: &Plot) -> Done {
         fs::create_dir_all(&folder)
             .and_then(|()| fs::write(&path, bytes))
             .map_err(|error| Failure::unwritten(&path, &error, "choose another folder"))?;
-        line!(lines, "wrote {}", path.display());
+        lines.line(format!("wrote {}", path.display()));
     }
     if lines.text().is_empty() {
         let folder = arguments.results.display();

@@ -11,7 +11,7 @@ use condyle_results::{
 
 use crate::{
     arguments::Run,
-    output::{self, Done, Failure, Lines, line, note},
+    output::{self, Done, Failure, Lines, note},
     progress::{self, RunProgress},
     run_tables,
 };
@@ -61,8 +61,8 @@ fn print_summary(summary: &Summary, out: &Path, json: bool) -> Done {
     let mut lines = Lines::default();
     // Reasons to doubt the run come before its numbers.
     for doubt in &summary.plausibility {
-        line!(lines, "doubtful: {}", doubt.message);
-        line!(lines, "          {}", doubt.advice);
+        lines.line(format!("doubtful: {}", doubt.message));
+        lines.line(format!("          {}", doubt.advice));
     }
     let wear_over_conventional = summary.get(&WEAR_OVER_CONVENTIONAL);
     run_tables::add_laws(&summary.wear_laws, wear_over_conventional, &mut lines);
@@ -71,25 +71,23 @@ fn print_summary(summary: &Summary, out: &Path, json: bool) -> Done {
     let labels = rows.iter().map(|(label, _)| label.len());
     let width = labels.max().unwrap_or_default().max(26) + 2;
     for (label, value) in rows {
-        line!(lines, "{label:<width$}{value}");
+        lines.line(format!("{label:<width$}{value}"));
     }
     for (part, why) in summary.error.iter().flat_map(|error| &error.not_estimated) {
         let part = part.replace('_', " ");
-        line!(
-            lines,
+        lines.line(format!(
             "warning: the error from {part} could not be estimated: {why}"
-        );
+        ));
     }
     let series = ["insert.pvd", "cycle_first.pvd", "cycle_last.pvd"].map(|name| out.join(name));
     let series = series.iter().filter(|file| file.exists());
     let series = series.map(|file| file.display().to_string());
-    line!(
-        lines,
+    lines.line(format!(
         "results in {}; open {}, and in ParaView {}",
         out.display(),
         out.join("report.html").display(),
         series.collect::<Vec<_>>().join(", ")
-    );
+    ));
     output::print_with_folder(lines.text(), out)
 }
 
