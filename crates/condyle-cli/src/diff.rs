@@ -118,6 +118,7 @@ fn digits(value: f64, count: i32) -> String {
         return "0".to_owned();
     }
     let magnitude = value.abs().log10().floor() as i32;
+    // Up to seven digits before or four zeros after the point are easier to compare than powers of ten.
     if !(-4..7).contains(&magnitude) {
         return format!("{value:.*e}", (count - 1) as usize);
     }

@@ -188,6 +188,7 @@ pub fn ended(written: io::Result<()>, kept: &str) -> Done {
 
 /// Returns a result as JSON, with a line end.
 pub fn json(result: &impl Serialize) -> String {
+    // Maps have keys of text, and numbers that JSON lacks become null: nothing can fail.
     let text = serde_json::to_string_pretty(result);
     text.expect("numbers and text always serialise") + "\n"
 }

@@ -238,25 +238,21 @@ pub struct Expected {
 impl Expected {
     /// Estimates time and memory of a march that was built in the time `built_in`.
     fn of(case: &Case, march: &March, at_rest: &AtRest, built_in: Duration) -> Self {
+        let updates = match &case.march.update {
+            Update::Fixed(fixed) => fixed.updates as f64,
+            Update::Auto(_) => OWN_UPDATES,
+        };
+        let increments = march.test().time.increments as f64;
+        let evaluations = updates * CYCLES_AN_UPDATE * increments * EVALUATIONS_AN_INCREMENT;
+        // The estimate of the error solves cycles again, with finer increments and a coarser mesh: about 60 % more.
+        let again = if case.accuracy.estimate { 1.6 } else { 1.0 };
+        let solving_s = again * evaluations * evaluation_s(march, at_rest);
         Self {
             memory_mb: memory_mb(case, march, at_rest),
             memory_allowed_mb: 1e3 * case.limits.memory_gb,
-            time_s: built_in.as_secs_f64() + solving_s(case, march, at_rest),
+            time_s: built_in.as_secs_f64() + solving_s,
         }
     }
-}
-
-/// Time of the cycles, from the time of a contact evaluation under the mean load, s.
-fn solving_s(case: &Case, march: &March, at_rest: &AtRest) -> f64 {
-    let updates = match &case.march.update {
-        Update::Fixed(fixed) => fixed.updates as f64,
-        Update::Auto(_) => OWN_UPDATES,
-    };
-    let increments = march.test().time.increments as f64;
-    let evaluations = updates * CYCLES_AN_UPDATE * increments * EVALUATIONS_AN_INCREMENT;
-    // The estimate of the error solves cycles again, with finer increments and a coarser mesh: about 60 % more.
-    let again = if case.accuracy.estimate { 1.6 } else { 1.0 };
-    again * evaluations * evaluation_s(march, at_rest)
 }
 
 /// Returns the time of a contact evaluation under the mean load with derivatives, s: the shorter of two times on a

@@ -114,6 +114,7 @@ impl ErrorEstimate {
                 });
                 let percent = error.as_ref().ok().copied();
                 let in_unit = percent.map(|percent| percent / 100.0 * value_of(scalar));
+                // Both are stored: readers of the file need no value of the number.
                 for (key, error) in [
                     (percent_key(scalar), percent),
                     (scalar.key.to_owned(), in_unit),

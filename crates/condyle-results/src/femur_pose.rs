@@ -52,6 +52,7 @@ pub fn femur_pose_csv(march: &March, side: Side) -> String {
     );
     let cycles = march.state().activities[0].first_and_last.as_ref();
     for (cycles, row) in rows_of(cycles) {
+        // A left knee is computed as a right one: its pose is mirrored back.
         let pose = pose_on_side(&march.pose_at(&row.positions), side);
         let rotation = rows(&pose);
         let numbers = pose.translation.iter().chain(rotation.as_flattened());

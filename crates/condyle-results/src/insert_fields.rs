@@ -140,7 +140,7 @@ fn spread<T: Copy>(surface: &[u32], values: &[T], none: T, nodes: usize) -> Vec<
     all
 }
 
-/// Returns the values of elements as values at nodes: the mean of those around each.
+/// Returns the mean value of the elements around each node.
 fn mean_around(mesh: &HexMesh, values: &[f64]) -> Vec<f64> {
     let mut sums = vec![(0.0, 0.0); mesh.nodes.len()];
     for (hex, value) in mesh.hexes.iter().zip(values) {
@@ -154,7 +154,7 @@ fn mean_around(mesh: &HexMesh, values: &[f64]) -> Vec<f64> {
     sums.into_iter().map(mean).collect()
 }
 
-/// Returns the values of elements as values at nodes: the largest of those around each.
+/// Returns the largest value of the elements around each node.
 fn most_around(mesh: &HexMesh, values: &[f64]) -> Vec<f64> {
     let mut most = vec![0.0; mesh.nodes.len()];
     for (hex, &value) in mesh.hexes.iter().zip(values) {

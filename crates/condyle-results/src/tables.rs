@@ -68,6 +68,7 @@ described! {
 
 /// `wear.csv`: a row an update.
 pub fn wear_csv(updates: &[UpdateRecord]) -> String {
+    // Columns of creep would be empty for most runs.
     let creeps = updates.iter().any(|row| row.creep.is_some());
     let columns = WEAR_COLUMNS.iter();
     let columns: Vec<&WearColumn> = columns

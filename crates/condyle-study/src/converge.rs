@@ -202,6 +202,7 @@ fn plan(case_path: &Path, over: &str) -> Result<(Plan, Vec<f64>), StudyError> {
             "`{key}` has the value {value} twice; write each once"
         )));
     }
+    // Levels are tests in their order: row and value have the same number.
     let levels = Levels(values.iter().copied().map(Level::Number).collect());
     let mut input = Input::new(&path, Variation::Levels(LevelKeys { levels }));
     input.is_whole = is_whole;

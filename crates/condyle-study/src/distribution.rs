@@ -25,6 +25,7 @@ pub(crate) fn level_at_share(input: &Input, share: f64) -> Level {
     match &input.variation {
         Variation::Levels(keys) => {
             let count = keys.levels.0.len();
+            // A share of 1 would be the place after the last.
             let place = (share * count as f64) as usize;
             keys.levels.0[place.min(count - 1)].clone()
         }

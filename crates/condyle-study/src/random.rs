@@ -9,6 +9,7 @@ const INCREMENT: u64 = 0x9e37_79b9_7f4a_7c15;
 impl Random {
     /// Creates stream `number` of a seed; streams are independent, so that each can be drawn without the others.
     pub fn stream(seed: u64, number: u64) -> Self {
+        // Both parts are mixed, since seeds and numbers are small and their sums would coincide.
         let numbered = mixed(number.wrapping_add(INCREMENT).wrapping_mul(INCREMENT));
         Self(mixed(seed.wrapping_add(INCREMENT)) ^ numbered)
     }

@@ -43,6 +43,7 @@ pub(crate) fn wilson_interval(hits: f64, tests: f64) -> [f64; 2] {
     if tests == 0.0 {
         return [0.0, 1.0];
     }
+    // Unlike the normal interval, it stays within 0 and 1 and does not collapse when all or none of the tests hit.
     let (share, square) = (hits / tests, NORMAL_95 * NORMAL_95);
     let middle = share + square / (2.0 * tests);
     let half = NORMAL_95 * (share * (1.0 - share) / tests + square / (4.0 * tests * tests)).sqrt();

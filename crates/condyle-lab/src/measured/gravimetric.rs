@@ -110,6 +110,7 @@ pub(crate) fn compare(
         interval_mg_per_million_cycles: mean_interval(&rates, confidence),
         r_squared: None,
     };
+    // Compared with the interval of the measured mean, not with the scatter of single specimens.
     let rate = predicted.mg_per_million_cycles;
     let inside = |of: &Rate| of.interval_mg_per_million_cycles.map(|i| i.holds(rate));
     Ok(GravimetricComparison {

@@ -158,6 +158,7 @@ fn range(values: impl Iterator<Item = f64> + Clone) -> f64 {
 
 fn errors(points: &[[f64; 3]]) -> Option<Errors> {
     let error = |[_, predicted, measured]: &[f64; 3]| predicted - measured;
+    // Over equal instants of the run, so that a dense measurement of one phase does not outweigh the others.
     let largest = points
         .iter()
         .max_by(|a, b| error(a).abs().total_cmp(&error(b).abs()))?;

@@ -90,6 +90,7 @@ impl KinematicsComparison {
         let points = self.columns.iter().flat_map(|column| &column.points);
         let mut percents: Vec<f64> = points.map(|point| point[0]).collect();
         percents.sort_by(f64::total_cmp);
+        // Columns may lack some instants where their measurement has gaps: all instants of any column have a row.
         percents.dedup();
         for percent in percents {
             text += &format!("{},{percent}", self.cycles_before);

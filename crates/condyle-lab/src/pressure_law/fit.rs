@@ -269,11 +269,17 @@ impl Target {
         for _ in 0..MAX_ITERATIONS {
             let result = evaluate(contact, &self.lowered(lower_mm));
             let found = forces(&result);
-            let missing = self.missing_n(found);
-            if missing
-                .iter()
-                .all(|missing| missing.abs() < FORCE_TOLERANCE_N)
-            {
+            let missing: [f64; MAX_REGIONS] = std::array::from_fn(|region| {
+                let target_n = self.region_force_n[region];
+                // The pose over an unloaded region follows from the other one.
+                if target_n > MIN_FORCE_N {
+                    target_n - found[region]
+                } else {
+                    0.0
+                }
+            });
+            let mut missing_n = missing.iter();
+            if missing_n.all(|missing| missing.abs() < FORCE_TOLERANCE_N) {
                 return Some(Carried {
                     area_mm2: result.touched.iter().map(|node| node.covered_mm2).sum(),
                     peak_mpa: result.peak_pressure_mpa,
@@ -290,18 +296,6 @@ impl Target {
             }
         }
         None
-    }
-
-    /// Missing force of each loaded region, N.
-    fn missing_n(&self, found_n: [f64; MAX_REGIONS]) -> [f64; MAX_REGIONS] {
-        std::array::from_fn(|region| {
-            let wanted_n = self.region_force_n[region];
-            if wanted_n > MIN_FORCE_N {
-                wanted_n - found_n[region]
-            } else {
-                0.0
-            }
-        })
     }
 
     /// Returns the pose with the femur lowered over every region.

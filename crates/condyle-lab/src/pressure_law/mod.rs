@@ -107,11 +107,18 @@ pub fn calibrate(
 ) -> Result<CalibratedLaw, RunError> {
     let case = Case::read_changed(&request.case, &request.changes)?;
     on_step("the deformable insert");
-    let mut recorded = Recorded::default();
-    let deformable = with_deformable(&case);
-    let deformable = run(&deformable, &mut |march| recorded.see(march))?;
+    // The insert before it wears, and its first cycle: the table is fitted to the unworn bodies.
+    let (mut insert, mut targets) = (None, Vec::new());
+    let deformable = run(&with_deformable(&case), &mut |march| {
+        if insert.is_none() {
+            insert = Some(march.insert().clone());
+        } else if targets.is_empty() {
+            targets = march.last_cycle().iter().flat_map(Target::of).collect();
+        }
+    })?;
+    let insert = insert.expect("a run has an insert");
     on_step("the fit");
-    let (table, increments) = recorded.fitted(&case, &deformable.march);
+    let (table, increments) = fitted(&case, &deformable.march, &insert, &targets);
     on_step("the foundation with the table");
     let (left, left_before) = errors(&case, &table, &deformable)?;
     let worst = |cycle: &CycleErrors| cycle.peak_pressure.most_percent;
@@ -190,65 +197,46 @@ fn run(case: &Case, watch: &mut dyn FnMut(&March)) -> Result<Ran, RunError> {
     Ok(Ran { march, summary })
 }
 
-/// The insert before it wears, and its first cycle.
-#[derive(Default)]
-struct Recorded {
-    insert: Option<Insert>,
-    targets: Vec<Target>,
-}
-
-impl Recorded {
-    fn see(&mut self, march: &March) {
-        if self.insert.is_none() {
-            self.insert = Some(march.insert().clone());
-        } else if self.targets.is_empty() {
-            let cycle = march.last_cycle();
-            self.targets = cycle.iter().flat_map(Target::of).collect();
-        }
-    }
-
-    /// Returns the table fitted to some increments of stance, and its errors in them.
-    fn fitted(&self, case: &Case, march: &March) -> (PressureTable, Vec<FittedIncrement>) {
-        let insert = self.insert.as_ref().expect("a run has an insert");
-        let surface = insert.surface();
-        let bodies = Bodies {
-            femur: march.femur(),
-            insert,
-            surface: &surface,
-        };
-        let material = &case.material;
-        let modulus_mpa = confined_modulus(material.youngs_modulus_mpa, material.poissons_ratio);
-        let mut law = with_foundation(case).foundation();
-        law.pressure = PressureLaw::Linear { modulus_mpa };
-        // Forces are balanced more exactly than extrapolated samples of the femur allow.
-        law.settings.sample_reuse_mm = 0.0;
-        let mut contact = law.contact(bodies, ContactMemory::default());
-        let few = self.few_of_stance().into_iter();
-        let armed = few.map(|target| target.with_arms(contact.as_mut(), &surface.positions));
-        let mut targets: Vec<Target> = armed.collect();
-        targets.retain(|target| {
-            let carried = target.carried(contact.as_mut(), [0.0; MAX_REGIONS]);
-            carried.is_some()
-        });
-        drop(contact);
-        let fit = Fit {
-            bodies,
-            foundation: law,
-            targets: &targets,
-        };
-        let table = fit.table(modulus_mpa);
-        let increments = increments(&fit, &table);
-        (table, increments)
-    }
-
-    /// Evenly spaced increments of stance.
-    fn few_of_stance(&self) -> Vec<Target> {
-        let highest_n = self.targets.iter().map(Target::force_n).fold(0.0, f64::max);
-        let targets = self.targets.iter();
-        let stance = targets.filter(|target| target.force_n() >= STANCE * highest_n);
-        let every = stance.clone().count().div_ceil(MAX_FITTED).max(1);
-        stance.step_by(every).cloned().collect()
-    }
+/// Returns the table fitted to some increments of stance, and its errors in them.
+fn fitted(
+    case: &Case,
+    march: &March,
+    insert: &Insert,
+    targets: &[Target],
+) -> (PressureTable, Vec<FittedIncrement>) {
+    let surface = insert.surface();
+    let bodies = Bodies {
+        femur: march.femur(),
+        insert,
+        surface: &surface,
+    };
+    let material = &case.material;
+    let modulus_mpa = confined_modulus(material.youngs_modulus_mpa, material.poissons_ratio);
+    let mut law = with_foundation(case).foundation();
+    law.pressure = PressureLaw::Linear { modulus_mpa };
+    // Forces are balanced more exactly than extrapolated samples of the femur allow.
+    law.settings.sample_reuse_mm = 0.0;
+    let mut contact = law.contact(bodies, ContactMemory::default());
+    let highest_n = targets.iter().map(Target::force_n).fold(0.0, f64::max);
+    let stance = targets.iter();
+    let stance = stance.filter(|target| target.force_n() >= STANCE * highest_n);
+    let every = stance.clone().count().div_ceil(MAX_FITTED).max(1);
+    let few = stance.step_by(every).cloned();
+    let armed = few.map(|target| target.with_arms(contact.as_mut(), &surface.positions));
+    let mut targets: Vec<Target> = armed.collect();
+    targets.retain(|target| {
+        let carried = target.carried(contact.as_mut(), [0.0; MAX_REGIONS]);
+        carried.is_some()
+    });
+    drop(contact);
+    let fit = Fit {
+        bodies,
+        foundation: law,
+        targets: &targets,
+    };
+    let table = fit.table(modulus_mpa);
+    let increments = increments(&fit, &table);
+    (table, increments)
 }
 
 /// Returns the errors of a table in the increments that it was fitted to.

@@ -55,6 +55,7 @@ fn run_read(
     on_event: &mut Listener<'_>,
 ) -> Result<Outcome, RunError> {
     let inputs_blake3 = case.inputs_blake3().map_err(RunError::Inputs)?;
+    // Locked before anything is read, so that two runs cannot both find the folder free.
     let lock = ResultsFolder::lock(&options.out)?;
     let start_from = match found(case, case_path, options, &inputs_blake3)? {
         Found::Done(summary) => {

@@ -142,6 +142,7 @@ fn memory_mb_touching(case: &Case, march: &March, nodes_touched: f64, nodes_near
         _ => 0.0,
     };
     let law = &march.test().contact;
+    // The sum of the large arrays; everything else is within the constant part.
     let bytes = Limits::BYTES_OF_INSERT_NODE * march.insert().mesh().nodes.len() as f64
         + BYTES_A_TOUCH * histories * touches
         + Limits::BYTES_OF_FIELD_NODE * field_nodes

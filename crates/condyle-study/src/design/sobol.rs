@@ -17,6 +17,7 @@ const BITS: usize = 32;
 pub(crate) fn sobol_places(row: u64, axes: usize, seed: u64) -> Vec<Place> {
     let place = |axis: usize| {
         let scrambled = scrambled(point(row, axis), Random::stream(seed, axis as u64).next());
+        // The middle of its interval: neither 0 nor 1, whose quantiles may be infinite.
         Place::Share((f64::from(scrambled) + 0.5) / (1_u64 << BITS) as f64)
     };
     (0..axes).map(place).collect()
