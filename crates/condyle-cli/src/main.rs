@@ -4,7 +4,6 @@ mod arguments;
 mod calibrate;
 mod check;
 mod compare;
-mod diff;
 mod new;
 mod output;
 mod progress;
@@ -69,7 +68,7 @@ fn run_command() -> Done {
         Command::Export(arguments) => new::export(&arguments),
         Command::Report(arguments) => report::report(&arguments),
         Command::Plot(arguments) => report::plot(&arguments),
-        Command::Diff(arguments) => diff::diff(&arguments),
+        Command::Diff(arguments) => report::diff(&arguments),
         Command::Converge(arguments) => study::converge(&arguments),
         Command::Sensitivity(arguments) => study::sensitivity(&arguments),
         Command::Uncertainty(arguments) => study::uncertainty(&arguments),

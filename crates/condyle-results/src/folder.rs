@@ -15,7 +15,6 @@ use super::{
         KeptCycle, cycle_pressure_csv, cycle_pressure_file, cycle_pvd, femur_vtu, frame_name,
         insert_frame,
     },
-    femur_pose::femur_pose_csv,
     files::{
         CHECKSUMS, DamagedFile, FolderLock, LOCK, check_all, is_listed, part_file, replace_file,
         replace_file_durably, write_checksum,
@@ -24,7 +23,7 @@ use super::{
     parts::kinematics_file,
     slip_paths::slip_paths_csv,
     summary::Summary,
-    tables::{kinematics_csv, wear_csv},
+    tables::{femur_pose_csv, kinematics_csv, wear_csv},
 };
 use condyle_mesh::formats::MeshFileError;
 

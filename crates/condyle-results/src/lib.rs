@@ -8,7 +8,6 @@ mod checkpoint;
 mod cycle_files;
 mod declared;
 mod error_estimate;
-mod femur_pose;
 #[cfg(feature = "file-system")]
 mod files;
 #[cfg(feature = "file-system")]
@@ -41,7 +40,6 @@ pub use cycle_files::{
 };
 pub use declared::{python_types, results_schema, typescript_types};
 pub use error_estimate::{ErrorEstimate, ErrorParts, Part, QuantityError, QuantityErrors};
-pub use femur_pose::{NeutralPose, femur_pose_csv};
 #[cfg(feature = "file-system")]
 pub use files::{DamagedFile, FolderLock, check_file};
 #[cfg(feature = "file-system")]
@@ -50,8 +48,9 @@ pub use insert_fields::{
     InsertFields, NODE_FIELDS, NodeField, insert_file_name, insert_pvd, insert_vtu,
 };
 pub use parts::{
-    ActivitySummary, CreepSummary, LawWear, Penetration, ScanLine, joint_range, kinematics_file,
+    ActivitySummary, CreepSummary, LawWear, NeutralPose, Penetration, ScanLine, joint_range,
+    kinematics_file,
 };
 pub use side::Side;
 pub use summary::{PlausibilityWarning, Summary};
-pub use tables::{WEAR_COLUMNS, WearColumn, kinematics_csv, wear_csv};
+pub use tables::{WEAR_COLUMNS, WearColumn, femur_pose_csv, kinematics_csv, wear_csv};

@@ -1,13 +1,17 @@
-//! Entries of `summary.json` that are not single numbers: activities, the wear of every law, and creep.
+//! Entries of `summary.json` that are not single numbers: activities, the wear of every law, creep, and the neutral
+//! pose of the femur.
 
 use condyle::{
     evolve::{CreepRecord, March, MarchState, UpdateRecord},
     machine::{
         CycleRow, JointIndex,
-        knee::{AP, IE, KNEE, MEDIAL},
+        knee::{AP, FLEXION, IE, KNEE, MEDIAL, VV},
     },
+    spatial::Pose,
 };
 use serde::{Deserialize, Serialize};
+
+use super::side::{Side, pose_on_side};
 
 /// Motion, loads and wear of one of several activities; units are in the names.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -259,6 +263,43 @@ impl ScanLine {
             at_no_cycles_mm: depth - slope * cycles,
         })
     }
+}
+
+/// The pose in which the femur settles under the load at the start of the cycle, where AP, ML and IS read zero: a
+/// point p of the femoral frame is at R p + t in the insert frame, each of the knee's own side.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct NeutralPose {
+    /// t, the origin of the femoral frame in the insert frame: x, y, z, mm.
+    pub femoral_origin_mm: [f64; 3],
+    /// R, its rows.
+    pub rotation: [[f64; 3]; 3],
+    /// Flexion of R, degrees.
+    pub flexion_deg: f64,
+    /// Internal rotation of the insert, degrees.
+    pub ie_deg: f64,
+    /// Varus of the insert, degrees.
+    pub vv_deg: f64,
+}
+
+impl NeutralPose {
+    /// Returns the neutral pose of a march, in a knee of the given side.
+    pub fn of(march: &March, side: Side) -> Self {
+        let pose = pose_on_side(&march.neutral_pose(), side);
+        let settled = &march.state().settled;
+        let turned = |joint| KNEE.joint(joint).kind().in_files(joint.of(settled));
+        Self {
+            femoral_origin_mm: pose.translation.into(),
+            rotation: rotation_rows(&pose),
+            flexion_deg: turned(FLEXION),
+            ie_deg: turned(IE),
+            vv_deg: turned(VV),
+        }
+    }
+}
+
+pub(super) fn rotation_rows(pose: &Pose) -> [[f64; 3]; 3] {
+    let r = &pose.rotation;
+    [0, 1, 2].map(|row| [r[(row, 0)], r[(row, 1)], r[(row, 2)]])
 }
 
 #[cfg(test)]

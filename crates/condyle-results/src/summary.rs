@@ -11,8 +11,7 @@ use serde_json::{Map, Value};
 use super::{
     catalogue::{self, FinishedRun, PARTS, RunFacts, Scalar},
     error_estimate::ErrorEstimate,
-    femur_pose::NeutralPose,
-    parts::{ActivitySummary, CreepSummary, LawWear},
+    parts::{ActivitySummary, CreepSummary, LawWear, NeutralPose},
 };
 
 /// The results of a run in one table: `summary[&MASS_LOSS_MG]` is a number of the catalogue.

@@ -1,8 +1,13 @@
-//! `wear.csv` and `kinematics.csv`.
+//! `wear.csv`, `kinematics.csv` and `femur_pose.csv`.
 
 use condyle::{
-    evolve::{CreepRecord, CycleRecord, UpdateRecord},
+    evolve::{CreepRecord, CycleRecord, March, UpdateRecord},
     machine::{CycleRow, Mechanism},
+};
+
+use super::{
+    parts::rotation_rows,
+    side::{Side, pose_on_side},
 };
 
 /// A column of `wear.csv`.
@@ -86,7 +91,7 @@ pub fn wear_csv(updates: &[UpdateRecord]) -> String {
     text
 }
 
-pub(super) fn line(cells: impl Iterator<Item = String>) -> String {
+fn line(cells: impl Iterator<Item = String>) -> String {
     cells.collect::<Vec<_>>().join(",") + "\n"
 }
 
@@ -110,10 +115,26 @@ pub fn kinematics_csv(
     text
 }
 
+/// Returns `femur_pose.csv`: one row per increment of the cycles of `kinematics.csv`, the origin of the femoral frame
+/// in the insert frame, then R row by row.
+pub fn femur_pose_csv(march: &March, side: Side) -> String {
+    let mut text = String::from(
+        "cycles,percent,origin_x_mm,origin_y_mm,origin_z_mm,r_xx,r_xy,r_xz,r_yx,r_yy,r_yz,r_zx,r_zy,r_zz\n",
+    );
+    let cycles = march.state().activities[0].first_and_last.as_ref();
+    for (cycles, row) in rows_of(cycles) {
+        // A left knee is computed as a right one: its pose is mirrored back.
+        let pose = pose_on_side(&march.pose_at(&row.positions), side);
+        let rotation = rotation_rows(&pose);
+        let numbers = pose.translation.iter().chain(rotation.as_flattened());
+        let cells = [&cycles, &row.percent].into_iter().chain(numbers);
+        text += &line(cells.map(f64::to_string));
+    }
+    text
+}
+
 /// Returns the rows of the first and the last cycle with the cycles before each, once where both are the same.
-pub(super) fn rows_of(
-    cycles: Option<&(CycleRecord, CycleRecord)>,
-) -> impl Iterator<Item = (f64, &CycleRow)> {
+fn rows_of(cycles: Option<&(CycleRecord, CycleRecord)>) -> impl Iterator<Item = (f64, &CycleRow)> {
     let both = cycles.into_iter().flat_map(|(first, last)| {
         let last = Some(last).filter(|last| last.cycles != first.cycles);
         [first].into_iter().chain(last)
