@@ -100,7 +100,7 @@ fn verify_alignment_takes_the_offset_out_and_says_so() {
     let said = bench.say(&["compare", "out", "measured.toml"]);
     assert!(said.out.contains("last cycle"), "{}", said.out);
     assert!(
-        said.out.contains("the mean difference is taken out"),
+        said.out.contains("the mean difference is subtracted"),
         "{}",
         said.out
     );

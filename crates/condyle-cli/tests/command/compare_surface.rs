@@ -213,7 +213,7 @@ fn a_ply_far_away_is_brought_near_by_start_mm() {
         table,
         &[
             "only 0 of",
-            "points of the scan come near the insert",
+            "points of the scan are near the fitted part of the insert",
             "start_mm",
         ],
     );
