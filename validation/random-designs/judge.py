@@ -150,7 +150,7 @@ def _volume(mesh):
 def _volumes(summary, meshes):
     lost = _volume(meshes[0]) - _volume(meshes[-1])
     if abs(lost - summary["volume_loss_mm3"]) > COUNTS_APART * summary["volume_loss_mm3"] + 0.01:
-        yield Finding("the mesh lost another volume than was worn", ("counts_of_volume",))
+        yield Finding("the mesh lost a different volume from the worn one", ("counts_of_volume",))
 
 
 def _thickness(mesh):

@@ -23,7 +23,7 @@ fn add_table(laws: &[LawWear], lines: &mut Lines) {
     }
     if laws.iter().any(|law| law.approximate) {
         lines.line(
-            "   ~ approximate: the formula or a constant is remembered, not read in its source",
+            "   ~ approximate: the formula or a constant is quoted from memory, not checked at the source",
         );
     }
 }

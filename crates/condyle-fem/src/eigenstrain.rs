@@ -142,7 +142,7 @@ impl YieldingElement {
     }
 
     /// Returns the largest ratio of stress to yield stress at a Gauss point, more than 1 if it will flow: under
-    /// displacements of the nodes, with the plastic strains remembered.
+    /// displacements of the nodes, with the plastic strains kept.
     pub fn use_of_yield<M: Material>(
         &self,
         solid: &ElasticSolid,

@@ -76,7 +76,7 @@ pub enum PlasticError {
         left: f64,
     },
     /// The state belongs to another mesh.
-    #[error("the state is of {found} elements, and the mesh has {elements}")]
+    #[error("the state has {found} elements, but the mesh has {elements}")]
     WrongState {
         /// Elements of the state.
         found: usize,
@@ -424,7 +424,7 @@ mod tests {
         let wrong = solid.solve(&[], &PlasticState::unloaded(35)).unwrap_err();
         assert_eq!(
             wrong.to_string(),
-            "the state is of 35 elements, and the mesh has 36"
+            "the state has 35 elements, but the mesh has 36"
         );
     }
 

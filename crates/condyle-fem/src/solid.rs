@@ -39,7 +39,7 @@ pub enum SolidError {
         nodes: usize,
     },
     /// An element is flat or folded over.
-    #[error("element {element} around ({:.4}, {:.4}, {:.4}) is flat or inverted: its corners must be in VTK order, and it must have a volume everywhere", place.x, place.y, place.z)]
+    #[error("element {element} around ({:.4}, {:.4}, {:.4}) is flat or inverted; order its corners as in VTK, and make its volume positive everywhere", place.x, place.y, place.z)]
     Inverted {
         /// Number of the element, from 0.
         element: usize,

@@ -28,7 +28,7 @@ pub enum CheckpointError {
     )]
     Foreign,
     /// Its bytes are damaged.
-    #[error("its bytes are damaged; run the case again into another folder")]
+    #[error("the file is damaged; run the case again with another folder")]
     Damaged,
 }
 

@@ -63,7 +63,7 @@ impl Plan {
         let tests = tests(&study);
         if tests * designs(&study) as f64 > MAX_TESTS {
             return Err(StudyError::Plan(format!(
-                "the study has {tests:.3e} tests, and {MAX_TESTS:.0e} are the most; take fewer levels, points or inputs"
+                "the study has {tests:.3e} tests; at most {MAX_TESTS:.0e} are allowed; take fewer levels, points or inputs"
             )));
         }
         let inputs = study.inputs.len();

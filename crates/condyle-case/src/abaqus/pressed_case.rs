@@ -150,7 +150,7 @@ pub enum ExportError {
     #[error(transparent)]
     Placement(#[from] PlacementError),
     /// A choice of the case that the exported model does not have.
-    #[error("the exported file has {supported}, and this case has {found}; write {remedy}")]
+    #[error("the export supports {supported}, but this case has {found}; write {remedy}")]
     Unsupported {
         /// The model that is exported.
         supported: &'static str,
@@ -160,7 +160,7 @@ pub enum ExportError {
         remedy: &'static str,
     },
     /// The bodies do not touch at this place of the cycle.
-    #[error("nothing touches at {percent} % of the cycle; choose another place")]
+    #[error("the bodies are not in contact at {percent} % of the cycle; choose another percentage")]
     Apart {
         /// Place in the cycle, %.
         percent: f64,

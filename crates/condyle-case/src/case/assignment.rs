@@ -47,7 +47,7 @@ impl Assignment {
         let (key, text) = (key.trim(), text.trim());
         if key.is_empty() || text.is_empty() {
             return Err(AssignmentError(format!(
-                "`{written}` is no key with a value; write them as `march.updates=5`"
+                "`{written}` is not of the form key=value; write it as `march.updates=5`"
             )));
         }
         Ok(Self::new(key, text))
@@ -69,7 +69,7 @@ impl Assignment {
         match assignment.as_number() {
             Some(_) => Ok(assignment),
             None => Err(AssignmentError(format!(
-                "`{}` is no value for `{key}`; write a number, such as 10 or 0.5",
+                "`{}` is not a valid value of `{key}`; write a number, such as 10 or 0.5",
                 assignment.text
             ))),
         }
@@ -181,7 +181,7 @@ impl<'c> Lines<'c> {
                     _ => format!("{path} = {}", &self.shown[value.span()]),
                 };
                 notes.push(BuildWarning::new(format!(
-                    "{written}: left out, since it does not go with {} = \"{word}\", which is set",
+                    "{written}: ignored, since it does not apply to {} = \"{word}\", which is set",
                     change.key
                 )));
             }
@@ -354,7 +354,7 @@ fn path_called(
             Err(AssignmentError(message))
         }
         Err(paths) => Err(AssignmentError(format!(
-            "the case has more than one {what} called `{written}`; write `{}`",
+            "the case has more than one {what} named `{written}`; write `{}`",
             paths.join("` or `")
         ))),
     }

@@ -76,7 +76,7 @@ impl Axes {
         let rotation = Mat3::from_columns(&columns);
         let determinant = rotation.determinant();
         if determinant.abs() < 0.5 {
-            Err("two of the axes lie along the same line, so one direction of space has none")
+            Err("two of the axes are parallel; give three perpendicular axes")
         } else if determinant < 0.0 {
             Err("these axes are left-handed, which would mirror the shape")
         } else {

@@ -344,7 +344,7 @@ impl Waveforms {
                     let (name, drive, wanted) = (joint.name, freedom.drive.word(), wanted.word());
                     let fault = Fault::new(
                         format!(
-                            "{table} is given, but the {name} freedom is {drive}: the two contradict"
+                            "{table} is given, but the {name} freedom is {drive}; these contradict each other"
                         ),
                         format!("remove {table}, or make the freedom `drive = \"{wanted}\"`"),
                     );

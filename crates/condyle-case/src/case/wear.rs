@@ -22,7 +22,7 @@ pub struct Wear {
 #[derive(Clone, Copy, Debug, PartialEq, Error)]
 pub enum ConstantError {
     /// The law has no constant with that name.
-    #[error("the wear law \"{law}\" has no `{name}`; take a case with a law that has")]
+    #[error("the wear law \"{law}\" has no `{name}`; use a case whose law has it")]
     Unknown {
         /// Word of the law.
         law: &'static str,
@@ -30,7 +30,7 @@ pub enum ConstantError {
         name: &'static str,
     },
     /// A value outside its range.
-    #[error("`{name}` cannot be {value:e}: it can be {limits}")]
+    #[error("`{name}` is {value:e}; it must be {limits}")]
     OutOfRange {
         /// The constant.
         name: &'static str,

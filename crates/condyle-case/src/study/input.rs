@@ -241,7 +241,7 @@ pub(super) fn check_count(
     if count <= MAX_LISTED {
         return Some(());
     }
-    let message = format!("the study has {count} {what}, and {MAX_LISTED} are the most");
+    let message = format!("the study has {count} {what}; at most {MAX_LISTED} are allowed");
     log.problem(span, Fault::new(message, "divide it into several studies"));
     None
 }

@@ -133,7 +133,7 @@ fn inputs(
     let inputs = listed(root, "vary", log, |one, log| Input::read(one, case, log));
     if count == 0 && root.value("alternative").is_none() {
         let advice = "add `[[vary]]` with `key = \"contact.friction\"`, `low` and `high`";
-        log.problem(0..0, Fault::new("the study varies nothing", advice));
+        log.problem(0..0, Fault::new("the study has no varied inputs", advice));
         return None;
     }
     Some((inputs?, Vec::new()))
@@ -166,7 +166,7 @@ fn correlation(section: &Section<'_>, inputs: &[Input], log: &mut Log<'_>) -> Op
         let advice = "write `keys = [\"contact.friction\", \"wear.wear_factor_mm3_per_nm\"]`";
         log.problem(
             span,
-            Fault::new("a correlation is between two keys", advice),
+            Fault::new("a correlation needs exactly two keys", advice),
         );
         return None;
     };
@@ -175,7 +175,7 @@ fn correlation(section: &Section<'_>, inputs: &[Input], log: &mut Log<'_>) -> Op
         let found = inputs.iter().position(is_input);
         if found.is_none() {
             let fault = Fault::new(
-                format!("`{key}` is no input with a distribution"),
+                format!("`{key}` is not an input with a distribution"),
                 "give it a `[[vary]]` with a distribution, or leave the correlation out",
             );
             log.problem(span.clone(), fault);
@@ -196,7 +196,7 @@ impl Study {
         for (place, input) in self.inputs.iter().enumerate() {
             if self.inputs[..place].iter().any(|one| one.key == input.key) {
                 let fault = Fault::new(
-                    format!("`{}` varies twice", input.key),
+                    format!("`{}` is varied twice; remove one entry", input.key),
                     "keep one of the two, or give both values as columns of rows",
                 );
                 log.problem(input.span.clone(), fault);
@@ -305,7 +305,7 @@ impl Study {
             }
             Design::Morris(keys) if keys.levels % 2 == 1 => {
                 let message = format!(
-                    "a Morris design has an even number of levels, not {}",
+                    "a Morris design needs an even number of levels; {} is odd",
                     keys.levels
                 );
                 log.problem(

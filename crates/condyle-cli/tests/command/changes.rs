@@ -46,7 +46,7 @@ fn another_law_takes_the_place_of_the_files_with_all_its_constants() {
     let law = ["--set", "wear.law=kang"];
     let said = bench.say(&[&["run", "case.toml", "-o", "set"][..], &law].concat());
     assert_eq!(said.code, Some(0), "{}", said.err);
-    let told = "wear_factor_mm3_per_nm = 3e-7: left out, since it does not go with wear.law = \"kang\", which is set";
+    let told = "wear_factor_mm3_per_nm = 3e-7: ignored, since it does not apply to wear.law = \"kang\", which is set";
     assert!(said.err.contains(told), "{}", said.err);
     bench.write("case.toml", &format!("{SMALL}[wear]\nlaw = \"kang\"\n"));
     let said = bench.run_into("written");
@@ -83,9 +83,9 @@ fn another_law_takes_the_place_of_the_files_with_all_its_constants() {
 fn a_change_that_cannot_be_made_is_refused() {
     let bench = Bench::with_case(SMALL);
     for (change, words) in [
-        ("updates", "`updates` is no key with a value"),
-        ("=3", "`=3` is no key with a value"),
-        ("updates=", "`updates=` is no key with a value"),
+        ("updates", "`updates` is not of the form key=value"),
+        ("=3", "`=3` is not of the form key=value"),
+        ("updates=", "`updates=` is not of the form key=value"),
         ("updatse=3", "did you mean `updates`?"),
         ("mu=0.1", "did you mean `friction`?"),
         ("xyz=3", "give its dotted path, such as `march.updates`"),

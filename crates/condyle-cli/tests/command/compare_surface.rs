@@ -321,7 +321,7 @@ fn bad_scans_are_refused_with_their_place() {
     refuses(
         "file = \"scan.step\"",
         &[
-            "the ending \"step\" is not a known format",
+            "the extension \"step\" is not a known format",
             "measured.toml:2:8",
         ],
     );

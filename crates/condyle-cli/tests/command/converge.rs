@@ -187,7 +187,7 @@ fn a_key_that_is_none_is_refused() {
     ];
     assert_refused("march.updatse=1,2", &words);
     let words = [
-        "more than one number called `spacing_mm`",
+        "more than one number named `spacing_mm`",
         "write `femur.spacing_mm` or `insert.spacing_mm`",
     ];
     assert_refused("spacing_mm=40,41", &words);
@@ -211,7 +211,10 @@ fn a_value_that_is_none_is_refused() {
         "case.toml with time.increments = 40.5:9:19",
     ];
     assert_refused("increments=30,40.5", &words);
-    let words = ["`ten` is no value for `march.updates`", "write a number"];
+    let words = [
+        "`ten` is not a valid value of `march.updates`",
+        "write a number",
+    ];
     assert_refused("updates=1,ten", &words);
 }
 

@@ -236,7 +236,7 @@ fn what_is_wrong_with_a_study_is_said_with_its_place() {
     let vary = |key: &str, rest: &str| format!("{case}[[vary]]\nkey = \"{key}\"\n{rest}\n");
     let range = "low = 0.0\nhigh = 0.1";
     for (study, expected) in [
-        (case.to_owned(), vec!["varies nothing", "[[vary]]"]),
+        (case.to_owned(), vec!["no varied inputs", "[[vary]]"]),
         (
             vary("contact.frictoin", range),
             vec![
@@ -271,7 +271,7 @@ fn what_is_wrong_with_a_study_is_said_with_its_place() {
         (
             case.to_owned()
                 + &"[[vary]]\nkey = \"contact.friction\"\nlow = 0.0\nhigh = 0.1\n".repeat(257),
-            vec!["257 inputs, and 256 are the most"],
+            vec!["257 inputs; at most 256 are allowed"],
         ),
         (
             vary("femur.file", "levels = [\"none.stl\"]"),
@@ -280,7 +280,7 @@ fn what_is_wrong_with_a_study_is_said_with_its_place() {
         (
             vary("contact.friction", range)
                 + "[[vary]]\nkey = \"contact.friction\"\nlow = 0\nhigh = 1\n",
-            vec!["varies twice"],
+            vec!["is varied twice; remove one entry"],
         ),
         (
             vary("contact.friction", range) + "[answers]\noutputs = [\"mass_los_mg\"]\n",

@@ -73,7 +73,7 @@ pub enum CalibrateError {
     #[error(transparent)]
     Case(#[from] Problems),
     /// A value that a constant does not accept.
-    #[error("no constants can be found: {0}")]
+    #[error("the constants cannot be calibrated: {0}")]
     Constant(#[from] ConstantError),
     /// Tests and constants that do not match; the text includes the remedy.
     #[error("{0}")]

@@ -17,7 +17,7 @@ use super::finished::{Finished, SolvedCycle};
 /// is unbounded: about the reach of the neighbours that are missing there.
 const NEAR_RIM_MM: f64 = 1.5;
 const MAX_AT_RIM_PERCENT: f64 = 1.0;
-/// Yield stress of UHMWPE, MPa (approximate: facts remembered, not read).
+/// Yield stress of UHMWPE, MPa (approximate: quoted from memory).
 const YIELD_MPA: f64 = 14.0;
 /// Ratio of the peak pressure under a ball to the yield stress at which the material first yields, below the middle
 /// of the contact [johnson1985].

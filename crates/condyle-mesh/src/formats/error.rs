@@ -20,7 +20,7 @@ pub enum MeshFileError {
         source: std::io::Error,
     },
     /// The file's extension is not a known format for this use.
-    #[error("{}: the ending {ending:?} is not a known format; use one of {known}", path.display())]
+    #[error("{}: the extension {ending:?} is not a known format; use one of {known}", path.display())]
     UnknownExtension {
         /// Path as the caller gave it.
         path: PathBuf,
@@ -40,7 +40,7 @@ pub enum MeshFileError {
         problem: String,
     },
     /// An array to be written does not have one value per node.
-    #[error("array {name:?} has {values} values for {nodes} nodes; give one a node")]
+    #[error("array {name:?} has {values} values for {nodes} nodes; give one value per node")]
     ArrayLength {
         /// Name of the array.
         name: String,

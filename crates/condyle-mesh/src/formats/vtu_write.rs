@@ -285,7 +285,7 @@ mod tests {
         let reported = message(vtu_bytes(&two_cubes(), &[array]));
         assert_eq!(
             reported,
-            "array \"mark\" has 2 values for 12 nodes; give one a node"
+            "array \"mark\" has 2 values for 12 nodes; give one value per node"
         );
     }
 }

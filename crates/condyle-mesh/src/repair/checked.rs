@@ -297,7 +297,7 @@ mod tests {
             .to_string();
         assert_eq!(
             reported,
-            "the mesh has no triangle with an area; check the export"
+            "all triangles of the mesh have zero area; check the export"
         );
         let mut mesh = unit_block();
         mesh.triangles = vec![[0, 0, 1], [2, 3, 2]];

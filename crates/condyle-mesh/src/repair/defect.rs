@@ -121,7 +121,7 @@ pub(super) fn add(defects: &mut Vec<Defect>, kind: DefectKind, at_mm: Vec3) {
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum RepairError {
     /// No triangle has an area.
-    #[error("the mesh has no triangle with an area; check the export")]
+    #[error("all triangles of the mesh have zero area; check the export")]
     Empty,
     /// Defects where bodies can touch.
     #[error(

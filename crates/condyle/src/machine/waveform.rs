@@ -288,7 +288,9 @@ pub enum WaveformError {
     )]
     Gap { from: f64, to: f64, limit: f64 },
     /// Different values at the two ends.
-    #[error("the waveform steps at the seam: {first} at 0 % but {last} at 100 %; make them equal")]
+    #[error(
+        "the waveform jumps at the end of the cycle: {first} at 0 % but {last} at 100 %; make them equal"
+    )]
     Seam { first: f64, last: f64 },
 }
 
@@ -369,7 +371,7 @@ mod tests {
         assert!(spline(&[(0.0, 1.0), (120.0, 1.0)]).contains("120 %"));
         assert!(spline(&[(5.0, 1.0), (5.0, 2.0)]).contains("does not come after 5 %"));
         assert!(spline(&[(0.0, 1.0), (40.0, 1.0), (100.0, 1.0)]).contains("gap from 0 % to 40 %"));
-        assert!(spline(&[(0.0, 1.0), (100.0, 2.0)]).contains("steps at the seam"));
+        assert!(spline(&[(0.0, 1.0), (100.0, 2.0)]).contains("jumps at the end of the cycle"));
     }
 
     #[test]

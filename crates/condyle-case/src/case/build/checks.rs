@@ -68,7 +68,7 @@ pub(super) fn check_orientation(
         let message = format!("this {body} lies {lies}; {advice}");
         return Err(BuildError::mesh(file.path(), &["axes", "file"], message));
     }
-    let remark = format!("this {body} likely lies {lies}; {advice}");
+    let remark = format!("this {body} is probably oriented {lies}; {advice}");
     warnings.push(BuildWarning::mesh(file, remark).with(Finding::WrongAxes(body)));
     Ok(false)
 }

@@ -244,7 +244,7 @@ fn named(
     } else {
         names.join(", ")
     };
-    let message = format!("there is no surface \"{name}\"; it has {listed}");
+    let message = format!("the mesh has no surface \"{name}\"; its surfaces are {listed}");
     Err(BuildError::mesh(path, key, message))
 }
 
@@ -279,7 +279,7 @@ pub(super) fn without_tray(
         } => {
             let height_mm = rounded_up(height_mm);
             let remark = format!(
-                "this body reaches {reach_mm:.1} mm below its dishes, as an insert does that is one with its tray or stem; it \
+                "this body reaches {reach_mm:.1} mm below its dishes, like an insert in one piece with its tray or stem; it \
                  is cut at the ledge at y = {height_mm:.2} mm, which leaves {below_dishes_mm:.2} mm of polyethylene below the \
                  dishes; write clip_below_mm = {height_mm:.2} in [insert] if that is right, or the right height"
             );
@@ -293,7 +293,7 @@ pub(super) fn without_tray(
         } => {
             let heights = heights_to_write(plate_mm, &ledges_mm);
             let message = format!(
-                "this body reaches {reach_mm:.1} mm below its dishes, as an insert does that is one with its tray or stem, \
+                "this body reaches {reach_mm:.1} mm below its dishes, like an insert in one piece with its tray or stem, \
                  and its shape does not show for certain where the polyethylene ends; write [insert] {heights}"
             );
             let keys = &["clip_below_mm", "file"];

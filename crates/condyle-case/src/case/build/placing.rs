@@ -134,7 +134,7 @@ pub(super) fn parsed_shell(
 /// Adds a warning for each repair of a file, and for each suspicious property.
 pub(super) fn warn(file: &DataFile, shell: &CheckedMesh, warnings: &mut Vec<BuildWarning>) {
     if let Some(piece) = stray_piece(&shell.mesh) {
-        let remark = format!("{}; delete it unless it is part of it", piece.text);
+        let remark = format!("{}; delete it unless it belongs to the body", piece.text);
         warnings.push(BuildWarning::mesh(file, remark).with(Finding::StrayPiece));
     }
     let mut remarks = Vec::new();
@@ -150,7 +150,7 @@ pub(super) fn warn(file: &DataFile, shell: &CheckedMesh, warnings: &mut Vec<Buil
     let counted = [
         (
             shell.made_consistent,
-            "triangles were turned to face as their neighbours do",
+            "triangles were reversed to match their neighbours",
         ),
         (
             shell.wrinkles,
@@ -167,7 +167,7 @@ pub(super) fn warn(file: &DataFile, shell: &CheckedMesh, warnings: &mut Vec<Buil
         let listed = |defect: &Defect| defect.listed_with_repair(3);
         let defects: Vec<String> = shell.defects.iter().map(listed).collect();
         remarks.push(format!(
-            "defects that contact does not feel: {}",
+            "defects that do not affect the contact: {}",
             defects.join("; ")
         ));
     }

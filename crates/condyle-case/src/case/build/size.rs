@@ -22,7 +22,7 @@ pub(super) fn check_triangles(
 ) -> Result<(), BuildError> {
     check_points(file, &mesh.vertices, unit).map_err(|error| match stray_piece(mesh) {
         Some(piece) if POSSIBLE_MM.contains(&piece.body_mm) => {
-            let message = format!("{}, too far for a knee; delete it", piece.text);
+            let message = format!("{}, too far to be part of a knee; delete it", piece.text);
             BuildError::mesh(file, &["file"], message)
         }
         _ => error,

@@ -220,7 +220,7 @@ fn one_reversed_triangle_is_corrected_with_a_warning() {
     let folder = with_stl("a.stl", &odd);
     let built = built(MESH_INSERT, folder.path()).unwrap();
     let warning = built.warnings[0].to_string();
-    assert!(warning.ends_with("1 triangles were turned to face as their neighbours do"));
+    assert!(warning.ends_with("1 triangles were reversed to match their neighbours"));
 }
 
 #[test]
@@ -398,7 +398,7 @@ fn a_piece_far_from_the_body_is_warned_of_and_one_too_far_refused() {
     assert!(
         warning.ends_with(
             "a.stl: a piece of 12 triangles at (0, 1, 100) mm lies 80 mm from the body; \
-             delete it unless it is part of it"
+             delete it unless it belongs to the body"
         ),
         "{warning}"
     );
@@ -406,7 +406,7 @@ fn a_piece_far_from_the_body_is_warned_of_and_one_too_far_refused() {
     let said = refusal(MESH_INSERT, far.path());
     assert!(
         said.ends_with(
-            "(0, 1, 100000) mm lies 99980 mm from the body, too far for a knee; delete it"
+            "(0, 1, 100000) mm lies 99980 mm from the body, too far to be part of a knee; delete it"
         ),
         "{said}"
     );
@@ -499,7 +499,7 @@ fn defects_without_effect_on_contact_are_one_warning() {
     };
     let warning = warning.to_string();
     assert!(
-        warning.starts_with("a.stl: defects that contact does not feel: ")
+        warning.starts_with("a.stl: defects that do not affect the contact: ")
             && warning.contains(" pairs of triangles that cross (left) at (")
             && warning.contains(" more"),
         "{warning}"

@@ -79,7 +79,7 @@ fn numbers_are_finite() {
     assert_eq!(value("-1e-3"), Ok(Some(-1e-3)));
     for text in ["", "ten", "inf", "nan", "[1]", "1 2", ".5"] {
         let error = Assignment::number("march.updates", text).expect_err(text);
-        let expected = format!("`{text}` is no value for `march.updates`; write a number");
+        let expected = format!("`{text}` is not a valid value of `march.updates`; write a number");
         assert!(error.to_string().starts_with(&expected), "{error}");
     }
 }
@@ -125,7 +125,7 @@ const WEAR: &str = "[wear]\nlaw = \"archard\"\nwear_factor_mm3_per_nm = 2.64e-7 
 #[test]
 fn a_choice_that_is_set_leaves_out_keys_of_other_choices_and_warns() {
     let case = changed(WEAR, &["wear.law=kang"]).unwrap();
-    let expected = "wear.wear_factor_mm3_per_nm = 2.64e-7: left out, since it does not go with wear.law = \"kang\", \
+    let expected = "wear.wear_factor_mm3_per_nm = 2.64e-7: ignored, since it does not apply to wear.law = \"kang\", \
                     which is set";
     assert_eq!(warnings(&case), [expected]);
     let soft = "[contact.foundation]\nlaw = \"softening\"\n[insert]\nedge_mm = 3.0\n";

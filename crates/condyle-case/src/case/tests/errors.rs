@@ -502,7 +502,7 @@ fn waveform_with_a_gap_a_nan_or_a_step_is_refused_at_its_point() {
     assert_shows(
         &wave("knots_deg = [[0.0, 1.0], [100.0, 2.0]]"),
         &[
-            "steps at the seam: 1 at 0 % but 2 at 100 %",
+            "jumps at the end of the cycle: 1 at 0 % but 2 at 100 %",
             "help: or, for a measured cycle, set `rem",
         ],
     );
@@ -574,7 +574,7 @@ fn prescribed_ap_with_an_ap_load_contradicts() {
     assert_shows(
         &refusal(text),
         &[
-            "[machine.ap_force] is given, but the ap freedom is prescribed: the two contradict",
+            "[machine.ap_force] is given, but the ap freedom is prescribed; these contradict each other",
             " 3 | [machine.ap_force]",
             "   :          ^^^^^^^^",
             "help: remove [machine.ap_force], or make the freedom `drive = \"loaded\"`",

@@ -177,7 +177,11 @@ fn csv_with_a_gap_or_a_step_is_refused_at_its_row() {
     let shown = refused(&drifting, "");
     assert_shows(
         &shown,
-        &["steps at the seam", "12 | 100,2", "`remove_drift = true`"],
+        &[
+            "jumps at the end of the cycle",
+            "12 | 100,2",
+            "`remove_drift = true`",
+        ],
     );
     assert!(with_csv(&drifting, "remove_drift = true\n").is_ok());
 }

@@ -165,7 +165,7 @@ fn a_drafted_case_builds_without_warnings_of_axes_from_any_unit_and_orientation(
             let built = case.build(1).unwrap();
             let of_lie = |warning: &BuildWarning| {
                 let signs = [
-                    " likely lies ",
+                    " is probably oriented ",
                     "; check length_unit",
                     " knee; write side =",
                 ];

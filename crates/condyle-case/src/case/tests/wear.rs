@@ -181,7 +181,7 @@ fn a_constant_that_is_unknown_or_out_of_range_is_refused() {
     let missing = archard().constant("from_n_per_mm").unwrap_err();
     assert_eq!(
         missing.to_string(),
-        "the wear law \"archard\" has no `from_n_per_mm`; take a case with a law that has"
+        "the wear law \"archard\" has no `from_n_per_mm`; use a case whose law has it"
     );
     let beyond = archard().with_constant("wear_factor_mm3_per_nm", 0.5);
     let beyond: ConstantError = beyond.unwrap_err();

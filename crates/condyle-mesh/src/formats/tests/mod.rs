@@ -63,8 +63,7 @@ fn a_missing_file_and_an_unknown_extension_are_errors() {
         "nowhere/femur.stl: there is no such file; check the path"
     );
     let reported = message(read_surface(&Disk, "femur.step"));
-    let expected =
-        "femur.step: the ending \"step\" is not a known format; use one of .stl, .obj, .ply, .vtp";
+    let expected = "femur.step: the extension \"step\" is not a known format; use one of .stl, .obj, .ply, .vtp";
     assert_eq!(reported, expected);
 }
 

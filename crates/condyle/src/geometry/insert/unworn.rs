@@ -21,7 +21,7 @@ use crate::{
 #[derive(Clone, Debug, PartialEq, Error)]
 pub enum InsertError {
     /// No element or no articulating face.
-    #[error("the insert has no {what}; name or give some")]
+    #[error("the insert has no {what}; define at least one")]
     Empty { what: &'static str },
     /// More nodes than the mesh can number.
     #[error(transparent)]
