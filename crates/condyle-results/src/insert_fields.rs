@@ -43,7 +43,7 @@ pub struct NodeField {
 }
 
 described! {
-    /// The fields with a value a node, in the order of the file.
+    /// The fields with one value per node, in the order of the file.
     NODE_FIELDS: NodeField;
     /// Wear depth along the normal.
     wear_depth_mm = |source| source.at_surface(&source.march.fields().wear_depth_mm);

@@ -159,13 +159,13 @@ impl LawWear {
     }
 }
 
-/// Cycles after which laboratories take penetration to grow by wear alone.
+/// Number of cycles after which laboratories attribute all further penetration to wear.
 const MILLION: f64 = 1e6;
 
 /// Creep of a finished run; units are in the names.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct CreepSummary {
-    /// Volume by which the surface has sunk without loss of mass, mm3.
+    /// Volume of the recession of the surface without loss of mass, mm3.
     pub volume_mm3: f64,
     /// Deepest creep, mm.
     pub max_depth_mm: f64,

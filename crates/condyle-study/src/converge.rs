@@ -37,7 +37,7 @@ pub struct ConvergeOptions {
     pub out: PathBuf,
     /// Runs at the same time; results do not depend on it.
     pub threads: usize,
-    /// Resume the study that is in the folder.
+    /// Whether to resume the study in the folder.
     pub resume: bool,
     /// Cache of the one-time work on a mesh; results do not depend on it.
     pub cache: Cache,
@@ -210,7 +210,7 @@ fn plan(case_path: &Path, over: &str) -> Result<(Plan, Vec<f64>), StudyError> {
     Ok((Plan::of(study)?, values))
 }
 
-/// Returns the last word of the key and the value, such as `updates-10`.
+/// Returns the folder name of a run: the last word of the key and the value, such as `updates-10`.
 fn folder_name(key: &str, value: f64) -> String {
     format!("{}-{value}", last_word(key))
 }

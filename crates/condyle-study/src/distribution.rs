@@ -6,12 +6,12 @@ use condyle_case::{
 };
 use statrs::distribution::{ContinuousCDF, Normal};
 
-/// The place of an input in a test.
+/// How a test sets an input.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Place {
     /// The value of the case.
     OfCase,
-    /// The quantile of this share of its distribution.
+    /// The quantile of its distribution at this probability.
     Share(f64),
     /// The value at this fraction of the range, from its low end.
     Along(f64),

@@ -66,7 +66,7 @@ pub struct Rate {
     pub name: String,
     /// Slope of the line.
     pub mg_per_million_cycles: f64,
-    /// The line at the start of the test, mg; none for a mean of rates.
+    /// Value of the line at the start of the test, mg; none for a mean of rates.
     pub intercept_mg: Option<f64>,
     /// The interval, where there are enough points.
     pub interval_mg_per_million_cycles: Option<Interval>,
@@ -228,7 +228,7 @@ fn counted(weighings: &[Weighing]) -> impl Iterator<Item = &Weighing> {
 }
 
 impl Rate {
-    /// Slope of the line through points (cycles, mg).
+    /// Creates the rate as the slope of the least-squares line through points (cycles, mg).
     fn of_line(name: &str, points: &[(f64, f64)], confidence: f64) -> Option<Self> {
         let line = Line::through(&in_millions(points))?;
         Some(Self {
@@ -241,7 +241,7 @@ impl Rate {
     }
 }
 
-/// Losses of all specimens at all weighings that count, as (cycles, mg).
+/// Returns the losses of all specimens at the weighings used for the lines, as (cycles, mg).
 fn all_losses(weighings: &[Weighing]) -> Vec<(f64, f64)> {
     let each = |weighing: &Weighing| {
         let cycles = weighing.cycles;
@@ -340,7 +340,7 @@ pub(crate) fn mean(values: &[f64]) -> f64 {
     values.iter().sum::<f64>() / values.len() as f64
 }
 
-/// Half the width of a two-sided interval, in standard errors.
+/// Returns half the width of a two-sided Student interval, in standard errors.
 pub(crate) fn student(confidence: f64, freedom: usize) -> Option<f64> {
     let distribution = StudentsT::new(0.0, 1.0, freedom as f64).ok()?;
     Some(distribution.inverse_cdf(f64::midpoint(1.0, confidence)))

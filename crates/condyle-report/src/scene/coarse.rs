@@ -18,11 +18,11 @@ enum Cell {
     Border(u32),
 }
 
-/// Returns a body with at most `max` triangles, or more if its border and sharp edges need them; the body itself if it
-/// has no more.
+/// Returns a body of at most `max` triangles, or of more if border and sharp edges need them; a clone if the body has no
+/// more than `max`.
 ///
-/// The border stays as it is, and so do sharp edges. The other vertices of every cube of a grid become the one that is
-/// nearest to their mean: all vertices stay on the surface, and a triangle of edge `h` deviates from a surface of radius
+/// Border and sharp edges are unchanged. In each cube of a grid, the other vertices are replaced by the one nearest to
+/// their mean, so that all vertices stay on the surface, and a triangle of edge `h` deviates from a surface of radius
 /// `R` by up to `h^2 / (8 R)`.
 pub(super) fn coarser(body: &TriangleMesh, max: usize) -> TriangleMesh {
     if body.triangles.len() <= max {

@@ -9,9 +9,9 @@ use crate::{
     statistics::{central_interval, mean},
 };
 
-/// Bootstrap samples of the bases.
+/// Number of bootstrap samples of the base points.
 const RESAMPLES: u64 = 500;
-/// Seed of these samples: intervals are the same whenever they are computed.
+/// Seed of these samples, which makes the intervals reproducible.
 const SEED: u64 = 20_080_101;
 
 /// The parts of the variance of an output that an input explains.

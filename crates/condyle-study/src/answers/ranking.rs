@@ -119,7 +119,7 @@ fn ranked(all: &[Outcomes]) -> Vec<RankedDesign> {
     ranked.collect()
 }
 
-/// Returns the number of disturbances under which one value is smaller than the other, ties counted half.
+/// Returns the number of disturbances for which one value is smaller than the other; a tie counts as half.
 fn wins(one: &[f64], other: &[f64]) -> f64 {
     let win = |(one, other): (&f64, &f64)| match one.total_cmp(other) {
         std::cmp::Ordering::Less => 1.0,

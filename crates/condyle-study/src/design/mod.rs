@@ -107,7 +107,7 @@ impl Permutation {
 pub(crate) struct Copula(DMatrix<f64>);
 
 impl Copula {
-    /// Creates the copula; none if the matrix of correlations is not positive definite.
+    /// Creates the copula, or returns `None` if the matrix of correlations is not positive definite.
     pub fn new(inputs: usize, correlations: &[Correlation]) -> Option<Self> {
         let mut matrix = DMatrix::identity(inputs, inputs);
         for correlation in correlations {

@@ -97,9 +97,9 @@ pub trait ContactModel {
     /// Begins the cycle of another activity.
     fn begin_cycle(&mut self) {}
 
-    /// Begins an increment of the cycle, whose motions are near those of the same increment a cycle before.
+    /// Begins an increment, whose motions are near those of the same increment of the previous cycle.
     ///
-    /// A hint that makes a model faster and changes none of its results.
+    /// The call is a hint: it may make the model faster and does not change its results.
     fn begin_increment(&mut self, _increment: usize) {}
 
     /// Returns the response to a relative motion.
@@ -111,11 +111,11 @@ pub trait ContactModel {
     /// Returns the derivatives of the wrench at the last response. They are expensive, and not every response needs them.
     fn tangent(&self) -> Tangent;
 
-    /// Updates the trial history for a step that ends at a motion, that of the last response or very near it; further
-    /// responses are with that history.
+    /// Updates the trial history for a step that ends at `motion`, which is that of the last response or very near it.
+    /// Later responses use the updated history.
     ///
     /// # Errors
-    /// The insert cannot bear the load.
+    /// If the insert cannot carry the load.
     fn settle(&mut self, _motion: &RelativeMotion) -> Result<Settled, NotBorne> {
         Ok(Settled::Yes)
     }
@@ -123,15 +123,14 @@ pub trait ContactModel {
     /// Discards the trial history: no further step continues from this one.
     fn reject(&mut self) {}
 
-    /// Returns the distance of the surface at rest from its place at the same increment a cycle before, mm, times the
-    /// factor by which its tolerance is tighter than the tolerance of a motion. A cycle repeats itself once this is
-    /// small.
+    /// Returns the change of the surface at rest from the same increment of the previous cycle, mm, scaled by the ratio
+    /// of the tolerance of a motion to the tolerance of this change. A cycle repeats itself once this is small.
     fn moved_in_a_cycle_mm(&self) -> f64 {
         0.0
     }
 
-    /// Accepts a step that ends at a motion: a model with a history commits it. The motion is that of the last response, or
-    /// so near that the model may extrapolate to first order.
+    /// Accepts a step that ends at `motion` and commits the trial history, if the model has one. `motion` is that of the
+    /// last response, or near enough for extrapolation to first order.
     fn accept(&mut self, _motion: &RelativeMotion) {}
 
     /// Returns the nodes in contact and the highest pressure at a motion: that of the last response, or so near that loads
@@ -177,7 +176,7 @@ pub struct StateField {
     pub values: Vec<f64>,
 }
 
-/// Data of any type that a contact keeps for the next one of the same law.
+/// Data of any type that a contact model passes to the next contact model of the same law.
 #[derive(Debug, Default)]
 pub struct ContactCache(Option<Box<dyn Any + Send + Sync>>);
 
