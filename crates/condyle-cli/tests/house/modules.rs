@@ -204,7 +204,6 @@ const MAY_USE: &[(&str, &[&str])] = &[
             "condyle_report::number",
             "condyle_report::results",
             // The table of joints that the columns of kinematics.csv are made by.
-            "condyle::machine::joint",
             "condyle::machine::knee",
             "condyle::machine::mechanism",
         ],
