@@ -178,7 +178,6 @@ const MAY_USE: &[(&str, &[&str])] = &[
         &["condyle_results", "condyle_mesh"],
     ),
     ("condyle_report::number", &["condyle::parameter"]),
-    ("condyle_report::file", &["condyle_report::error"]),
     (
         "condyle_report::results",
         &[
@@ -216,12 +215,15 @@ const MAY_USE: &[(&str, &[&str])] = &[
             "condyle_report::results",
         ],
     ),
-    ("condyle_report::template", &["condyle_report::number"]),
     ("condyle_report::plots", &["condyle_report::figure"]),
     ("condyle_report::png", &["condyle_report::figure"]),
     (
         "condyle_report::sheets",
-        &["condyle_report::figure", "condyle_report::template"],
+        &[
+            "condyle_report::error",
+            "condyle_report::figure",
+            "condyle_report::number",
+        ],
     ),
     (
         "condyle_report::runs",
@@ -230,13 +232,11 @@ const MAY_USE: &[(&str, &[&str])] = &[
             "condyle_report::charts",
             "condyle_report::error",
             "condyle_report::figure",
-            "condyle_report::file",
             "condyle_report::maps",
             "condyle_report::number",
             "condyle_report::page",
             "condyle_report::results",
             "condyle_report::sheets",
-            "condyle_report::template",
         ],
     ),
     (
@@ -244,7 +244,6 @@ const MAY_USE: &[(&str, &[&str])] = &[
         &[
             "condyle_report::error",
             "condyle_report::figure",
-            "condyle_report::file",
             "condyle_report::number",
             "condyle_report::sheets",
         ],
@@ -255,9 +254,10 @@ const MAY_USE: &[(&str, &[&str])] = &[
             "condyle_results::side",
             "condyle_report::error",
             "condyle_report::figure",
-            "condyle_report::file",
             "condyle_report::results",
             "condyle_fem",
+            "condyle_report::sheets",
+            "condyle_mesh",
         ],
     ),
     (
@@ -270,6 +270,7 @@ const MAY_USE: &[(&str, &[&str])] = &[
             "condyle_results",
             "condyle_mesh",
             "condyle_fem",
+            "condyle_report::number",
         ],
     ),
     (
@@ -282,9 +283,9 @@ const MAY_USE: &[(&str, &[&str])] = &[
             "condyle_report::number",
             "condyle_report::results",
             "condyle_report::scene",
-            "condyle_report::template",
             // The table of units.
             "condyle::parameter",
+            "condyle_report::sheets",
         ],
     ),
     (
@@ -305,7 +306,7 @@ const MAY_USE: &[(&str, &[&str])] = &[
             "condyle_report::figure",
             "condyle_report::maps",
             "condyle_report::results",
-            "condyle_report::file",
+            "condyle_report::sheets",
         ],
     ),
     (
