@@ -195,10 +195,6 @@ mod tests {
         let axes = Axes {
             words: ["left", "right", "superior"],
         };
-        assert!(
-            axes.rotation(Side::Right)
-                .unwrap_err()
-                .contains("same line")
-        );
+        assert!(axes.rotation(Side::Right).unwrap_err().contains("parallel"));
     }
 }

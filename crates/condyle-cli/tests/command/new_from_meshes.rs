@@ -80,7 +80,10 @@ fn an_insert_upside_down_is_refused_with_the_line_to_write() {
         axes = [\"left\", \"anterior\", \"inferior\"]\n";
     bench.write("case.toml", case);
     let said = bench.say(&["check", "case.toml"]);
-    said.assert_refused(3, &["lies upside down", "write axes = [\"", "case.toml:5"]);
+    said.assert_refused(
+        3,
+        &["oriented upside down", "write axes = [\"", "case.toml:5"],
+    );
     bench.write("case.toml", &case.replace("cm", "in"));
     let said = bench.say(&["check", "case.toml"]);
     said.assert_refused(2, &["write length_unit = \"cm\"", "case.toml:4"]);

@@ -458,7 +458,8 @@ mod tests {
     fn summary(mass: f64, depth: f64, ap: f64) -> Summary {
         let text = format!(
             r#"{{"mass_loss_mg": {mass}, "max_depth_mm": {depth}, "ap_range_mm": {ap}, "ie_range_deg": 5,
-                "error": {{"mass_loss_mg": {{"total": 0.5}}, "max_depth_mm": {{"total": 0.01}}}}}}"#
+                "error": {{"mass_loss_mg": {{"total": 0.5}}, "mass_loss_percent": {{"total": 0.6}},
+                    "max_depth_mm": {{"total": 0.01}}, "max_depth_percent": {{"total": 2.5}}}}}}"#
         );
         serde_json::from_str(&text).expect("is JSON")
     }

@@ -271,7 +271,10 @@ fn hexahedra_give_the_named_surface_or_the_one_above() {
     assert_eq!(found.surface_nodes(), given.surface_nodes());
     assert_eq!(found.thickness_mm(), [10.0; 4]);
     let shown = refusal(&named("SIDE"), folder.path());
-    assert!(shown.contains("no surface \"SIDE\"; it has TOP"), "{shown}");
+    assert!(
+        shown.contains("no surface \"SIDE\"; its surfaces are TOP"),
+        "{shown}"
+    );
     let left = built(&text("side = \"left\""), folder.path())
         .unwrap()
         .test

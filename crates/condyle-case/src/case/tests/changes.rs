@@ -131,7 +131,7 @@ fn a_choice_that_is_set_leaves_out_keys_of_other_choices_and_warns() {
     let soft = "[contact.foundation]\nlaw = \"softening\"\n[insert]\nedge_mm = 3.0\n";
     let case = changed(soft, &["contact.model=deformable"]).unwrap();
     assert!(case.contact.deformable().is_some());
-    assert!(warnings(&case)[0].starts_with("[contact.foundation]: left out"));
+    assert!(warnings(&case)[0].starts_with("[contact.foundation]: ignored"));
 }
 
 #[test]

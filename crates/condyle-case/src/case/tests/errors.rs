@@ -469,7 +469,7 @@ fn axes_that_mirror_or_miss_a_direction_are_refused() {
     );
     assert_shows(
         &axes("[\"left\", \"right\", \"superior\"]"),
-        &["lie along the same line"],
+        &["two of the axes are parallel"],
     );
     assert_shows(
         &axes("[\"ventral\", \"superior\", \"left\"]"),

@@ -187,7 +187,7 @@ fn a_constant_that_is_unknown_or_out_of_range_is_refused() {
     let beyond: ConstantError = beyond.unwrap_err();
     assert_eq!(
         beyond.to_string(),
-        "`wear_factor_mm3_per_nm` cannot be 5e-1: it can be 0 to 0.001"
+        "`wear_factor_mm3_per_nm` is 5e-1; it must be 0 to 0.001"
     );
     let changed = archard().with_constant("wear_factor_mm3_per_nm", 1e-6);
     let changed = changed.unwrap();
