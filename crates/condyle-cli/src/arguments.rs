@@ -160,8 +160,6 @@ pub struct Plot {
     #[arg(short, long, value_name = "DIR")]
     pub out: Option<PathBuf>,
     /// Pixels of a PNG per point of the picture.
-    // Read only to write PNG.
-    #[cfg_attr(not(feature = "png"), allow(dead_code))]
     #[arg(long, value_name = "N", default_value_t = 2, value_parser = clap::value_parser!(u8).range(1..=8))]
     pub dots: u8,
     /// Only these formats [default: SVG, and PNG if built with the feature `png`].
