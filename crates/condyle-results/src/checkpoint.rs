@@ -24,7 +24,7 @@ pub struct Checkpoint {
 pub enum CheckpointError {
     /// Not a checkpoint, or one of another version.
     #[error(
-        "it was not written by this version of condyle; run the case again into another folder"
+        "it was not written by this version of condyle; run the case again with another folder"
     )]
     Foreign,
     /// Its bytes are damaged.
