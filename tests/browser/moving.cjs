@@ -90,7 +90,7 @@ async function highest(page, summary) {
   await move(page, "After update", 10);
   await choose(page, "Colours show", "wear_depth_mm");
   await changes(page, "picking the highest", () => page.getByRole("button", { name: "Pick the highest" }).click());
-  const told = await page.locator(".picked").innerText();
+  const status = await page.locator(".picked").innerText();
   const depth_mm = Number(/Wear depth\s+([\d.]+) mm/.exec(told)[1]);
   assert(Math.abs(depth_mm - summary.max_depth_mm) < 1e-4, `${depth_mm} mm picked, ${summary.max_depth_mm} in summary.json`);
 }
@@ -136,7 +136,7 @@ async function picks(page) {
   await page.getByRole("button", { name: "From above" }).click();
   await drawn(page);
   await page.mouse.click(x + width / 2, y + height * 0.3);
-  const told = await page.locator(".picked").innerText();
+  const status = await page.locator(".picked").innerText();
   assert.match(told, /At x .* mm:[\s\S]*Wear depth\s+[\d.]+ mm/, told);
   assert.match(await page.locator(".worn").innerText(), /at the picked point/);
 }
@@ -145,8 +145,8 @@ async function gait(page) {
   await choose(page, "Femur", "0.3");
   await page.getByRole("button", { name: "Oblique" }).click();
   await changes(page, "the slider through the cycle", () => move(page, "Through the gait cycle", 26));
-  const told = await page.locator(".told").innerText();
-  assert.match(told, /% of the last cycle: \d+ N and \d+ N on the surface/, told);
+  const status = await page.locator(".status").innerText();
+  assert.match(status, /% of the last cycle: \d+ N and \d+ N on the surface/, status);
   await keep(page, "gait");
 }
 

@@ -18,7 +18,7 @@ const OF_A_CLOCK = new Set(["wall_s"]);
 function ran(module) {
   const files = { "case.toml": new Uint8Array(fs.readFileSync(caseFile)) };
   const began = performance.now();
-  const answer = call(module, { words: ["run", "case.toml", "out"], files, wanted: "out" }, () => {});
+  const answer = call(module, { words: ["run", "case.toml", "out"], files, output: "out" }, () => {});
   assert.strictEqual(answer.failure, null);
   return { files: answer.files, took_s: (performance.now() - began) / 1000 };
 }
