@@ -76,7 +76,7 @@ async function sameAsInNode(page) {
     const files = { "case.toml": new TextEncoder().encode(text) };
     const answer = await new Promise((done) => {
       worker.onmessage = ({ data }) => data.answer && done(data.answer);
-      worker.postMessage({ module, order: { words: ["run", "case.toml", "out"], files, wanted: "out" } });
+      worker.postMessage({ module, order: { words: ["run", "case.toml", "out"], files, output: "out" } });
     });
     worker.terminate();
     const hash = new Uint8Array(await crypto.subtle.digest("SHA-256", answer.files["out/scene"]));
