@@ -90,8 +90,8 @@ async function highest(page, summary) {
   await move(page, "After update", 10);
   await choose(page, "Colours show", "wear_depth_mm");
   await changes(page, "picking the highest", () => page.getByRole("button", { name: "Pick the highest" }).click());
-  const status = await page.locator(".picked").innerText();
-  const depth_mm = Number(/Wear depth\s+([\d.]+) mm/.exec(told)[1]);
+  const picked = await page.locator(".picked").innerText();
+  const depth_mm = Number(/Wear depth\s+([\d.]+) mm/.exec(picked)[1]);
   assert(Math.abs(depth_mm - summary.max_depth_mm) < 1e-4, `${depth_mm} mm picked, ${summary.max_depth_mm} in summary.json`);
 }
 
@@ -136,8 +136,8 @@ async function picks(page) {
   await page.getByRole("button", { name: "From above" }).click();
   await drawn(page);
   await page.mouse.click(x + width / 2, y + height * 0.3);
-  const status = await page.locator(".picked").innerText();
-  assert.match(told, /At x .* mm:[\s\S]*Wear depth\s+[\d.]+ mm/, told);
+  const picked = await page.locator(".picked").innerText();
+  assert.match(picked, /At x .* mm:[\s\S]*Wear depth\s+[\d.]+ mm/, picked);
   assert.match(await page.locator(".worn").innerText(), /at the picked point/);
 }
 
