@@ -37,7 +37,7 @@ pub struct ConvergeOptions {
     pub out: PathBuf,
     /// Runs at the same time; results do not depend on it.
     pub threads: usize,
-    /// Whether to resume the study in the folder.
+    /// Resumes the study in the folder instead of starting it.
     pub resume: bool,
     /// Cache of the one-time work on a mesh; results do not depend on it.
     pub cache: Cache,

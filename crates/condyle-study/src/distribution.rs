@@ -6,7 +6,7 @@ use condyle_case::{
 };
 use statrs::distribution::{ContinuousCDF, Normal};
 
-/// How a test sets an input.
+/// The rule by which a test sets an input.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Place {
     /// The value of the case.

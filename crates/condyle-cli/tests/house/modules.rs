@@ -252,11 +252,9 @@ const MAY_USE: &[(&str, &[&str])] = &[
         "condyle_report::bodies",
         &[
             "condyle_results::side",
-            "condyle_report::error",
             "condyle_report::figure",
             "condyle_report::results",
             "condyle_fem",
-            "condyle_report::sheets",
             "condyle_mesh",
         ],
     ),

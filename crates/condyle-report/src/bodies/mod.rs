@@ -4,16 +4,13 @@
 //! make a file no larger than six hundred; names, axes and scale are drawn over the images as vectors.
 
 use std::io::Write as _;
-use std::path::{Path, PathBuf};
 
 use base64::{Engine as _, engine::general_purpose::STANDARD};
 use condyle_mesh::{TriangleMesh, Vec3};
 use condyle_results::Side;
 use flate2::{Compression, Crc, write::ZlibEncoder};
 
-use crate::error::ReportError;
 use crate::figure::{escape, finite_range, scale_bar, svg_file};
-use crate::sheets::write_text;
 
 /// The axes of the machine in the insert frame, mm.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -86,14 +83,6 @@ pub fn bodies_svg(picture: &BodiesPicture<'_>) -> String {
     body += &scale_bar((x - BETWEEN, height - 16.0), scale);
     let desc = "Femur and insert from the front, from the right and from above.";
     svg_file(picture.title, desc, (x, height), &body)
-}
-
-/// Writes the picture as an SVG file and returns its path.
-///
-/// # Errors
-/// The file cannot be written.
-pub fn write_bodies(path: &Path, picture: &BodiesPicture<'_>) -> Result<PathBuf, ReportError> {
-    write_text(path.to_path_buf(), &bodies_svg(picture))
 }
 
 impl MachineAxes {
