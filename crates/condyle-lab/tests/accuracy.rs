@@ -221,7 +221,7 @@ fn verify_the_estimated_errors_of_the_default_case() {
         |parts| parts.slip_tolerance,
         2.0,
         |case| {
-            case.contact.slip_tolerance_mm_per_s /= 2.0;
+            case.contact.settings.slip_tolerance_mm_per_s /= 2.0;
         },
     );
     stated.assert_near(

@@ -128,8 +128,29 @@ impl Activity {
         let keys = ActivityKeys::read(section, log);
         let name = keys.as_ref().map_or("", |keys| keys.name.as_str());
         let waveforms = freedoms.and_then(|freedoms| {
-            check_inputs(section, name, freedoms, log)?;
-            Waveforms::read(section, freedoms, log)
+            // Activities do not inherit waveforms from each other.
+            let missing = freedoms.channels().map(|channel| channel.name);
+            let mut missing = missing
+                .filter(|table| section.value(table).is_none())
+                .peekable();
+            if missing.peek().is_none() {
+                return Waveforms::read(section, freedoms, log);
+            }
+            for table in missing {
+                let (what, none) = if table == knee::AXIAL_FORCE.name {
+                    ("load", "")
+                } else {
+                    (table, ", or its `waveform = \"none\"`")
+                };
+                let fault = Fault::new(
+                    format!("the activity \"{name}\" has no {what}"),
+                    format!(
+                        "write its [activity.{table}]{none}: nothing is taken from another activity"
+                    ),
+                );
+                log.problem(section.span(), fault);
+            }
+            None
         });
         let (keys, waveforms) = (keys?, waveforms?);
         let presses = |waveform: &Waveform| waveform.knots().iter().any(|knot| knot.value > 0.0);
@@ -143,34 +164,6 @@ impl Activity {
         }
         Some(Self { keys, waveforms })
     }
-}
-
-/// Reports every waveform that an activity lacks: activities do not inherit waveforms from each other.
-fn check_inputs(
-    section: &Section<'_>,
-    name: &str,
-    freedoms: &Freedoms,
-    log: &mut Log<'_>,
-) -> Option<()> {
-    let mut complete = Some(());
-    for channel in freedoms.channels() {
-        let table = channel.name;
-        if section.value(table).is_some() {
-            continue;
-        }
-        let (what, none) = if *channel == knee::AXIAL_FORCE {
-            ("load", "")
-        } else {
-            (table, ", or its `waveform = \"none\"`")
-        };
-        let fault = Fault::new(
-            format!("the activity \"{name}\" has no {what}"),
-            format!("write its [activity.{table}]{none}: nothing is taken from another activity"),
-        );
-        log.problem(section.span(), fault);
-        complete = None;
-    }
-    complete
 }
 
 /// Reports names that are not valid in a path, and names that two activities share.

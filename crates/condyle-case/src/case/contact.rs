@@ -20,14 +20,8 @@ words! {
 settings! {
     /// Model of contact and friction.
     Contact {
-        /// Coulomb coefficient of friction.
-        friction: f64 = 0.07, in within(0.0, 2.0);
-        /// Sliding speed at which friction is nearly full: smaller is truer and slower.
-        slip_tolerance_mm_per_s: f64 = 0.3, in within(1e-6, 1000.0);
-        /// Search for the nodes that may touch; the results are the same, brute force is the slow reference.
-        search: Search = Search::Coherent;
-        /// Motion up to which a sample of the femur is extrapolated rather than computed again, which changes the force by less than a hundred-thousandth; 0 computes every sample.
-        sample_reuse_mm: f64 = ContactSettings::SAMPLE_REUSE_MM, in within(0.0, 0.02);
+        /// Friction, and the search for nodes in contact.
+        [flat] settings: ContactSettings;
         /// The model of the insert.
         [flat] model: ContactModelChoice;
     }
@@ -72,6 +66,19 @@ settings! {
         backside_friction: f64 = 0.2, in within(0.0, 1000.0);
         /// Spacing of the points at which the motion of the backside is solved; it is interpolated between them.
         backside_spacing_mm: f64 = 5.0, in within(1.0, 50.0);
+    }
+}
+
+settings_of! {
+    ContactSettings {
+        /// Coulomb coefficient of friction.
+        friction: f64 = 0.07, in within(0.0, 2.0);
+        /// Sliding speed at which friction is nearly full: smaller is truer and slower.
+        slip_tolerance_mm_per_s: f64 = 0.3, in within(1e-6, 1000.0);
+        /// Search for the nodes that may touch; the results are the same, brute force is the slow reference.
+        search: Search = Search::Coherent;
+        /// Motion up to which a sample of the femur is extrapolated rather than computed again, which changes the force by less than a hundred-thousandth; 0 computes every sample.
+        sample_reuse_mm: f64 = ContactSettings::SAMPLE_REUSE_MM, in within(0.0, 0.02);
     }
 }
 

@@ -100,29 +100,23 @@ impl Case {
         out.into_text()
     }
 
-    /// Returns the [`json_schema`] of a case that may choose from the wear laws that come with condyle.
+    /// Returns a JSON schema, draft 2020-12, of a case file: every key with its unit, range, default and meaning.
+    ///
+    /// It accepts every file that [`CaseReader`](super::CaseReader) accepts. The reader checks more: files that must exist,
+    /// and values that must fit each other.
     pub fn json_schema() -> String {
-        json_schema(WEAR_LAWS)
+        let about = "A virtual wear test of a joint replacement: a case of condyle.";
+        let mut schema = table_schema(about, &Self::items_with(WEAR_LAWS));
+        schema["$schema"] = "https://json-schema.org/draft/2020-12/schema".into();
+        schema["title"] = "Case of condyle".into();
+        // Keys under their previous names are still read: editors must not mark them as errors.
+        for (old, new) in renamed() {
+            let key = old.trim_start_matches("contact.");
+            schema["properties"]["contact"]["properties"][key] =
+                json!({ "deprecated": true, "description": format!("Called `{new}`.") });
+        }
+        format!("{schema:#}\n")
     }
-}
-
-/// Returns a JSON schema, draft 2020-12, of a case file that may choose from `wear_laws`: every key with its unit, range,
-/// default and meaning.
-///
-/// It accepts every file that [`CaseReader`](super::CaseReader) accepts. The reader checks more: files that must exist, and
-/// values that must fit each other.
-pub fn json_schema(wear_laws: WearLaws) -> String {
-    let about = "A virtual wear test of a joint replacement: a case of condyle.";
-    let mut schema = table_schema(about, &Case::items_with(wear_laws));
-    schema["$schema"] = "https://json-schema.org/draft/2020-12/schema".into();
-    schema["title"] = "Case of condyle".into();
-    // Keys under their previous names are still read: editors must not mark them as errors.
-    for (old, new) in renamed() {
-        let key = old.trim_start_matches("contact.");
-        schema["properties"]["contact"]["properties"][key] =
-            json!({ "deprecated": true, "description": format!("Called `{new}`.") });
-    }
-    format!("{schema:#}\n")
 }
 
 /// Returns the page of the book on the case file: every key of a case that may choose from `wear_laws`, as Markdown.

@@ -16,16 +16,8 @@ settings! {
 
     /// A pair of condyles, each a piece of torus.
     GenericFemur {
-        /// Radius of the distal arc, seen from the side.
-        distal_radius_mm: f64 = GenericFemurShape::default().distal_radius_mm, in within(5.0, 200.0);
-        /// Radius of the posterior arc, seen from the side.
-        posterior_radius_mm: f64 = GenericFemurShape::default().posterior_radius_mm, in within(5.0, 200.0);
-        /// Start of the posterior arc, measured backwards from straight down.
-        transition_deg: f64 = GenericFemurShape::default().transition_deg, in within(0.0, 90.0);
-        /// Radius of each condyle, seen from the front.
-        coronal_radius_mm: f64 = GenericFemurShape::default().coronal_radius_mm, in within(2.0, 200.0);
-        /// Distance between the lowest lines of the condyles.
-        spacing_mm: f64 = GenericFemurShape::default().spacing_mm, in within(10.0, 100.0);
+        /// Its dimensions.
+        [flat] shape: GenericFemurShape;
         /// Start of the femoral frame in the insert frame, [x, z], before it settles; over the dish if not given.
         start_mm: Option<[f64; 2]> = None, in within(-100.0, 100.0);
     }
@@ -58,6 +50,21 @@ settings! {
         flexion_axis_mm: Option<[f64; 2]> = None, in within(-200.0, 200.0);
         /// Start of the femoral frame in the insert frame, [x, z], before it settles; at the origin if not given.
         start_mm: Option<[f64; 2]> = None, in within(-100.0, 100.0);
+    }
+}
+
+settings_of! {
+    GenericFemurShape {
+        /// Radius of the distal arc, seen from the side.
+        distal_radius_mm: f64 = Self::default().distal_radius_mm, in within(5.0, 200.0);
+        /// Radius of the posterior arc, seen from the side.
+        posterior_radius_mm: f64 = Self::default().posterior_radius_mm, in within(5.0, 200.0);
+        /// Start of the posterior arc, measured backwards from straight down.
+        transition_deg: f64 = Self::default().transition_deg, in within(0.0, 90.0);
+        /// Radius of each condyle, seen from the front.
+        coronal_radius_mm: f64 = Self::default().coronal_radius_mm, in within(2.0, 200.0);
+        /// Distance between the lowest lines of the condyles.
+        spacing_mm: f64 = Self::default().spacing_mm, in within(10.0, 100.0);
     }
 }
 

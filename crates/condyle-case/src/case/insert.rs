@@ -16,14 +16,8 @@ settings! {
 
     /// Two dishes with an eminence between.
     GenericInsert {
-        /// Radius of each dish, seen from the side.
-        sagittal_radius_mm: f64 = GenericInsertShape::default().sagittal_radius_mm, in within(5.0, 10000.0);
-        /// Radius of each dish, seen from the front.
-        coronal_radius_mm: f64 = GenericInsertShape::default().coronal_radius_mm, in within(2.0, 10000.0);
-        /// Distance between the lowest lines of the dishes.
-        spacing_mm: f64 = GenericInsertShape::default().spacing_mm, in within(10.0, 100.0);
-        /// Smallest thickness.
-        thickness_mm: f64 = GenericInsertShape::default().thickness_mm, in within(1.0, 50.0);
+        /// Its dimensions.
+        [flat] shape: GenericInsertShape;
         /// Edge of a hexahedron, seen from above.
         edge_mm: f64 = Meshing::default().edge_mm, in within(0.1, 10.0);
         /// Hexahedra through the thickness.
@@ -70,6 +64,19 @@ settings! {
         edge_mm: f64 = Meshing::default().edge_mm, in within(0.1, 10.0);
         /// Hexahedra through the thickness.
         layers: u64 = Meshing::default().layers as u64, in within(1.0, 40.0);
+    }
+}
+
+settings_of! {
+    GenericInsertShape {
+        /// Radius of each dish, seen from the side.
+        sagittal_radius_mm: f64 = Self::default().sagittal_radius_mm, in within(5.0, 10000.0);
+        /// Radius of each dish, seen from the front.
+        coronal_radius_mm: f64 = Self::default().coronal_radius_mm, in within(2.0, 10000.0);
+        /// Distance between the lowest lines of the dishes.
+        spacing_mm: f64 = Self::default().spacing_mm, in within(10.0, 100.0);
+        /// Smallest thickness.
+        thickness_mm: f64 = Self::default().thickness_mm, in within(1.0, 50.0);
     }
 }
 

@@ -33,10 +33,6 @@ impl Material {
 const MODERATE: Parameter = CrossLinked::MODERATE;
 const HIGH: Parameter = CrossLinked::HIGH;
 
-const fn limits_of(parameter: &Parameter) -> Limits {
-    within(parameter.least, parameter.most)
-}
-
 settings! {
     /// Moderately cross-linked polyethylene.
     ModeratelyCrossLinked {
@@ -88,9 +84,8 @@ const A: Parameter = LeePienkowski::STRAIN_AT_10000_MIN;
 const B: Parameter = LeePienkowski::STRAIN_PER_DECADE;
 const R: Parameter = LeePienkowski::RECOVERING;
 
-settings! {
-    /// The constants of creep by the logarithm of time.
-    LogarithmicCreep {
+settings_of! {
+    LeePienkowski {
         /// Strain by creep after 10,000 min under 1 MPa. The default is approximate.
         strain_at_10000_min_per_mpa: f64 = A.default, in limits_of(&A);
         /// Strain by creep that each tenfold increase of time adds under 1 MPa. The default is approximate.
@@ -108,7 +103,7 @@ variants! {
         /// It does not.
         None = "none",
         /// By the logarithm of time, as Lee and Pienkowski measured it.
-        LeePienkowski(LogarithmicCreep) = "lee-pienkowski",
+        LeePienkowski(LeePienkowski) = "lee-pienkowski",
     }
 }
 
@@ -117,11 +112,7 @@ impl Creep {
     pub(super) fn law(&self) -> Option<LeePienkowski> {
         match self {
             Self::None => None,
-            Self::LeePienkowski(constants) => Some(LeePienkowski {
-                strain_at_10000_min_per_mpa: constants.strain_at_10000_min_per_mpa,
-                strain_per_decade_per_mpa: constants.strain_per_decade_per_mpa,
-                recovering_fraction: constants.recovering_fraction,
-            }),
+            Self::LeePienkowski(constants) => Some(*constants),
         }
     }
 }

@@ -23,7 +23,8 @@ use condyle_mesh::files::{Files, MemoryFiles};
 #[derive(Clone, Debug)]
 pub struct CaseReader {
     pub(crate) files: Arc<dyn Files>,
-    wear_laws: WearLaws,
+    /// Wear laws to choose from.
+    pub(super) wear_laws: WearLaws,
 }
 
 impl CaseReader {
@@ -35,11 +36,6 @@ impl CaseReader {
     pub(crate) fn sharing(files: Arc<dyn Files>) -> Self {
         let wear_laws = WEAR_LAWS;
         Self { files, wear_laws }
-    }
-
-    /// Returns the reader with other wear laws to choose from.
-    pub fn with_wear_laws(self, wear_laws: WearLaws) -> Self {
-        Self { wear_laws, ..self }
     }
 
     /// Reads the case file at `path`; paths in it are relative to its folder.

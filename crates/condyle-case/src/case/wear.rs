@@ -208,10 +208,6 @@ fn key_of(parameter: &Parameter) -> Key {
     Key::number(parameter.name, doc, parameter.default, limits_of(parameter))
 }
 
-fn limits_of(parameter: &Parameter) -> Limits {
-    within(parameter.least, parameter.most)
-}
-
 /// Returns the formula of a law and the sources of its constants.
 fn law_line(law: &WearLawKind) -> String {
     let source = |parameter: &Parameter| match parameter.source {

@@ -3,6 +3,7 @@
 use std::borrow::Cow;
 use std::fmt;
 
+use condyle::parameter::Parameter;
 use toml::de::DeValue;
 
 /// A declared key.
@@ -114,6 +115,10 @@ pub struct Limits {
 
 pub(crate) const fn within(least: f64, most: f64) -> Limits {
     Limits { least, most }
+}
+
+pub(crate) const fn limits_of(parameter: &Parameter) -> Limits {
+    within(parameter.least, parameter.most)
 }
 
 impl Limits {

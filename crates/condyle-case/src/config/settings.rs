@@ -43,11 +43,7 @@ pub(crate) trait Settings: Sized {
     }
 }
 
-/// Declares parts of a file, each a struct with [`Settings`], where the items of `config` are imported.
-///
-/// `key: Type = default, in limits;` declares a key, which must be given if there is no default; `[flat] part: Type;` the
-/// entries of another part in the same table; `[table] part: Type;` a table inside, called like the field or as in
-/// `[table "name"]`. After `Name [method]`, `method(&self, section, log)` checks values against each other.
+/// Declares parts of a file, each a struct with [`Settings`] by [`settings_of!`].
 macro_rules! settings {
     ($(
         $(#[doc = $about:literal])+
@@ -64,6 +60,28 @@ macro_rules! settings {
             $( $(#[doc = $doc])+ pub $field: $ty, )*
         }
 
+        settings_of! {
+            $name $([$check])? {
+                $( $(#[doc = $doc])+ $([$($how)+])? $field: $ty $(= $default)? $(, in $limits)?; )*
+            }
+        }
+    )+ };
+}
+
+/// Declares [`Settings`] of structs that are declared elsewhere, where the items of `config` are imported.
+///
+/// `key: Type = default, in limits;` declares a key, which must be given if there is no default; `[flat] part: Type;` the
+/// entries of another part in the same table; `[table] part: Type;` a table inside, called like the field or as in
+/// `[table "name"]`. After `Name [method]`, `method(&self, section, log)` checks values against each other.
+macro_rules! settings_of {
+    ($(
+        $name:ident $([$check:ident])? {
+            $(
+                $(#[doc = $doc:literal])+
+                $([$($how:tt)+])? $field:ident : $ty:ty $(= $default:expr)? $(, in $limits:expr)? ;
+            )*
+        }
+    )+) => { $(
         impl Settings for $name {
             fn items() -> Vec<Item> {
                 [$( entry!(
@@ -89,7 +107,7 @@ macro_rules! settings {
     )+ };
 }
 
-/// Describes, reads or writes one entry of [`settings!`].
+/// Describes, reads or writes one entry of [`settings_of!`].
 macro_rules! entry {
     (items [] $field:ident $ty:ty, $($rest:tt)*) => {
         vec![Item::Key(key!($field $ty, $($rest)*))]
@@ -269,4 +287,6 @@ macro_rules! bound {
     };
 }
 
-pub(crate) use {bound, entry, given, key, name, offer, settings, variants, where_silent};
+pub(crate) use {
+    bound, entry, given, key, name, offer, settings, settings_of, variants, where_silent,
+};

@@ -10,7 +10,10 @@ use std::{
 };
 
 use condyle::{contact::ContactModel, evolve::MarchState};
-use condyle_case::{cache::Cache, case::Case};
+use condyle_case::{
+    cache::Cache,
+    case::{Case, SharedBodies},
+};
 
 use crate::{
     budgets,
@@ -159,7 +162,10 @@ fn row(figure: &str, target: f64, measured: f64, unit: &str) {
 fn kept_s(case: &Case) -> f64 {
     let folder = tempfile::tempdir().expect("a folder can be made");
     let cache = Cache::in_folder(folder.path());
-    let build = || case.build_kept(1, &cache).expect("a shipped case builds");
+    let build = || {
+        let built = case.build_sharing(1, &cache, &SharedBodies::default());
+        built.expect("a shipped case builds")
+    };
     build();
     least_s(ROUNDS, build)
 }

@@ -3,8 +3,8 @@
 use std::sync::Arc;
 
 use condyle::contact::{
-    ContactLaw, ContactSettings, Deformable, Foundation, FrictionModel, PressureLaw,
-    confined_modulus, softening_modulus,
+    ContactLaw, Deformable, Foundation, FrictionModel, PressureLaw, confined_modulus,
+    softening_modulus,
 };
 use condyle::evolve::{Schedule, Updates, WearTest};
 use condyle::geometry::Insert;
@@ -15,9 +15,7 @@ use super::error::{BuildError, BuildWarning};
 use super::machine::start_flexion_rad;
 use super::shared::SharedBodies;
 use crate::cache::{Keep, KeepNothing};
-use crate::case::contact::{
-    ContactModelChoice, DeformableContact, PlasticityChoice, PressureLawChoice,
-};
+use crate::case::contact::{DeformableContact, PlasticityChoice, PressureLawChoice};
 use crate::case::contents::Case;
 use crate::case::run_options::{IntegratorWord, Update};
 
@@ -39,22 +37,11 @@ impl Case {
     /// A mesh that cannot be read or does not form a shell, an open insert without a thickness, a surface that is not
     /// in its file, or an insert that cannot be meshed.
     pub fn build(&self, threads: usize) -> Result<Built, BuildError> {
-        self.build_kept(threads, &KeepNothing)
+        self.build_sharing(threads, &KeepNothing, &SharedBodies::default())
     }
 
-    /// As [`Case::build`], to the same bytes, with the preparation of a mesh femur kept for the
-    /// next time, and the compliance of a deformable insert found that was kept ([`Case::keep_compliance`]).
-    ///
-    /// # Errors
-    /// As [`Case::build`].
-    pub fn build_kept(&self, threads: usize, keep: &dyn Keep) -> Result<Built, BuildError> {
-        self.build_sharing(threads, keep, &SharedBodies::default())
-    }
-
-    /// As [`Case::build_kept`], to the same bytes, with the bodies that it has in common with others.
-    ///
-    /// # Errors
-    /// As [`Case::build`].
+    /// As [`Case::build`], to the same bytes, with the bodies that it has in common with others, the preparation of a mesh
+    /// femur kept for the next time, and the kept compliance of a deformable insert ([`Case::keep_compliance`]).
     pub fn build_sharing(
         &self,
         threads: usize,
@@ -77,7 +64,7 @@ impl Case {
         let as_linked = |law| self.material.cross_linking.under(law);
         let comparison_laws = self.wear.comparison_laws().into_iter().map(as_linked);
         let test = WearTest {
-            contact: self.contact_law_sharing(&insert, keep, bodies)?,
+            contact: self.contact_law(&insert, keep, bodies)?,
             femur: Arc::clone(&femur.surface),
             flexion_axis_mm: femur.flexion_axis_mm,
             start_mm: femur.start_mm,
@@ -101,35 +88,17 @@ impl Case {
         Ok(Built { test, warnings })
     }
 
-    /// Returns the law of contact of this case with its insert.
-    ///
-    /// # Errors
-    /// A deformable insert that cannot be modelled as an elastic solid.
-    pub fn contact_law(&self, insert: &Insert) -> Result<Arc<dyn ContactLaw>, BuildError> {
-        self.contact_law_sharing(insert, &KeepNothing, &SharedBodies::default())
-    }
-
-    fn contact_law_sharing(
+    /// Returns the law of contact of this case with an insert, or an error for a deformable insert that cannot be modelled
+    /// as an elastic solid.
+    pub(in crate::case) fn contact_law(
         &self,
         insert: &Insert,
         keep: &dyn Keep,
         bodies: &SharedBodies,
     ) -> Result<Arc<dyn ContactLaw>, BuildError> {
-        Ok(match &self.contact.model {
-            ContactModelChoice::Foundation(_) => Arc::new(self.foundation()),
-            ContactModelChoice::Deformable(model) => {
-                Arc::new(self.deformable(model, insert, keep, bodies)?)
-            }
-        })
-    }
-
-    fn deformable(
-        &self,
-        model: &DeformableContact,
-        insert: &Insert,
-        keep: &dyn Keep,
-        bodies: &SharedBodies,
-    ) -> Result<Deformable, BuildError> {
+        let Some(model) = self.contact.deformable() else {
+            return Ok(Arc::new(self.foundation()));
+        };
         let is_explicit = self.time.integrator == IntegratorWord::Explicit;
         if model.friction_model == FrictionModel::StickSlip && is_explicit {
             let message = "[contact.deformable] friction_model = \"stick-slip\" carries loads from one solved increment to the \
@@ -138,8 +107,7 @@ impl Case {
             return Err(BuildError::conflict("time", &["integrator"], message));
         }
         self.check_backside(model, insert)?;
-        let elastic = self.material.elastic();
-        let settings = self.contact_settings();
+        let (elastic, settings) = (self.material.elastic(), self.contact.settings);
         let (friction, slip) = (settings.friction, settings.slip_tolerance_mm_per_s);
         let backside = model.backside.backside();
         let inputs = (self.insert_inputs(), elastic);
@@ -156,7 +124,7 @@ impl Case {
         };
         let law = law.with_backside(backside, insert)?;
         self.load_compliance(&law, insert, keep)?;
-        Ok(law)
+        Ok(Arc::new(law))
     }
 
     /// Rejects settings that cannot be combined with a resting backside.
@@ -219,17 +187,7 @@ impl Case {
         };
         Foundation {
             pressure,
-            settings: self.contact_settings(),
-        }
-    }
-
-    fn contact_settings(&self) -> ContactSettings {
-        let contact = &self.contact;
-        ContactSettings {
-            friction: contact.friction,
-            slip_tolerance_mm_per_s: contact.slip_tolerance_mm_per_s,
-            search: contact.search,
-            sample_reuse_mm: contact.sample_reuse_mm,
+            settings: self.contact.settings,
         }
     }
 

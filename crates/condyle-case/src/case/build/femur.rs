@@ -55,14 +55,7 @@ impl Case {
         };
         Ok(match &self.femur.shape {
             FemurShape::Generic(femur) => {
-                let shape = GenericFemurShape {
-                    distal_radius_mm: femur.distal_radius_mm,
-                    posterior_radius_mm: femur.posterior_radius_mm,
-                    transition_deg: femur.transition_deg,
-                    coronal_radius_mm: femur.coronal_radius_mm,
-                    spacing_mm: femur.spacing_mm,
-                };
-                let generic = GenericFemur::new(shape);
+                let generic = GenericFemur::new(femur.shape);
                 let surface = match placement.motion((0.0, 0.0)) {
                     Some(motion) => FemoralSurface::Placed(PlacedFemur::new(
                         generic,
@@ -71,7 +64,8 @@ impl Case {
                     )),
                     None => FemoralSurface::Generic(generic),
                 };
-                at_origin(surface, femur.start_mm, over_the_dish(&shape, flexion_rad))
+                let over_the_dish_mm = over_the_dish(&femur.shape, flexion_rad);
+                at_origin(surface, femur.start_mm, over_the_dish_mm)
             }
             FemurShape::Sphere(femur) => {
                 let surface = FemoralSurface::sphere(femur.radius_mm);
@@ -103,23 +97,6 @@ impl Case {
 }
 
 impl MeshFemur {
-    /// Returns its triangles as a checked shell in the femoral frame of a right knee, mm.
-    fn triangles(
-        &self,
-        placement: &FemurPlacement,
-        side: Side,
-    ) -> Result<TriangleMesh, BuildError> {
-        let placing = Placing::new(self.length_unit, &self.axes, side)?;
-        let mesh = shell(
-            &self.file,
-            &placing,
-            checks_of(Body::Femur, None),
-            &mut Vec::new(),
-        )?
-        .mesh;
-        Ok(self.moved(mesh, placement))
-    }
-
     /// Returns the flexion axis (x, y) of the unplaced component.
     fn axis_mm(&self, mesh: &TriangleMesh) -> (f64, f64) {
         match self.flexion_axis_mm {
@@ -209,7 +186,10 @@ impl Case {
     pub fn femur_triangles(&self, test: &WearTest, about: f64) -> Result<TriangleMesh, BuildError> {
         match (&self.femur.shape, test.femur.as_ref()) {
             (FemurShape::Mesh(femur), _) => {
-                femur.triangles(&self.femur.placement, self.heading.side)
+                let placing = Placing::new(femur.length_unit, &femur.axes, self.heading.side)?;
+                let checks = checks_of(Body::Femur, None);
+                let shell = shell(&femur.file, &placing, checks, &mut Vec::new())?;
+                Ok(femur.moved(shell.mesh, &self.femur.placement))
             }
             (_, FemoralSurface::Generic(femur)) => Ok(generic(femur, about)),
             (_, FemoralSurface::Placed(placed)) => {

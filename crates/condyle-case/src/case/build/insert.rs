@@ -15,7 +15,7 @@ use super::error::{Body, BuildError, BuildWarning, Finding};
 use super::placing::{Placing, checks_of, middle_of_mesh, middle_of_points, shell};
 use super::size::check_points;
 use crate::case::contents::Case;
-use crate::case::insert::{HexahedralInsert, Insert, InsertShape, MeshInsert};
+use crate::case::insert::{GenericInsert, HexahedralInsert, Insert, InsertShape, MeshInsert};
 use crate::case::run_options::Limits;
 use crate::config::DataFile;
 
@@ -63,14 +63,12 @@ impl Case {
     ) -> Result<geometry::Insert, BuildError> {
         let (placement, limits) = (&insert.placement, &self.limits);
         let built = match &insert.shape {
-            InsertShape::Generic(insert) => {
-                let shape = GenericInsertShape {
-                    sagittal_radius_mm: insert.sagittal_radius_mm,
-                    coronal_radius_mm: insert.coronal_radius_mm,
-                    spacing_mm: insert.spacing_mm,
-                    thickness_mm: insert.thickness_mm,
-                };
-                let meshing = meshing(insert.edge_mm, insert.layers);
+            InsertShape::Generic(GenericInsert {
+                shape,
+                edge_mm,
+                layers,
+            }) => {
+                let meshing = meshing(*edge_mm, *layers);
                 check_node_count(GenericInsertShape::SIZE_MM, meshing, limits)?;
                 // Its dishes have their middle at its origin.
                 match placement.motion(Vec3::zeros) {
@@ -150,7 +148,17 @@ impl Case {
         let placing = Placing::new(insert.length_unit, &insert.axes, self.heading.side)?;
         let path = insert.file.path();
         let mut file = read_hexahedra(insert.file.files(), path)?;
-        place(&mut file, &placing);
+        for node in &mut file.mesh.nodes {
+            *node = placing.point(node);
+        }
+        if placing.mirrors {
+            // A mirror turns a hexahedron inside out; with its two faces exchanged, its volume is positive again.
+            let swapped = |[a, b, c, d, e, f, g, h]: [u32; 8]| [e, f, g, h, a, b, c, d];
+            file.mesh.hexes = file.mesh.hexes.iter().copied().map(swapped).collect();
+            let surfaces = file.surfaces.iter_mut();
+            let quads = surfaces.flat_map(|surface| &mut surface.quads);
+            quads.for_each(|quad| quad.reverse());
+        }
         check_points(path, &file.mesh.nodes, insert.length_unit)?;
         check_nodes(file.mesh.nodes.len() as f64, &self.limits)?;
         let boundary = TriangleMesh::of_quads(file.mesh.nodes.clone(), file.mesh.boundary_quads());
@@ -169,8 +177,9 @@ impl Case {
             middle_of_points(&nodes.collect::<Vec<Vec3>>())
         };
         if let Some(motion) = of.placement.motion(middle) {
-            let nodes = file.mesh.nodes.iter_mut();
-            nodes.for_each(|node| *node = motion.point(node));
+            for node in &mut file.mesh.nodes {
+                *node = motion.point(node);
+            }
         }
         Ok(geometry::Insert::new(file.mesh, &articulating, &backside)?)
     }
@@ -207,24 +216,6 @@ fn check_nodes(nodes: f64, limits: &Limits) -> Result<(), BuildError> {
     Err(BuildError::conflict("insert", keys, message))
 }
 
-/// Moves nodes into the frame, and restores the orientation of hexahedra and faces if that mirrors.
-fn place(file: &mut HexFile, placing: &Placing) {
-    let nodes = &mut file.mesh.nodes;
-    nodes
-        .iter_mut()
-        .for_each(|node| *node = placing.point(node));
-    if placing.mirrors {
-        // A mirror turns a hexahedron inside out; with its two faces exchanged, its volume is positive again.
-        let swapped = |[a, b, c, d, e, f, g, h]: [u32; 8]| [e, f, g, h, a, b, c, d];
-        file.mesh.hexes = file.mesh.hexes.iter().copied().map(swapped).collect();
-        let quads = file
-            .surfaces
-            .iter_mut()
-            .flat_map(|surface| &mut surface.quads);
-        quads.for_each(|quad| quad.reverse());
-    }
-}
-
 fn named(
     file: &HexFile,
     path: &Path,
@@ -234,15 +225,10 @@ fn named(
     if let Some(surface) = file.surface(name) {
         return Ok(surface.quads.clone());
     }
-    let names: Vec<&str> = file
-        .surfaces
-        .iter()
-        .map(|surface| surface.name.as_str())
-        .collect();
-    let listed = if names.is_empty() {
-        "none".to_owned()
-    } else {
-        names.join(", ")
+    let names = file.surfaces.iter().map(|surface| surface.name.as_str());
+    let listed = match names.collect::<Vec<_>>().join(", ") {
+        names if names.is_empty() => "none".to_owned(),
+        names => names,
     };
     let message = format!("the mesh has no surface \"{name}\"; its surfaces are {listed}");
     Err(BuildError::mesh(path, key, message))

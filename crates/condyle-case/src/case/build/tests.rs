@@ -15,7 +15,7 @@ use super::error::{Body, BuildError};
 use super::placing::{Placing, checks_of, shell};
 use crate::cache::Cache;
 use crate::case::tests::{cases, has_dm_data};
-use crate::case::{Case, FemurShape, InsertShape, Side};
+use crate::case::{Case, FemurShape, InsertShape, SharedBodies, Side};
 use condyle_mesh::formats::write_stl;
 
 fn built(text: &str, folder: &Path) -> Result<Built, BuildError> {
@@ -171,10 +171,14 @@ fn a_femur_kept_is_the_one_computed_with_its_warnings() {
         with_mesh_femur(&folder, "right"),
         Cache::in_folder(kept.path()),
     );
+    let build = |case: &Case| {
+        let built = case.build_sharing(1, &cache, &SharedBodies::default());
+        built.unwrap()
+    };
     let computed = case.build(1).unwrap();
     assert_eq!(computed.warnings.len(), 1, "{:?}", computed.warnings);
     for _ in 0..2 {
-        let built = case.build_kept(1, &cache).unwrap();
+        let built = build(&case);
         assert!(field(&built) == field(&computed));
         assert_eq!(built.warnings, computed.warnings);
         assert_eq!(built.test.start_mm, computed.test.start_mm);
@@ -183,9 +187,7 @@ fn a_femur_kept_is_the_one_computed_with_its_warnings() {
     let count = || fs::read_dir(kept.path()).unwrap().count();
     assert_eq!(count(), 1);
     // The same file on the other side is another femur.
-    let left = with_mesh_femur(&folder, "left")
-        .build_kept(1, &cache)
-        .unwrap();
+    let left = build(&with_mesh_femur(&folder, "left"));
     assert!(field(&left) != field(&computed) && count() == 2);
 }
 

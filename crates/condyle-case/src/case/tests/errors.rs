@@ -3,7 +3,8 @@
 use condyle::geometry::{Insert, Meshing, flat_insert};
 
 use super::{assert_shows, parsed, refusal};
-use crate::case::Case;
+use crate::cache::KeepNothing;
+use crate::case::{Case, SharedBodies};
 use crate::config::{Problem, RenderStyle};
 use condyle::contact::FrictionModel;
 
@@ -213,7 +214,9 @@ fn friction_that_sticks_is_that_of_a_deformable_insert_and_of_solved_increments(
     assert_eq!(model.friction_model, FrictionModel::StickSlip);
     let explicit = format!("{sticking}[time]\nintegrator = \"explicit\"\n");
     let case = parsed(&explicit).expect("its keys are good");
-    let refused = case.contact_law(&flat()).expect_err("it is refused");
+    let refused = case
+        .contact_law(&flat(), &KeepNothing, &SharedBodies::default())
+        .expect_err("it is refused");
     assert_shows(
         &refused.to_string(),
         &[
@@ -257,7 +260,9 @@ fn a_backside_that_rests_is_that_of_a_deformable_insert_alone_and_of_solved_incr
         ),
     ] {
         let case = parsed(&format!("{resting}{beside}\n")).expect("its keys are good");
-        let refused = case.contact_law(&flat()).expect_err("it is refused");
+        let refused = case
+            .contact_law(&flat(), &KeepNothing, &SharedBodies::default())
+            .expect_err("it is refused");
         assert_shows(&refused.to_string(), &["backside = \"resting\"", word]);
     }
 }
@@ -281,7 +286,9 @@ fn a_backside_that_is_not_flat_cannot_rest() {
         quads.iter().filter(is_facing).copied().collect::<Vec<_>>()
     };
     let bent = Insert::new(mesh.clone(), &facing(1.0), &facing(-1.0)).expect("it is an insert");
-    let refused = case.contact_law(&bent).expect_err("it is refused");
+    let refused = case
+        .contact_law(&bent, &KeepNothing, &SharedBodies::default())
+        .expect_err("it is refused");
     let words = [
         "needs a flat backside",
         "lies in a plane",

@@ -61,7 +61,10 @@ const THRESHOLD: WearLawKind = WearLawKind {
 const LAWS: WearLaws = &[WEAR_LAWS[0], &THRESHOLD];
 
 fn read(text: &str) -> Result<Case, String> {
-    let reader = CaseReader::default().with_wear_laws(LAWS);
+    let reader = CaseReader {
+        wear_laws: LAWS,
+        ..CaseReader::default()
+    };
     let case = reader.parse(text, "case.toml", Path::new(""));
     case.map_err(|problems| problems.to_string())
 }
