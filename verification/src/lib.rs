@@ -14,6 +14,8 @@ mod convergence;
 mod default_case;
 mod drives;
 mod foundation_rows;
+#[path = "../../crates/condyle/src/contact/deformable/plastic/tests/initial_stress.rs"]
+mod initial_stress;
 mod law;
 mod machine;
 mod marched;

@@ -1,4 +1,4 @@
-//! Compliance of some nodes of a solid: their displacements under forces on them.
+//! Displacements of some nodes of a solid under forces on them.
 
 use std::ops::Range;
 
@@ -17,34 +17,9 @@ type Columns = Rhs<VECTORS>;
 /// Number of right-hand sides that are solved with a front while it is in the cache.
 const AT_ONCE: usize = 8 * Columns::COLUMNS;
 
-/// Displacements of some nodes by some forces, each acting alone.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Compliance {
-    forces: usize,
-    /// Row-major, three rows per node and one column per force.
-    values: Vec<f64>,
-}
-
-impl Compliance {
-    /// Returns the number of nodes that move.
-    pub fn nodes(&self) -> usize {
-        self.values.len() / (3 * self.forces.max(1))
-    }
-
-    /// Returns the number of forces.
-    pub fn forces(&self) -> usize {
-        self.forces
-    }
-
-    /// Returns the values, row-major, `3 * nodes` rows and `forces` columns: row `3 i + k` is the displacement of
-    /// node `i` along axis `k`, and column `j` belongs to force `j`, both in the order in which they were given.
-    pub fn values(&self) -> &[f64] {
-        &self.values
-    }
-}
-
 impl ElasticSolid {
-    /// Returns the displacements of `nodes` by forces on other nodes, each acting alone.
+    /// Returns the displacements of `nodes` by forces on other nodes, each acting alone: row-major, row `3 i + k` is the
+    /// displacement of node `i` along axis `k`, and column `j` belongs to force `j`.
     ///
     /// By reciprocity it is also the displacement by forces on `nodes`, such as those of an eigenstrain
     /// ([`YieldingElement::forces`](crate::YieldingElement::forces)), along the other forces. A force along a held
@@ -52,11 +27,8 @@ impl ElasticSolid {
     ///
     /// # Panics
     /// If there is no such node.
-    pub fn influence(&self, nodes: &[u32], forces: &[(u32, Vec3)]) -> Compliance {
-        let mut compliance = Compliance {
-            forces: forces.len(),
-            values: vec![0.0; 3 * nodes.len() * forces.len()],
-        };
+    pub fn influence(&self, nodes: &[u32], forces: &[(u32, Vec3)]) -> Vec<f64> {
+        let mut displacements = vec![0.0; 3 * nodes.len() * forces.len()];
         let place = |node: u32| self.factor.dissection.place(node);
         let free = |(i, node)| Some((place(node)?, i));
         let rows: Vec<(u32, usize)> = nodes.iter().copied().enumerate().filter_map(free).collect();
@@ -72,7 +44,7 @@ impl ElasticSolid {
             for (solved, some) in solved.iter().zip(some.chunks(Columns::COLUMNS)) {
                 for &(place, node) in &rows {
                     for k in 0..3 {
-                        let row = &mut compliance.values[(3 * node + k) * forces.len()..];
+                        let row = &mut displacements[(3 * node + k) * forces.len()..];
                         for (column, &(_, force)) in some.iter().enumerate() {
                             row[force] = solved.at(3 * place as usize + k, column);
                         }
@@ -80,7 +52,7 @@ impl ElasticSolid {
                 }
             }
         }
-        compliance
+        displacements
     }
 }
 
@@ -266,11 +238,10 @@ mod tests {
             .copied()
             .zip(directions.iter().copied())
             .collect();
-        let compliance = solid.influence(&nodes, &forces);
-        let displacement = |node: usize, force: usize| {
-            Vec3::from_fn(|k, _| compliance.values()[(3 * node + k) * 42 + force])
-        };
-        assert_eq!(compliance.values().len(), 3 * 42 * 42);
+        let moved = solid.influence(&nodes, &forces);
+        let displacement =
+            |node: usize, force: usize| Vec3::from_fn(|k, _| moved[(3 * node + k) * 42 + force]);
+        assert_eq!(moved.len(), 3 * 42 * 42);
         for (j, (&node, &direction)) in nodes.iter().zip(&directions).enumerate() {
             let alone = solid.displacements(&[(node, direction)]);
             for (i, &node) in nodes.iter().enumerate() {

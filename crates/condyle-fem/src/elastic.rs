@@ -14,14 +14,12 @@ pub struct Elastic {
 }
 
 /// Elastic constants outside the range of the elements.
+#[expect(missing_docs, reason = "the messages describe the fields")]
 #[derive(Clone, Copy, Debug, Error, PartialEq)]
 pub enum ElasticError {
     /// The modulus is not a positive number.
     #[error("Young's modulus is {youngs_modulus}; it must be a positive number")]
-    Modulus {
-        /// The modulus given.
-        youngs_modulus: f64,
-    },
+    Modulus { youngs_modulus: f64 },
     /// At a ratio of one half the volume cannot change, and pressure does not follow from strain.
     #[error(
         "Poisson's ratio is 0.5: the material would be incompressible, which these elements cannot be; 0.49 is near enough for polyethylene"
@@ -29,10 +27,7 @@ pub enum ElasticError {
     Incompressible,
     /// Poisson's ratio is outside the range.
     #[error("Poisson's ratio is {poissons_ratio}; it must be at least 0 and below 0.5")]
-    Ratio {
-        /// The ratio given.
-        poissons_ratio: f64,
-    },
+    Ratio { poissons_ratio: f64 },
 }
 
 impl Elastic {

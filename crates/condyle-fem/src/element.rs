@@ -15,7 +15,6 @@ use wide::f64x4;
 use crate::{
     Vec3,
     elastic::Elastic,
-    material::Softening,
     stress::{Strain, Stress},
 };
 
@@ -111,11 +110,6 @@ impl Side {
     }
 
     #[inline(always)]
-    fn scaled(self, factor: f64) -> Self {
-        self.times(Self([f64x4::splat(factor); 2]))
-    }
-
-    #[inline(always)]
     fn sum(self) -> f64 {
         (self.0[0] + self.0[1]).reduce_add()
     }
@@ -162,54 +156,17 @@ impl Element {
         Some(Self { points })
     }
 
-    pub(crate) fn stiffness(&self, elastic: &Elastic) -> Stiffness {
-        self.softened(elastic, &[None; POINTS])
-    }
-
-    /// Stiffness of a material that is softer than elastic at some Gauss points.
-    pub(crate) fn softened(
-        &self,
-        elastic: &Elastic,
-        softenings: &[Option<Softening>; POINTS],
-    ) -> Stiffness {
-        let mut all = SMatrix::<f64, 33, 33>::zeros();
-        self.add_stiffness(elastic, softenings, &mut all);
-        for (point, softening) in self.points.iter().zip(softenings) {
-            // The stiffness that is lost along the flow by yielding.
-            let Some(softening) = softening else { continue };
-            let along = point
-                .gradients
-                .map(|gradient| softening.flow.times(&gradient));
-            for (a, row) in along.iter().enumerate() {
-                for (b, column) in along[..=a].iter().enumerate() {
-                    let mut place = all.fixed_view_mut::<3, 3>(3 * a, 3 * b);
-                    place -= row * column.transpose() * (point.volume * softening.along_flow);
-                }
-            }
-        }
-        all.fill_upper_triangle_with_lower_triangle();
-        // The stiffness of the modes is positive definite for any element with a volume: no check is needed.
-        Stiffness {
-            nodal: all.fixed_view::<24, 24>(0, 0).into_owned(),
-            coupling: all.fixed_view::<9, 24>(24, 0).into_owned(),
-            modal: Cholesky::new_unchecked(all.fixed_view::<9, 9>(24, 24).into_owned()),
-        }
-    }
-
-    /// The lower triangle of the stiffness, without what is lost along the flow.
+    /// Returns the stiffness of an elastic material.
     ///
     /// $2 G \operatorname{dev}:\operatorname{dev}$ between displacements along i and j of functions with gradients
     /// $a$ and $b$ is $G (a \cdot b\thinspace \delta_{ij} + b_i a_j - \tfrac{2}{3} a_i b_j)$, and $K$ multiplies the
     /// projected divergences.
-    fn add_stiffness(
-        &self,
-        elastic: &Elastic,
-        softenings: &[Option<Softening>; POINTS],
-        all: &mut SMatrix<f64, 33, 33>,
-    ) {
-        let lost = softenings.map(|s| s.map_or(0.0, |softening| 0.5 * softening.deviatoric));
-        let shear = Side::from_fn(|p| (elastic.shear_modulus() - lost[p]) * self.points[p].volume);
+    pub(crate) fn stiffness(&self, elastic: &Elastic) -> Stiffness {
+        // The lower triangle is computed, and mirrored.
+        let mut all = SMatrix::<f64, 33, 33>::zeros();
+        let shear = Side::from_fn(|p| elastic.shear_modulus() * self.points[p].volume);
         let bulk = Side::from_fn(|p| elastic.bulk_modulus() * self.points[p].volume);
+        let less_two_thirds = Side::from_fn(|_| -2.0 / 3.0);
         // This loop takes most of the time of an assembly: all eight points go side by side through the lanes.
         let gradients = self.sides(|point, f, k| point.gradients[f][k]);
         let dilatations = self.sides(|point, f, k| point.dilatations[f][k]);
@@ -222,13 +179,20 @@ impl Element {
                 for j in 0..3 {
                     for i in 0..3 {
                         let volumetric = dilatations[a][i].times(stiff_dilatation[j]);
-                        let shear = product(j, i).plus(product(i, j).scaled(-2.0 / 3.0));
+                        let shear = product(j, i).plus(product(i, j).times(less_two_thirds));
                         let block = shear.plus(volumetric);
                         let block = if i == j { block.plus(dot) } else { block };
                         all[(3 * a + i, 3 * b + j)] = block.sum();
                     }
                 }
             }
+        }
+        all.fill_upper_triangle_with_lower_triangle();
+        // The stiffness of the modes is positive definite for any element with a volume: no check is needed.
+        Stiffness {
+            nodal: all.fixed_view::<24, 24>(0, 0).into_owned(),
+            coupling: all.fixed_view::<9, 24>(24, 0).into_owned(),
+            modal: Cholesky::new_unchecked(all.fixed_view::<9, 9>(24, 24).into_owned()),
         }
     }
 
@@ -272,18 +236,6 @@ impl Element {
             }
             Strain::from_gradient(&gradient).with_trace(dilatation)
         })
-    }
-
-    pub(crate) fn stresses(
-        &self,
-        elastic: &Elastic,
-        nodes: &[Vec3; 8],
-        eigenstrains: &[Strain; POINTS],
-    ) -> [Stress; POINTS] {
-        let (_, pull) = self.forces(&eigenstrains.map(|strain| elastic.stress(&strain)));
-        let modes = self.stiffness(elastic).modes(nodes, &pull);
-        let strains = self.strains(nodes, &modes);
-        std::array::from_fn(|p| elastic.stress(&strains[p].less(&eigenstrains[p])))
     }
 
     /// Returns the mean over the volume of the gradient of every nodal function; that of the incompatible modes is
@@ -341,8 +293,6 @@ fn jacobian(corners: &[Vec3; 8], at: [f64; 3]) -> Matrix3<f64> {
 mod tests {
     use super::*;
     use nalgebra::SymmetricEigen;
-
-    use crate::{material::Material, plastic::PlasticPoint, tests::material};
 
     fn bent() -> [Vec3; 8] {
         let mut corners = SIGNS.map(|s| Vec3::from_row_slice(&s));
@@ -403,28 +353,23 @@ mod tests {
     }
 
     #[test]
-    fn the_softened_stiffness_is_the_derivative_of_the_forces() {
-        let (material, element) = (material(60.0), Element::new(&bent()).unwrap());
+    fn the_stiffness_is_the_derivative_of_the_forces() {
+        let elastic = Elastic::new(571.6, 0.45).unwrap();
+        let element = Element::new(&bent()).unwrap();
         let nodes: [Vec3; 8] =
             std::array::from_fn(|i| Vec3::from_fn(|k, _| 0.1 * ((5 * i + 3 * k) as f64).sin()));
         let modes = Modes::from_fn(|i, _| 0.02 * (i as f64).cos());
-        let before = PlasticPoint::default();
-        let respond = |nodes: &[Vec3; 8], modes: &Modes| {
-            let strains = element.strains(nodes, modes);
-            strains.map(|strain| material.respond(&strain, &before))
+        let forces = |nodes: &[Vec3; 8]| {
+            let strains = element.strains(nodes, &modes);
+            element.forces(&strains.map(|strain| elastic.stress(&strain)))
         };
-        let forces = |nodes: &[Vec3; 8], modes: &Modes| {
-            element.forces(&respond(nodes, modes).map(|response| response.stress))
-        };
-        let softenings = respond(&nodes, &modes).map(|response| response.softening);
-        assert!(softenings.iter().all(Option::is_some));
-        let stiffness = element.softened(&material.elastic, &softenings);
+        let stiffness = element.stiffness(&elastic);
         let h = 1e-6;
         for i in 0..24 {
             let moved = |by: f64| {
                 let mut nodes = nodes;
                 nodes[i / 3][i % 3] += by;
-                forces(&nodes, &modes)
+                forces(&nodes)
             };
             let ((up, modal_up), (down, modal_down)) = (moved(h), moved(-h));
             for j in 0..24 {

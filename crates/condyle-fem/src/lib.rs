@@ -64,7 +64,6 @@ mod follow;
 mod material;
 mod mesh;
 mod plastic;
-mod plastic_solid;
 mod solid;
 mod sparse;
 mod stress;
@@ -72,14 +71,13 @@ mod support;
 #[cfg(test)]
 mod tests;
 
-pub use compliance::{Compliance, HalfSolved};
+pub use compliance::HalfSolved;
 pub use eigenstrain::{ElementMean, YieldingElement};
 pub use elastic::{Elastic, ElasticError};
 pub use follow::InteriorFollower;
-pub use material::{Material, MaterialPoint, Response, Softening};
+pub use material::{Material, MaterialPoint};
 pub use mesh::{HEX_FACES, HexMesh, trilinear_volume, volume_below};
 pub use plastic::{ElasticPlastic, Hardening, HardeningError, PlasticPoint};
-pub use plastic_solid::{PlasticError, PlasticSolid, PlasticSolution, PlasticState};
 pub use solid::{ElasticSolid, SolidError};
 pub use stress::{Strain, Stress};
 pub use support::MovedSupports;

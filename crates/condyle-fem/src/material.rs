@@ -2,16 +2,12 @@
 
 use std::fmt::Debug;
 
-use crate::{
-    elastic::Elastic,
-    stress::{Strain, Stress},
-};
+use crate::{elastic::Elastic, stress::Strain};
 
-/// A material under small strains whose stiffness never exceeds the elastic one: yielding only softens it.
+/// A material under small strains: its stress is elastic in the strain less the stress-free part.
 ///
-/// The elements ask every Gauss point for its response; a new material is one file with an implementation of this
-/// trait and of [`MaterialPoint`]. The solvers factor the elastic stiffness once and correct it where the response is
-/// softer.
+/// The elements ask every Gauss point for its flow; a new material is one file with an implementation of this trait and
+/// of [`MaterialPoint`]. The solvers factor the elastic stiffness once, and apply the stress-free strains as loads.
 pub trait Material {
     /// The internal variables of a point.
     type Point: MaterialPoint;
@@ -19,14 +15,14 @@ pub trait Material {
     /// Returns the elastic constants.
     fn elastic(&self) -> Elastic;
 
-    /// Returns the equivalent stress at which the virgin material yields, infinite if it never does.
+    /// Returns the equivalent stress at which the virgin material yields.
     fn initial_yield_stress(&self) -> f64;
 
-    /// Returns the response to a strain, from the internal variables before the load.
-    fn respond(&self, strain: &Strain, before: &Self::Point) -> Response<Self::Point>;
+    /// Returns the internal variables under a strain, from those before the load.
+    fn flow(&self, strain: &Strain, before: &Self::Point) -> Self::Point;
 
     /// Returns the equivalent stress over the yield stress that an elastic step to a strain would cause; more than 1
-    /// where the material yields, and 0 if it never does.
+    /// where the material yields.
     fn use_of_yield(&self, strain: &Strain, before: &Self::Point) -> f64;
 }
 
@@ -54,72 +50,4 @@ pub trait MaterialPoint: Copy + Debug + Default + PartialEq {
     /// # Panics
     /// If there are fewer than [`MaterialPoint::NUMBERS`].
     fn from_numbers(numbers: &[f64]) -> Self;
-}
-
-/// The response of a material point to a strain.
-#[derive(Clone, Copy, Debug)]
-pub struct Response<P> {
-    /// Stress.
-    pub stress: Stress,
-    /// The internal variables if the load is accepted.
-    pub point: P,
-    /// The loss of stiffness relative to the elastic one, if the point yields.
-    pub softening: Option<Softening>,
-}
-
-/// The elastic tangent less the consistent one: $a\thinspace I_\text{dev} + b\thinspace n \otimes n$.
-#[derive(Clone, Copy, Debug)]
-pub struct Softening {
-    /// a, stress over strain of any deviator.
-    pub deviatoric: f64,
-    /// b, stress over strain along the flow.
-    pub along_flow: f64,
-    /// n, direction of the flow, a deviator of length 1.
-    pub flow: Stress,
-}
-
-impl Material for Elastic {
-    type Point = ();
-
-    fn elastic(&self) -> Elastic {
-        *self
-    }
-
-    fn initial_yield_stress(&self) -> f64 {
-        f64::INFINITY
-    }
-
-    fn respond(&self, strain: &Strain, (): &()) -> Response<()> {
-        Response {
-            stress: self.stress(strain),
-            point: (),
-            softening: None,
-        }
-    }
-
-    fn use_of_yield(&self, _: &Strain, (): &()) -> f64 {
-        0.0
-    }
-}
-
-/// An elastic point has no internal variables.
-impl MaterialPoint for () {
-    const FIELD: &'static str = "";
-    const NUMBERS: usize = 0;
-
-    fn eigenstrain(&self) -> Strain {
-        Strain::default()
-    }
-
-    fn set_eigenstrain(&mut self, _: Strain) {}
-
-    fn accumulated(&self) -> f64 {
-        0.0
-    }
-
-    fn numbers(&self) -> Vec<f64> {
-        Vec::new()
-    }
-
-    fn from_numbers(_: &[f64]) -> Self {}
 }

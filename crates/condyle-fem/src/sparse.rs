@@ -269,7 +269,11 @@ impl Factor {
         for t in 0..factor.columns / TILE {
             let row = factor.row(t);
             let (before, here) = front.split_at_mut(TILE * t);
-            subtract(here, &down(&row[..TILE * t], before));
+            for (x, sum) in here.iter_mut().zip(down(&row[..TILE * t], before)) {
+                for (x, sum) in x.iter_mut().zip(sum) {
+                    *x -= sum;
+                }
+            }
             solve_tile(&row[TILE * t..], here);
         }
         x.rows[own.clone()].copy_from_slice(&front[..own.len()]);
@@ -341,15 +345,6 @@ fn subtract_up<const W: usize>(from: &mut [[f64x4; W]], row: &[f64x4], x: &Rows<
             }
         }
         *from = left;
-    }
-}
-
-#[inline(always)]
-fn subtract<const W: usize>(from: &mut [[f64x4; W]], sums: &Rows<W>) {
-    for (row, sum) in from.iter_mut().zip(sums) {
-        for (x, sum) in row.iter_mut().zip(sum) {
-            *x -= *sum;
-        }
     }
 }
 

@@ -1,12 +1,11 @@
 //! Symmetric tensors of stress and strain, and their invariants.
 
 use nalgebra::Matrix3;
-use serde::{Deserialize, Serialize};
 
 use crate::Vec3;
 
 /// A symmetric stress: xx, yy, zz, xy, yz, zx; tension is positive.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Stress(pub [f64; 6]);
 
 impl Stress {
@@ -69,7 +68,7 @@ impl Stress {
 }
 
 /// A symmetric strain: xx, yy, zz, xy, yz, zx, the last three those of the tensor, half of the angles.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Strain(pub [f64; 6]);
 
 impl Strain {

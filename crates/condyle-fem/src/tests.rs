@@ -1,6 +1,9 @@
 //! Meshes, solids and a material for tests.
 
-use crate::{Elastic, ElasticPlastic, ElasticSolid, Hardening, HexMesh, Vec3};
+use crate::{
+    Elastic, ElasticPlastic, ElasticSolid, Hardening, HexMesh, Strain, Stress, Vec3,
+    element::{Element, POINTS},
+};
 
 /// A block of `n` unit cubes along each axis, nodes numbered x fastest, then y, then z.
 pub(crate) fn block(n: [usize; 3]) -> HexMesh {
@@ -87,5 +90,20 @@ pub(crate) fn material(kinematic: f64) -> ElasticPlastic {
     ElasticPlastic {
         elastic: Elastic::new(571.6, 0.45).unwrap(),
         hardening: Hardening::new(points, kinematic).unwrap(),
+    }
+}
+
+impl Element {
+    /// Returns the stresses at the Gauss points, with the modes in balance.
+    pub(crate) fn stresses(
+        &self,
+        elastic: &Elastic,
+        nodes: &[Vec3; 8],
+        eigenstrains: &[Strain; POINTS],
+    ) -> [Stress; POINTS] {
+        let (_, pull) = self.forces(&eigenstrains.map(|strain| elastic.stress(&strain)));
+        let modes = self.stiffness(elastic).modes(nodes, &pull);
+        let strains = self.strains(nodes, &modes);
+        std::array::from_fn(|p| elastic.stress(&strains[p].less(&eigenstrains[p])))
     }
 }

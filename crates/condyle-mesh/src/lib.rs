@@ -25,6 +25,7 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
+mod coarse;
 pub mod columns;
 mod curved_mesh;
 pub mod files;
@@ -33,6 +34,7 @@ pub mod repair;
 pub mod triangle;
 mod triangle_mesh;
 
+pub use coarse::coarser;
 pub use condyle_fem::Vec3;
 pub use curved_mesh::{CurvedMesh, Foot};
 pub use triangle_mesh::{TriangleMesh, bounds};

@@ -8,8 +8,9 @@ use condyle::{
     spatial::Pose,
 };
 
-use condyle_mesh::formats::{
-    Grid, MeshFileError, PointArray, PointValues, compact_vtu_bytes, pvd_text_of_parts,
+use condyle_mesh::{
+    coarser,
+    formats::{Grid, MeshFileError, PointArray, PointValues, compact_vtu_bytes, pvd_text},
 };
 
 use super::side::{Side, point_on_side, quad_on_side, triangle_on_side};
@@ -102,7 +103,7 @@ pub fn cycle_pvd(cycle: KeptCycle, percents: &[f64]) -> String {
             (percent, BODIES.map(path).to_vec())
         })
         .collect();
-    pvd_text_of_parts(files.iter().flat_map(|(percent, parts)| {
+    pvd_text(files.iter().flat_map(|(percent, parts)| {
         let parts = parts.iter().enumerate();
         parts.map(|(part, file)| (*percent, part, file.as_str()))
     }))
@@ -110,14 +111,12 @@ pub fn cycle_pvd(cycle: KeptCycle, percents: &[f64]) -> String {
 
 /// Number of triangles that suffices to show a femur in motion.
 pub const FRAME_TRIANGLES: f64 = 6000.0;
-/// A mesh with more than [`FRAME_TRIANGLES`] is coarsened to cells of this size for the frames, mm.
-const FRAME_CELL_MM: f64 = 2.0;
 
 /// Returns the femur of the frames: a fine mesh is coarsened, since it is written hundreds of times.
 pub fn femur_of_frames(femur: TriangleMesh) -> TriangleMesh {
-    // A mesh slightly larger than the target is kept: clustering would lose shape and save little.
+    // A mesh slightly larger than the target is kept: a coarser one would lose shape and save little.
     if femur.triangles.len() as f64 > 1.5 * FRAME_TRIANGLES {
-        return femur.clustered(FRAME_CELL_MM);
+        return coarser(&femur, FRAME_TRIANGLES as usize);
     }
     femur
 }

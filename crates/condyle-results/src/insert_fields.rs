@@ -194,5 +194,6 @@ pub fn insert_vtu(march: &March, side: Side) -> Result<Vec<u8>, MeshFileError> {
 pub fn insert_pvd(updates: &[UpdateRecord]) -> String {
     let names: Vec<String> = (0..=updates.len()).map(insert_file_name).collect();
     let cycles = std::iter::once(0.0).chain(updates.iter().map(|update| update.cycles));
-    pvd_text(cycles.zip(names.iter().map(String::as_str)))
+    let names = names.iter().map(String::as_str);
+    pvd_text(cycles.zip(names).map(|(cycles, name)| (cycles, 0, name)))
 }

@@ -260,7 +260,7 @@ pub fn inp() -> Vec<Vec<u8>> {
 }
 
 pub fn pvd() -> Vec<Vec<u8>> {
-    vec![pvd_text([(0.0, "insert_0.vtu"), (5e6, "insert_1.vtu")]).into_bytes()]
+    vec![pvd_text([(0.0, 0, "insert_0.vtu"), (5e6, 0, "insert_1.vtu")]).into_bytes()]
 }
 
 const CASE: &str = "title = \"hostile\"\nside = \"left\"\n\n[femur]\nshape = \"mesh\"\nfile = \"f.stl\"\nlength_unit = \"mm\"\n\

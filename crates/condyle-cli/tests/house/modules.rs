@@ -65,16 +65,6 @@ const MAY_USE: &[(&str, &[&str])] = &[
             "condyle_fem::solid",
         ],
     ),
-    (
-        "condyle_fem::plastic_solid",
-        &[
-            "condyle_fem::stress",
-            "condyle_fem::element",
-            "condyle_fem::material",
-            "condyle_fem::plastic",
-            "condyle_fem::solid",
-        ],
-    ),
     ("condyle_mesh::triangle", &[]),
     ("condyle_mesh::triangle_mesh", &["condyle_mesh::triangle"]),
     (
@@ -93,6 +83,7 @@ const MAY_USE: &[(&str, &[&str])] = &[
         "condyle_mesh::repair",
         &["condyle_mesh::triangle", "condyle_mesh::triangle_mesh"],
     ),
+    ("condyle_mesh::coarse", &["condyle_mesh::triangle_mesh"]),
     ("condyle_mesh::files", &[]),
     (
         "condyle_mesh::formats",

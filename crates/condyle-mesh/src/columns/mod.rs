@@ -41,6 +41,7 @@ const MIN_PIECE: f64 = 4.0;
 const HAIRS: [f64; 9] = [0.0, 1e-4, 1e-3, 3e-3, 1e-2, 3e-2, 0.1, 0.25, 0.5];
 
 /// Reason why a surface cannot be meshed as an insert.
+#[expect(missing_docs, reason = "the messages describe the fields")]
 #[derive(Clone, Debug, PartialEq, Error)]
 pub enum ColumnError {
     /// An open surface without a thickness below it.
@@ -52,42 +53,24 @@ pub enum ColumnError {
     #[error(
         "no column of hexahedra fits into the insert at an edge of {edge_mm} mm; use a smaller edge_mm, and check length_unit and axes"
     )]
-    NoColumns {
-        /// Length of an edge, mm.
-        edge_mm: f64,
-    },
+    NoColumns { edge_mm: f64 },
     /// Places inside the outline where no column may stand.
     #[error(
         "inside the insert's outline no hexahedra can stand on {}; fill it in the mesh",
         listed_holes(holes)
     )]
-    Holes {
-        /// All of them.
-        holes: Vec<Hole>,
-    },
+    Holes { holes: Vec<Hole> },
     /// A place inside the outline whose vertical line does not meet the surface.
     #[error(
         "the insert has a hole at x {x_mm:.2}, z {z_mm:.2} mm, where no column of hexahedra can stand; repair the mesh"
     )]
-    NoColumn {
-        /// Anterior, mm.
-        x_mm: f64,
-        /// To the right of a right knee, mm.
-        z_mm: f64,
-    },
+    NoColumn { x_mm: f64, z_mm: f64 },
     /// A part of the insert in which no cell of the grid fits.
     #[error(
         "the insert is too narrow for an edge of {edge_mm} mm around x {x_mm:.1}, z {z_mm:.1} mm; use a smaller edge_mm, or delete \
          what lies there if it is no part of the insert"
     )]
-    TooCoarse {
-        /// Length of an edge, mm.
-        edge_mm: f64,
-        /// Middle of that part, anterior, mm.
-        x_mm: f64,
-        /// Middle of that part, to the right of a right knee, mm.
-        z_mm: f64,
-    },
+    TooCoarse { edge_mm: f64, x_mm: f64, z_mm: f64 },
     /// More nodes than can be numbered.
     #[error(transparent)]
     TooManyNodes(#[from] TooManyNodes),

@@ -3,50 +3,37 @@
 use std::path::{Path, PathBuf};
 
 /// An error of reading or writing a mesh file.
+#[expect(missing_docs, reason = "the messages describe the fields")]
 #[derive(Debug, thiserror::Error)]
 pub enum MeshFileError {
     /// The file does not exist.
     #[error("{}: there is no such file; check the path", path.display())]
-    Missing {
-        /// Path as the caller gave it.
-        path: PathBuf,
-    },
+    Missing { path: PathBuf },
     /// The system refuses to read the file.
     #[error("{}: cannot be read: {source}", path.display())]
     Inaccessible {
-        /// Path as the caller gave it.
         path: PathBuf,
-        /// Error of the system.
         source: std::io::Error,
     },
     /// The file's extension is not a known format for this use.
     #[error("{}: the extension {ending:?} is not a known format; use one of {known}", path.display())]
     UnknownExtension {
-        /// Path as the caller gave it.
         path: PathBuf,
-        /// The extension in small letters, without the dot.
         ending: String,
-        /// The known extensions: ".stl, .obj".
         known: String,
     },
     /// The content does not follow the format, or is not a mesh that can be computed with.
     #[error("{}{}: {problem}", path.display(), line.map_or_else(String::new, |line| format!(":{line}")))]
     Content {
-        /// Path as the caller gave it.
         path: PathBuf,
-        /// Line number from 1; none in binary formats.
         line: Option<usize>,
-        /// The problem and its remedy.
         problem: String,
     },
     /// An array to be written does not have one value per node.
     #[error("array {name:?} has {values} values for {nodes} nodes; give one value per node")]
     ArrayLength {
-        /// Name of the array.
         name: String,
-        /// Number of values given.
         values: usize,
-        /// Number of nodes of the mesh.
         nodes: usize,
     },
 }

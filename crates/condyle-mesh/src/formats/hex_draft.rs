@@ -1,4 +1,4 @@
-//! A hexahedral mesh while it is read, and the checked result with its named surfaces and nodes.
+//! A hexahedral mesh while it is read, and the checked result with its named surfaces.
 
 use std::{
     cell::OnceCell,
@@ -22,14 +22,13 @@ pub(crate) struct HexDraft<'a> {
     /// Number of hexahedra that have each face, counted on first use.
     uses_of_quad: OnceCell<HashMap<[u64; 4], usize>>,
     surfaces: NamedLists<DraftQuad>,
-    pub(crate) node_sets: NamedLists<u64>,
 }
 
 type DraftQuad = (Option<usize>, [u64; 4]);
 
 /// One hexahedron by the labels of its nodes, in VTK order.
 pub(crate) struct DraftHex {
-    pub(crate) nodes: [u64; 8],
+    nodes: [u64; 8],
     label: u64,
     line: Option<usize>,
 }
@@ -60,7 +59,6 @@ impl<'a> HexDraft<'a> {
             hex_of_label: HashMap::new(),
             uses_of_quad: OnceCell::new(),
             surfaces: NamedLists::default(),
-            node_sets: NamedLists::default(),
         }
     }
 
@@ -105,10 +103,6 @@ impl<'a> HexDraft<'a> {
         list_of(&mut self.surfaces, surface).push((at.line, nodes));
     }
 
-    pub(crate) fn set_nodes(&mut self, set: &str, nodes: impl IntoIterator<Item = u64>) {
-        list_of(&mut self.node_sets, set).extend(nodes);
-    }
-
     /// Returns the faces of these hexahedra that no other hexahedron of the mesh shares.
     pub(crate) fn free_quads<'h>(
         &self,
@@ -125,7 +119,7 @@ impl<'a> HexDraft<'a> {
         quads.filter(|&quad| uses[&sorted(quad)] == 1).collect()
     }
 
-    /// Returns the mesh with its sets, if it can be computed with.
+    /// Returns the mesh with its surfaces, if it can be computed with.
     pub(crate) fn finish(self) -> Result<HexFile, MeshFileError> {
         if self.hexes.is_empty() {
             let problem = "holds no hexahedra; export the volume mesh with 8-node hexahedra";
@@ -142,20 +136,8 @@ impl<'a> HexDraft<'a> {
             }
         }
         let number = |label: &u64| kept[*self.node_of_label.get(label)?];
-        let node_sets = self.node_sets.values().map(|(name, members)| {
-            let mut nodes: Vec<u32> = members.iter().filter_map(number).collect();
-            nodes.sort_unstable();
-            nodes.dedup();
-            let name = name.clone();
-            NamedNodes { name, nodes }
-        });
-        let node_sets = node_sets.filter(|set| !set.nodes.is_empty()).collect();
         let surfaces = self.outward_surfaces(&mesh, number)?;
-        Ok(HexFile {
-            mesh,
-            surfaces,
-            node_sets,
-        })
+        Ok(HexFile { mesh, surfaces })
     }
 
     /// Returns the mesh without nodes that no hexahedron uses, and the number in it of each node of the file.
@@ -239,7 +221,7 @@ pub(crate) fn not_hexahedron(
     ))
 }
 
-/// A hexahedral mesh from a file, with its named surfaces and node sets.
+/// A hexahedral mesh from a file, with its named surfaces.
 #[derive(Clone, Debug, PartialEq)]
 pub struct HexFile {
     /// The hexahedra and their nodes, in the file's unit and axes and in its order; nodes that no
@@ -247,8 +229,6 @@ pub struct HexFile {
     pub mesh: HexMesh,
     /// Named parts of the boundary, in the order of the file.
     pub surfaces: Vec<NamedSurface>,
-    /// Named sets of nodes, in the order of the file.
-    pub node_sets: Vec<NamedNodes>,
 }
 
 impl HexFile {
@@ -256,12 +236,6 @@ impl HexFile {
     pub fn surface(&self, name: &str) -> Option<&NamedSurface> {
         let mut surfaces = self.surfaces.iter();
         surfaces.find(|surface| surface.name.eq_ignore_ascii_case(name))
-    }
-
-    /// Returns the node set of that name; case is ignored.
-    pub fn node_set(&self, name: &str) -> Option<&NamedNodes> {
-        let mut sets = self.node_sets.iter();
-        sets.find(|set| set.name.eq_ignore_ascii_case(name))
     }
 }
 
@@ -272,13 +246,4 @@ pub struct NamedSurface {
     pub name: String,
     /// Node numbers from 0, anticlockwise seen from outside.
     pub quads: Vec<[u32; 4]>,
-}
-
-/// A named set of nodes of a hexahedral mesh.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct NamedNodes {
-    /// Name as written in the file.
-    pub name: String,
-    /// Node numbers from 0, rising, each once.
-    pub nodes: Vec<u32>,
 }

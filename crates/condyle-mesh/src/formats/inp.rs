@@ -1,4 +1,4 @@
-//! Reading of Abaqus input files: the mesh, its sets and its element surfaces; other keywords are ignored.
+//! Reading of Abaqus input files: the mesh, its element sets and element surfaces; other keywords are ignored.
 
 use std::path::Path;
 
@@ -22,8 +22,8 @@ const NOT_FOLLOWED: [&str; 10] = [
     "MODEL CHANGE",
 ];
 
-/// Members of sets for each byte of the file: a short row can make a set of any size. A node takes more bytes than
-/// this, and a set seldom has more members than the file has nodes.
+/// Members of sets for each byte of the file: a short row can make a set of any size. An element takes more bytes than
+/// this, and a set seldom has more members than the file has elements.
 const MAX_MEMBERS_PER_BYTE: u64 = 8;
 /// Members of sets that a file of any length may have: short files may number sparsely.
 const MIN_MEMBERS_LIMIT: u64 = 1_000_000;
@@ -52,10 +52,9 @@ pub(crate) fn parse(path: &Path, bytes: &[u8]) -> Result<HexFile, MeshFileError>
         match keyword.name.as_str() {
             "NODE" => model.nodes(keyword)?,
             "ELEMENT" => model.elements(keyword)?,
-            "NSET" => model.node_set(keyword)?,
             "ELSET" => {
                 let name = keyword.required("ELSET")?;
-                let members = model.members(keyword, |model| &model.element_sets)?;
+                let members = model.members(keyword)?;
                 list_of(&mut model.element_sets, name).extend(members);
             }
             "INSTANCE" => {
@@ -182,7 +181,7 @@ impl Model<'_> {
         }
         Err(at.error(format!(
             "with the {more} members of this row, the sets of the file have more than {}, \
-             which a file of its length does not need; name only nodes and elements that there are",
+             which a file of its length does not need; name only elements that there are",
             self.max_members
         )))
     }
@@ -193,15 +192,10 @@ impl Model<'_> {
             let problem = "only rectangular coordinates can be read; write the nodes with SYSTEM=R";
             return Err(keyword.at.error(problem));
         }
-        let mut labels = Vec::with_capacity(keyword.data.len());
         for &(at, row) in &keyword.data {
             let mut words = fields(row);
             let label = at.number(words.next().unwrap_or_default())?;
             self.draft.node(at, label, at.coordinates(words)?)?;
-            labels.push(label);
-        }
-        if let Some(set) = keyword.value("NSET") {
-            self.draft.set_nodes(set, labels);
         }
         Ok(())
     }
@@ -237,28 +231,8 @@ impl Model<'_> {
         Ok(())
     }
 
-    fn node_set(&mut self, keyword: &Keyword) -> Result<(), MeshFileError> {
-        let name = keyword.required("NSET")?;
-        let mut nodes = self.members(keyword, |model| &model.draft.node_sets)?;
-        if let Some(elements) = keyword.value("ELSET") {
-            let labels = self.element_sets.get(&plain(elements));
-            let labels = labels.map_or_else(Vec::new, |(_, labels)| labels.clone());
-            self.count_members(keyword.at, 8 * labels.len() as u64)?;
-            let hexes = labels
-                .iter()
-                .filter_map(|&label| self.draft.labelled_hex(label));
-            nodes.extend(hexes.flat_map(|hex| hex.nodes));
-        }
-        self.draft.set_nodes(name, nodes);
-        Ok(())
-    }
-
-    /// Reads the members of a set: numbers, names of earlier `sets`, or with GENERATE first, last, step.
-    fn members(
-        &mut self,
-        keyword: &Keyword,
-        sets: impl Fn(&Self) -> &NamedLists<u64>,
-    ) -> Result<Vec<u64>, MeshFileError> {
+    /// Reads the members of a set: numbers, names of earlier sets, or with GENERATE first, last, step.
+    fn members(&mut self, keyword: &Keyword) -> Result<Vec<u64>, MeshFileError> {
         let generate = keyword.value("GENERATE").is_some();
         let mut members = Vec::new();
         for &(at, row) in &keyword.data {
@@ -279,10 +253,10 @@ impl Model<'_> {
             }
             for field in fields(row) {
                 let name = plain(field);
-                match sets(self).get(&name).map(|(_, own)| own.len()) {
+                match self.element_sets.get(&name).map(|(_, own)| own.len()) {
                     Some(count) => {
                         self.count_members(at, count as u64)?;
-                        members.extend(&sets(self)[&name].1);
+                        members.extend(&self.element_sets[&name].1);
                     }
                     None => members.push(label(at, field)?),
                 }
@@ -361,11 +335,11 @@ mod tests {
  7, 1, 2, 12, 11, 21, 22, 32, 31
  8, 2, 3, 13, 12,
  22, 23, 33, 32
-*nset, nset=Bottom, generate
- 1, 3, 1
- 11, 13
-*NSET, NSET=Ends
- bottom, 33, 99,
+*elset, elset=Both, generate
+ 7, 8, 1
+ 7, 7
+*ELSET, ELSET=More
+ both, 8, 8,
 *ELSET, ELSET=Last
  8,
 *SURFACE, NAME=Top, TYPE=ELEMENT
@@ -373,7 +347,7 @@ mod tests {
 *Surface, name=Right
  last, S4
 *SURFACE, NAME=Skin
- Solid,
+ more,
 *STEP
 *END STEP
 ";
@@ -391,9 +365,6 @@ mod tests {
     fn mesh_sets_and_surfaces_are_read() {
         let file = read(TEXT).unwrap();
         assert_eq!(file.mesh, two_cubes());
-        assert_eq!(file.node_set("bottom").unwrap().nodes, [0, 1, 2, 3, 4, 5]);
-        assert_eq!(file.node_set("Ends").unwrap().nodes, [0, 1, 2, 3, 4, 5, 11]);
-        assert_eq!(file.node_set("everything").unwrap().nodes.len(), 12);
         assert_eq!(
             file.surface("TOP").unwrap().quads,
             [[6, 7, 10, 9], [7, 8, 11, 10]]
@@ -467,9 +438,9 @@ mod tests {
 
     #[test]
     fn sets_and_surfaces_that_are_wrong_are_named_with_their_line() {
-        assert!(reported(" bottom, 33", " botom, 33").contains("\"botom\" is neither"));
-        assert!(reported(" 1, 3, 1", " 3, 1, 1").contains("GENERATE takes"));
-        assert!(reported(" 1, 3, 1", " 1, 3, 0").contains("GENERATE takes"));
+        assert!(reported(" both, 8", " boht, 8").contains("\"boht\" is neither"));
+        assert!(reported(" 7, 8, 1", " 8, 7, 1").contains("GENERATE takes"));
+        assert!(reported(" 7, 8, 1", " 7, 8, 0").contains("GENERATE takes"));
         assert!(reported("Solid, S2", "Solid, S7").contains("\"S7\" is not a face"));
         assert!(reported(" last, S4", " 9, S4").contains("element 9 of this surface"));
         let inside = reported(" last, S4", " last, S6");
@@ -486,10 +457,10 @@ mod tests {
             the file have more than 1004744, which a file of its length does not need; name only \
             nodes and elements that there are";
         assert_eq!(
-            reported(" 1, 3, 1", " 1, 18446744073709551615, 1"),
+            reported(" 7, 8, 1", " 1, 18446744073709551615, 1"),
             expected
         );
-        let all = reported(" 1, 3, 1", " 0, 18446744073709551615");
+        let all = reported(" 7, 8, 1", " 0, 18446744073709551615");
         assert!(
             all.starts_with("a.inp:23: with the 18446744073709551615 members"),
             "{all}"
@@ -506,38 +477,44 @@ mod tests {
 
     #[test]
     fn a_long_step_ends_after_its_first_member() {
-        let stepped = TEXT.replace(" 1, 3, 1", " 1, 18446744073709551614, 18446744073709551614");
-        let bottom = read(&stepped).unwrap();
-        assert_eq!(bottom.node_set("bottom").unwrap().nodes, [0, 3, 4, 5]);
+        let stepped = TEXT
+            .replace(" 7, 8, 1", " 7, 18446744073709551614, 18446744073709551614")
+            .replace(" Solid, S2", " both, S2");
+        let file = read(&stepped).unwrap();
+        assert_eq!(file.surface("top").unwrap().quads, [[6, 7, 10, 9]]);
     }
 
     #[test]
     fn sets_that_double_and_double_are_refused() {
-        let mut doubling = String::from("*NSET, NSET=D\n bottom\n");
+        let mut doubling = String::from("*ELSET, ELSET=D\n both\n");
         for _ in 0..40 {
-            doubling += "*NSET, NSET=D\n D, D\n";
+            doubling += "*ELSET, ELSET=D\n D, D\n";
         }
-        let nodes = reported("*ELSET,", &format!("{doubling}*ELSET,"));
+        let doubled = reported(
+            "*SURFACE, NAME=Top",
+            &format!("{doubling}*SURFACE, NAME=Top"),
+        );
         assert!(
-            nodes.contains("the sets of the file have more than"),
-            "{nodes}"
+            doubled.contains("the sets of the file have more than"),
+            "{doubled}"
         );
     }
 
     #[test]
     fn many_sets_and_free_surfaces_are_read_in_time() {
         let sets: String = (0..30_000)
-            .map(|set| format!("*NSET, NSET=N{set}\n 1\n"))
+            .map(|set| format!("*ELSET, ELSET=N{set}\n 7\n"))
             .collect();
         let faces = " Solid,\n".repeat(30_000);
         let many = TEXT
             .replace("*ELSET, ELSET=Last", &format!("{sets}*ELSET, ELSET=Last"))
+            .replace(" Solid, S2", " N29999, S2")
             .replace(
                 "*SURFACE, NAME=Skin\n",
                 &format!("*SURFACE, NAME=Skin\n{faces}"),
             );
         let file = read(&many).unwrap();
-        assert_eq!(file.node_sets.len(), 30_003);
+        assert_eq!(file.surface("top").unwrap().quads.len(), 1);
         assert_eq!(file.surface("skin").unwrap().quads.len(), 10);
     }
 

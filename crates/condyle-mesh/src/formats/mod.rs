@@ -37,9 +37,9 @@ mod vtu_write;
 use std::{io::ErrorKind, path::Path};
 
 pub use error::MeshFileError;
-pub use hex_draft::{HexFile, NamedNodes, NamedSurface};
+pub use hex_draft::{HexFile, NamedSurface};
 pub use inp_writer::{InpWriter, element_faces};
-pub use pvd::{parse_pvd, pvd_text, pvd_text_of_parts};
+pub use pvd::{parse_pvd, pvd_text};
 pub use stl::write_stl;
 pub use vtk::{VtuFile, parse_vtu_points, parse_vtu_triangles};
 pub use vtu_write::{Grid, PointArray, PointValues, compact_vtu_bytes, vtu_bytes};

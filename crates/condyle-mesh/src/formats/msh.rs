@@ -1,4 +1,4 @@
-//! Gmsh meshes, versions 2.2 and 4.1 as text: hexahedra, and quads and nodes of physical groups.
+//! Gmsh meshes, versions 2.2 and 4.1 as text: hexahedra, and quads of physical groups.
 
 use std::{collections::HashMap, path::Path};
 
@@ -196,25 +196,20 @@ impl<'t> Reader<'t> {
             3 => {
                 let corners = at.corners(name, nodes)?;
                 for &group in groups {
-                    self.draft.quad(&self.name(2, group), at, corners);
+                    self.draft.quad(&self.name(group), at, corners);
                 }
             }
-            1 | 15 => {
-                let dimension = i64::from(kind == 1);
-                for &group in groups {
-                    let nodes = nodes.iter().map(|node| node.cast_unsigned());
-                    self.draft.set_nodes(&self.name(dimension, group), nodes);
-                }
-            }
+            // Lines and points have neither volume nor faces.
+            1 | 15 => {}
             other => return Err(not_hexahedron(at, label, other, &KINDS)),
         }
         Ok(())
     }
 
-    /// Returns the name of a group, or its number if it has none. A negative number means turned round.
-    fn name(&self, dimension: i64, group: i64) -> String {
+    /// Returns the name of a group of faces, or its number if it has none. A negative number means turned round.
+    fn name(&self, group: i64) -> String {
         let group = group.saturating_abs();
-        let name = self.group_names.get(&(dimension, group));
+        let name = self.group_names.get(&(2, group));
         name.cloned().unwrap_or_else(|| group.to_string())
     }
 }
@@ -329,8 +324,6 @@ $EndPeriodic
             file.surface("top side").unwrap().quads,
             [[6, 7, 10, 9], [7, 8, 11, 10]]
         );
-        assert_eq!(file.node_set("corner").unwrap().nodes, [0]);
-        assert_eq!(file.node_set("7").unwrap().nodes, [0, 1]);
     }
 
     #[test]
@@ -346,7 +339,6 @@ $EndPeriodic
             file.surface("top side").unwrap().quads,
             [[0, 1, 4, 3], [1, 2, 5, 4]]
         );
-        assert_eq!(file.node_set("4").unwrap().nodes, [6]);
     }
 
     #[test]

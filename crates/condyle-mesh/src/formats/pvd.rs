@@ -12,17 +12,11 @@ use super::{
     vtu_write::escaped,
 };
 
-/// Returns the text of a `.pvd` file: the time of each data set and its file, relative to the collection.
+/// Returns the text of a `.pvd` file: of each data set the time, the number of its part, such as a body, and its file,
+/// relative to the collection.
 ///
 /// For a wear test the time is the number of cycles.
-pub fn pvd_text<'a>(series: impl IntoIterator<Item = (f64, &'a str)>) -> String {
-    let parts = series.into_iter().map(|(time, file)| (time, 0, file));
-    pvd_text_of_parts(parts)
-}
-
-/// Returns the text of a `.pvd` file with several parts, such as bodies, at each time: time, number of the part,
-/// and file.
-pub fn pvd_text_of_parts<'a>(series: impl IntoIterator<Item = (f64, usize, &'a str)>) -> String {
+pub fn pvd_text<'a>(series: impl IntoIterator<Item = (f64, usize, &'a str)>) -> String {
     let mut xml = String::from(
         "<?xml version=\"1.0\"?>\n<VTKFile type=\"Collection\" version=\"1.0\" \
          byte_order=\"LittleEndian\">\n<Collection>\n",
@@ -71,7 +65,7 @@ mod tests {
     fn times_and_files_come_back() {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("insert.pvd");
-        let text = pvd_text([(0.0, "insert_0000.vtu"), (5e5, "insert_0001.vtu")]);
+        let text = pvd_text([(0.0, 0, "insert_0000.vtu"), (5e5, 0, "insert_0001.vtu")]);
         std::fs::write(&path, text).unwrap();
         let series = read_pvd(&path).unwrap();
         assert_eq!(series[0], (0.0, folder.path().join("insert_0000.vtu")));
@@ -82,7 +76,7 @@ mod tests {
     fn what_is_wrong_is_named_with_its_line() {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("insert.pvd");
-        let text = pvd_text([(0.0, "a.vtu")]).replace("timestep=\"0\"", "timestep=\"now\"");
+        let text = pvd_text([(0.0, 0, "a.vtu")]).replace("timestep=\"0\"", "timestep=\"now\"");
         std::fs::write(&path, text).unwrap();
         assert!(message(read_pvd(&path)).contains("pvd:4: a DataSet needs a number"));
         std::fs::write(&path, "<VTKFile>").unwrap();

@@ -140,7 +140,7 @@ pub fn parse_vtu_triangles(path: &Path, bytes: &[u8]) -> Result<TriangleMesh, Me
     })
 }
 
-/// Reads hexahedra, with arrays of 0 and 1 as sets.
+/// Reads hexahedra, with arrays of 0 and 1 as surfaces.
 pub(super) fn parse_vtu(path: &Path, bytes: &[u8]) -> Result<HexFile, MeshFileError> {
     let grid = Grid::read(path, bytes)?;
     let mut draft = HexDraft::new(path);
@@ -156,22 +156,15 @@ pub(super) fn parse_vtu(path: &Path, bytes: &[u8]) -> Result<HexFile, MeshFileEr
             .iter()
             .filter(|array| is_mark(array))
     };
-    // Marked quads are a surface; marked hexahedra are a node set.
     for mark in marks("CellData") {
-        let cells = grid.kinds.iter().enumerate();
-        for (cell, &kind) in cells.filter(|&(cell, _)| mark.values[cell] == 1.0) {
-            match kind {
-                QUAD => draft.quad(&mark.name, At::file(path), grid.corners(cell)?),
-                HEXAHEDRON => draft.set_nodes(&mark.name, grid.corners::<8>(cell)?),
-                _ => {}
-            }
+        let quads = (0..grid.kinds.len()).filter(|&cell| grid.kinds[cell] == QUAD);
+        for cell in quads.filter(|&cell| mark.values[cell] == 1.0) {
+            draft.quad(&mark.name, At::file(path), grid.corners(cell)?);
         }
     }
-    // Marked points are a node set, and the outer faces with four marked corners are a surface.
+    // The outer faces with four marked corners are a surface.
     for mark in marks("PointData") {
         let is_marked = |node: u64| mark.values.get(node as usize) == Some(&1.0);
-        let nodes = (0..mark.values.len() as u64).filter(|&node| is_marked(node));
-        draft.set_nodes(&mark.name, nodes);
         for quad in draft.free_quads(&draft.hexes) {
             if quad.iter().all(|&node| is_marked(node)) {
                 draft.quad(&mark.name, At::file(path), quad);

@@ -18,7 +18,7 @@ pub enum PointValues<'a> {
     Float32(&'a [f32]),
     /// Vectors, written as Float64 of three components.
     Vectors(&'a [[f64; 3]]),
-    /// Written as UInt8; values of 0 and 1 are read back as a node set and a surface.
+    /// Written as UInt8; values of 0 and 1 are read back as a surface.
     UInt8(&'a [u8]),
 }
 

@@ -1,9 +1,9 @@
 //! A scene as bytes.
 
-use condyle_mesh::{TriangleMesh, Vec3};
+use condyle_mesh::{TriangleMesh, Vec3, coarser};
 use serde_json::{Value, json};
 
-use super::{Scene, SceneCycle, SceneUpdate, coarse::coarser};
+use super::{Scene, SceneCycle, SceneUpdate};
 use crate::figure::{Curve, Panel, finite_range};
 use crate::number::in_words;
 use crate::results::ARTICULATING;

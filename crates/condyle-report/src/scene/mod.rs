@@ -3,7 +3,6 @@
 //! A [`Scene`] is made from a results folder, or from a march in memory; [`Scene::to_bytes`] encodes it for the page's
 //! programs, with the same bytes from both.
 
-mod coarse;
 mod encode;
 mod read;
 

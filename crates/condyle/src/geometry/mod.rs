@@ -29,6 +29,8 @@ mod insert;
 mod landmarks;
 mod smooth_field;
 mod surface_sample;
+#[cfg(test)]
+mod tests;
 mod torus;
 
 pub(crate) use connectivity::{FacesAround, NodeBlock};

@@ -117,7 +117,7 @@ impl SmoothField {
 #[cfg(test)]
 mod tests {
     use super::{grid::BAND_MM, *};
-    use crate::{Vec3, geometry::surface_sample::tests::check_derivatives};
+    use crate::{Vec3, geometry::tests::check_derivatives};
 
     /// Returns a ball of radius 24 mm with edges of about `edge_mm`, by latitude and longitude, turned so that its
     /// poles lie where no test samples it.

@@ -139,7 +139,7 @@ impl Cylinder {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::geometry::surface_sample::tests::check_derivatives;
+    use crate::geometry::tests::check_derivatives;
 
     #[test]
     fn gradient_and_curvature_are_derivatives() {

@@ -120,7 +120,7 @@ impl Case {
         law.friction_model = model.friction_model;
         let law = match model.plasticity.hardening() {
             Some(hardening) => law.with_material(ElasticPlastic { elastic, hardening }),
-            None => law.with_material(elastic),
+            None => law,
         };
         let law = law.with_backside(backside, insert)?;
         self.load_compliance(&law, insert, keep)?;

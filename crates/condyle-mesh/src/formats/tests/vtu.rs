@@ -42,16 +42,8 @@ fn hexahedra_quads_and_marks_are_read() {
         file.surface("top").unwrap().quads,
         [[6, 7, 10, 9], [7, 8, 11, 10]]
     );
-    assert_eq!(
-        file.node_set("second").unwrap().nodes,
-        [1, 2, 4, 5, 7, 8, 10, 11]
-    );
-    assert_eq!(
-        file.node_set("fixed").unwrap().nodes,
-        [0, 1, 3, 4, 6, 7, 9, 10]
-    );
     assert_eq!(file.surface("fixed").unwrap().quads.len(), 5);
-    assert!(file.surface("depth").is_none() && file.node_set("depth").is_none());
+    assert!(file.surface("second").is_none() && file.surface("depth").is_none());
 }
 
 #[test]

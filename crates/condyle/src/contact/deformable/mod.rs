@@ -47,7 +47,7 @@ use contact::DeformableContact;
 use elastic_surface::ElasticSurface;
 use friction::ElasticFriction;
 use history::{LoadHistory, field};
-use plastic::InsertMaterial;
+use plastic::{Eigenstrains, InsertMaterial};
 
 /// Memory for the compliances of inserts that are kept, bytes: enough for those of a knee insert and its coarser twin,
 /// unworn and worn.
@@ -97,7 +97,8 @@ pub enum Backside {
 #[derive(Clone, Debug)]
 pub struct Deformable {
     elastic: Elastic,
-    material: Arc<dyn InsertMaterial>,
+    /// None for an insert that stays elastic.
+    material: Option<Arc<dyn InsertMaterial>>,
     /// Friction and search.
     pub settings: ContactSettings,
     /// The model of friction: with or without elastic deflection along the surface.
@@ -108,20 +109,20 @@ pub struct Deformable {
 }
 
 impl Deformable {
-    /// Creates the law of an insert of a material, with regularised friction, and factors its stiffness.
+    /// Creates the law of an elastic insert, with regularised friction, and factors its stiffness.
     ///
     /// # Errors
     /// A material or a mesh that is no elastic solid: a part of it is not held by the backside, for instance.
     pub fn new(
-        material: impl Material + Clone + Debug + Send + Sync + 'static,
+        elastic: Elastic,
         friction: f64,
         slip_tolerance_mm_per_s: f64,
         backside: Backside,
         insert: &Insert,
     ) -> Result<Self, SolidError> {
         let law = Self {
-            elastic: material.elastic(),
-            material: Arc::new(material),
+            elastic,
+            material: None,
             settings: ContactSettings::new(friction, slip_tolerance_mm_per_s),
             friction_model: FrictionModel::default(),
             backside,
@@ -146,7 +147,7 @@ impl Deformable {
         Ok(self)
     }
 
-    /// Returns the same law for an insert of another material. Its compliance is recomputed if the elastic constants differ.
+    /// Returns the same law for an insert that yields. Its compliance is recomputed if the elastic constants differ.
     #[must_use]
     pub fn with_material(
         mut self,
@@ -156,7 +157,7 @@ impl Deformable {
             self.elastic = material.elastic();
             self.kept = Arc::default();
         }
-        self.material = Arc::new(material);
+        self.material = Some(Arc::new(material));
         self
     }
 
@@ -290,9 +291,8 @@ impl ContactLaw for Deformable {
         let (surface, nodes) = self.surface_after(bodies.insert, &state);
         let mut settings = self.settings;
         let mut histories: Vec<Box<dyn LoadHistory + 'a>> = Vec::new();
-        if self.material.yields() {
-            let plastic = self.material.history(Arc::clone(&surface), &state);
-            histories.push(plastic);
+        if let Some(material) = &self.material {
+            histories.push(material.history(Arc::clone(&surface), &state));
         }
         if self.friction_model == FrictionModel::StickSlip {
             let along = Arc::clone(surface.tangential());
@@ -342,7 +342,7 @@ impl ContactLaw for Deformable {
         let bytes = surface.bytes(nodes_near, [1.0, along_surface]);
         // The coarser twin of the insert and the worn insert are kept besides.
         let kept = bytes.min(MAX_KEPT_BYTES);
-        let below = if self.material.yields() {
+        let below = if self.material.is_some() {
             WITH_TWIN * surface.bytes_below(nodes_near)
         } else {
             0.0
@@ -365,15 +365,14 @@ impl ContactLaw for Deformable {
     ) -> Option<UnderSurface> {
         let (surface, _) = self.surface_after(insert, state);
         let mut under = UnderSurface::default();
-        let stresses = match self.backside {
+        let (moved_mm, strains) = match self.backside {
             Backside::Bonded => {
-                let plastic = self.material.yields();
-                let plastic = plastic.then(|| self.material.under_surface(&surface, state));
+                let material = self.material.as_ref();
+                let plastic = material.map(|material| material.under_surface(&surface, state));
                 let (strains, plastic) = plastic.unzip();
                 under.plastic = plastic;
                 let strains = strains.unwrap_or_default();
-                let moved_mm = surface.moved_by(loads, &strains);
-                surface.solid.stresses_with(&moved_mm, &strains)
+                (surface.moved_by(loads, &strains), strains)
             }
             Backside::Resting {
                 friction,
@@ -387,9 +386,10 @@ impl ContactLaw for Deformable {
                 let found = tray.rest(friction, &left_mm, &forces_n, &left_mm.clone().into());
                 let moved_mm = found.map_or(left_mm, |rest| rest.moved_mm);
                 let moved_mm = surface.moved_with_tray(loads, &tray, &moved_mm);
-                surface.solid.stresses(&moved_mm)
+                (moved_mm, Eigenstrains::new())
             }
         };
+        let stresses = surface.solid.stresses(&moved_mm, &strains);
         under.von_mises_mpa = stresses.iter().map(Stress::von_mises).collect();
         under.max_shear_mpa = stresses.iter().map(Stress::max_shear).collect();
         Some(under)

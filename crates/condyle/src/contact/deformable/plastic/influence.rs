@@ -87,7 +87,7 @@ impl Influence {
             let nodes: Vec<u32> = (0..solid.mesh().nodes.len() as u32).collect();
             // Full solutions rather than products of half-solutions: all nodes are needed.
             let moved = solid.influence(&nodes, loads);
-            moved.values().iter().map(|&by| by as f32).collect()
+            moved.into_iter().map(|by| by as f32).collect()
         })
     }
 

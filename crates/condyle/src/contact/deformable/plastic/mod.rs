@@ -64,8 +64,6 @@ pub(crate) type Eigenstrains = BTreeMap<usize, [Strain; POINTS]>;
 
 /// The material of an insert as its law holds it: any [`Material`], without the type of its internal variables.
 pub(crate) trait InsertMaterial: Debug + Send + Sync {
-    fn yields(&self) -> bool;
-
     /// Creates the history of an insert of this material, resumed from the stored `state`.
     fn history(&self, surface: Arc<ElasticSurface>, state: &ContactState) -> Box<dyn LoadHistory>;
 
@@ -78,10 +76,6 @@ pub(crate) trait InsertMaterial: Debug + Send + Sync {
 }
 
 impl<M: Material + Clone + Debug + Send + Sync + 'static> InsertMaterial for M {
-    fn yields(&self) -> bool {
-        self.initial_yield_stress().is_finite()
-    }
-
     fn history(&self, surface: Arc<ElasticSurface>, state: &ContactState) -> Box<dyn LoadHistory> {
         let stored = StoredPlasticity::from_stored(state);
         Box::new(PlasticInsert::new(stored, surface, self.clone()))

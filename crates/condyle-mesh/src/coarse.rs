@@ -1,8 +1,8 @@
-//! Simplification of a body for a picture that a processor draws.
+//! Simplification of a body for pictures.
 
 use std::collections::BTreeMap;
 
-use condyle_mesh::{TriangleMesh, Vec3};
+use crate::{Vec3, triangle_mesh::TriangleMesh};
 
 /// Cosine of the angle, 30 degrees, from which an edge is visibly sharp.
 const SHARP_COSINE: f64 = 0.866;
@@ -24,7 +24,7 @@ enum Cell {
 /// Border and sharp edges are unchanged. In each cube of a grid, the other vertices are replaced by the one nearest to
 /// their mean, so that all vertices stay on the surface, and a triangle of edge `h` deviates from a surface of radius
 /// `R` by up to `h^2 / (8 R)`.
-pub(super) fn coarser(body: &TriangleMesh, max: usize) -> TriangleMesh {
+pub fn coarser(body: &TriangleMesh, max: usize) -> TriangleMesh {
     if body.triangles.len() <= max {
         return body.clone();
     }
