@@ -454,8 +454,8 @@ mod tests {
     #[test]
     fn a_range_without_a_bound_is_refused() {
         let expected = "a.inp:23: with the 18446744073709551615 members of this row, the sets of \
-            the file have more than 1004744, which a file of its length does not need; name only \
-            nodes and elements that there are";
+            the file have more than 1004704, which a file of its length does not need; name only \
+            elements that there are";
         assert_eq!(
             reported(" 7, 8, 1", " 1, 18446744073709551615, 1"),
             expected
