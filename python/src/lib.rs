@@ -37,7 +37,14 @@ mod _condyle {
 
     #[pymodule_init]
     fn init(_module: &Bound<'_, PyModule>) -> PyResult<()> {
-        super::check_processor()
+        // An ImportError, before the first such instruction would end the interpreter.
+        if condyle_lab::is_processor_supported() {
+            return Ok(());
+        }
+        Err(pyo3::exceptions::PyImportError::new_err(
+            "this condyle was built for x86 processors with AVX2 and FMA, and this one lacks them; install it with \
+                RUSTFLAGS=\"-C target-cpu=x86-64\" pip install ./python, and it runs at about half the speed",
+        ))
     }
 
     /// Returns the unit that the name of a quantity ends in; empty for a pure number.
@@ -51,30 +58,4 @@ mod _condyle {
 
     #[pymodule_export]
     const VERSION: &str = env!("CARGO_PKG_VERSION");
-}
-
-/// Returns an ImportError if the processor lacks AVX2 or FMA, before the first such instruction would end the interpreter.
-#[cfg(all(target_arch = "x86_64", target_feature = "avx2"))]
-#[inline(never)]
-fn check_processor() -> PyResult<()> {
-    let features = raw_cpuid::CpuId::new();
-    let has_avx2 = features
-        .get_extended_feature_info()
-        .is_some_and(|features| features.has_avx2());
-    let has_fma = features
-        .get_feature_info()
-        .is_some_and(|features| features.has_fma());
-    if has_avx2 && has_fma {
-        return Ok(());
-    }
-    Err(pyo3::exceptions::PyImportError::new_err(
-        "this condyle was built for x86 processors with AVX2 and FMA, and this one lacks them; install it with \
-         RUSTFLAGS=\"-C target-cpu=x86-64\" pip install ./python, and it runs at about half the speed",
-    ))
-}
-
-/// Builds for other processors need nothing.
-#[cfg(not(all(target_arch = "x86_64", target_feature = "avx2")))]
-fn check_processor() -> PyResult<()> {
-    Ok(())
 }

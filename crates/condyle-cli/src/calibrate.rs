@@ -1,10 +1,10 @@
 //! `condyle calibrate` and `condyle calibrate-wear`.
 
-use std::{fs, io, path::Path};
+use std::{fs, io};
 
 use condyle_lab::{
-    measured::{Calibration, CalibrationRequest, Interval, Trial, calibrate as find_constants},
-    pressure_law::{CalibrateRequest, CalibratedLaw, calibrate as fit},
+    measured::{Calibration, Interval, Trial, calibrate as find_constants},
+    pressure_law::calibrate as fit,
 };
 
 use crate::{
@@ -21,17 +21,22 @@ pub fn calibrate(arguments: &Calibrate) -> Done {
         Failure::bad_input(format_args!("{} cannot be written: {error}", out.display()))
     };
     fs::create_dir(out).map_err(unwritten)?;
-    let request = CalibrateRequest {
-        case: arguments.case.clone(),
-        changes: arguments.changes.set.clone(),
-        held_out: arguments.hold_out.clone(),
-    };
-    let law = fit(&request, &mut |step| note(format_args!("solving: {step}")));
+    let (case, changes, held_out) = (&arguments.case, &arguments.changes.set, &arguments.hold_out);
+    let law = fit(case, changes, held_out, &mut |step| {
+        note(format_args!("solving: {step}"));
+    });
     let law = law.inspect_err(|_| {
         // The folder is still empty.
         let _ = fs::remove_dir(out);
     })?;
-    keep(&law, out).map_err(unwritten)?;
+    for (name, text) in [
+        ("pressure_table.csv", law.to_csv()),
+        (CASE, law.case.to_toml_in(out)),
+        (PAGE, law.markdown()),
+        ("calibration.json", output::json(&law)),
+    ] {
+        fs::write(out.join(name), text).map_err(unwritten)?;
+    }
     if arguments.json {
         return output::print(&output::json(&law));
     }
@@ -49,24 +54,9 @@ pub fn calibrate(arguments: &Calibrate) -> Done {
     output::print(lines.text())
 }
 
-fn keep(law: &CalibratedLaw, out: &Path) -> io::Result<()> {
-    let files = [
-        ("pressure_table.csv", law.to_csv()),
-        (CASE, law.case.to_toml_in(out)),
-        (PAGE, law.markdown()),
-        ("calibration.json", output::json(law)),
-    ];
-    let mut files = files.iter();
-    files.try_for_each(|(name, text)| fs::write(out.join(name), text))
-}
-
 pub fn calibrate_wear(arguments: &CalibrateWear) -> Done {
-    let request = CalibrationRequest {
-        tests: CalibrationRequest::pairs(&arguments.tests)?,
-        constants: arguments.constant.clone(),
-        predict: arguments.predict.clone(),
-    };
-    let calibration = find_constants(&request, &mut |trial: &Trial| {
+    let (tests, constants, predicted) = (&arguments.tests, &arguments.constant, &arguments.predict);
+    let calibration = find_constants(tests, constants, predicted, &mut |trial: &Trial| {
         let constants = listed(&trial.constants, |value| format!("{value:.4e}"));
         let rates = listed(&trial.mg_per_million_cycles, |rate| format!("{rate:.3}"));
         note(format_args!("{constants}: {rates} mg per million cycles"));

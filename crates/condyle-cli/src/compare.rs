@@ -1,8 +1,8 @@
 //! `condyle compare`.
 
 use condyle_lab::measured::{
-    Comparison, Errors, GravimetricComparison, Interval, KinematicsComparison, NodeDepths,
-    SurfaceComparison, SurfaceErrors, compare as compare_measured,
+    Errors, GravimetricComparison, Interval, KinematicsComparison, NodeDepths, SurfaceComparison,
+    SurfaceErrors, compare as compare_measured,
 };
 use condyle_results::COMPARED;
 
@@ -26,13 +26,6 @@ pub fn compare(arguments: &Compare) -> Done {
     if arguments.json {
         return output::print_with_folder(&comparison.json(), out);
     }
-    let mut lines = tables(&comparison);
-    let files = written.iter().map(|path| path.display().to_string());
-    lines.line(format!("wrote {}", files.collect::<Vec<_>>().join(", ")));
-    output::print_with_folder(lines.text(), out)
-}
-
-fn tables(comparison: &Comparison) -> Lines {
     let mut lines = Lines::default();
     if let Some(kinematics) = &comparison.kinematics {
         add_kinematics(kinematics, &mut lines);
@@ -43,7 +36,9 @@ fn tables(comparison: &Comparison) -> Lines {
     if let Some(surface) = &comparison.surface {
         add_surface(surface, &mut lines);
     }
-    lines
+    let files = written.iter().map(|path| path.display().to_string());
+    lines.line(format!("wrote {}", files.collect::<Vec<_>>().join(", ")));
+    output::print_with_folder(lines.text(), out)
 }
 
 fn add_kinematics(kinematics: &KinematicsComparison, lines: &mut Lines) {

@@ -21,33 +21,17 @@ use arguments::{Arguments, Command};
 use output::{Done, Failure};
 
 fn main() -> ExitCode {
-    match check_processor().and_then(|()| run_command()) {
+    if !condyle_lab::is_processor_supported() {
+        return Failure::bad_input(
+            "this condyle was built for x86 processors with AVX2 and FMA, and this one lacks them; build it with \
+                RUSTFLAGS=\"-C target-cpu=x86-64\" cargo build --release, and it runs at about half the speed",
+        )
+        .exit();
+    }
+    match run_command() {
         Ok(code) => code,
         Err(failure) => failure.exit(),
     }
-}
-
-/// Fails if the processor lacks instructions that the build requires.
-///
-/// Without this check the program would end at the first vector with "illegal instruction". The check of the standard
-/// library answers from the build, not from the processor.
-#[cfg(all(target_arch = "x86_64", target_feature = "avx2"))]
-fn check_processor() -> Result<(), Failure> {
-    let processor = raw_cpuid::CpuId::new();
-    let extended = processor.get_extended_feature_info();
-    let features = processor.get_feature_info();
-    if extended.is_some_and(|one| one.has_avx2()) && features.is_some_and(|one| one.has_fma()) {
-        return Ok(());
-    }
-    Err(Failure::bad_input(
-        "this condyle was built for x86 processors with AVX2 and FMA, and this one lacks them; build it with \
-         RUSTFLAGS=\"-C target-cpu=x86-64\" cargo build --release, and it runs at about half the speed",
-    ))
-}
-
-#[cfg(not(all(target_arch = "x86_64", target_feature = "avx2")))]
-fn check_processor() -> Result<(), Failure> {
-    Ok(())
 }
 
 // A function of its own, so that no vector instruction moves before the check of the processor.

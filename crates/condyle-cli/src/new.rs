@@ -9,7 +9,7 @@ use std::{
 
 use condyle_case::{
     abaqus::{ExportError, PressedCase},
-    case::{Case, Draft, DraftError, template},
+    case::{Case, DraftError, Drafted, template},
 };
 use condyle_lab::{Preview, RunError};
 
@@ -72,15 +72,10 @@ fn text(arguments: &New) -> Result<String, DraftError> {
     let (Some(femur), Some(insert)) = (&arguments.femur, &arguments.insert) else {
         return Ok(template(arguments.preset));
     };
-    let draft = Draft {
-        preset: arguments.preset,
-        side: arguments.side,
-        femur,
-        insert,
-    };
     let folder = arguments.case.parent();
     let folder = folder.filter(|folder| *folder != Path::new(""));
-    let drafted = draft.drafted(folder.unwrap_or(Path::new(".")))?;
+    let folder = folder.unwrap_or(Path::new("."));
+    let drafted = Drafted::new(arguments.preset, arguments.side, [femur, insert], folder)?;
     drafted.remarks.iter().for_each(note);
     Ok(drafted.text)
 }

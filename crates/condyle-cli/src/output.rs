@@ -73,8 +73,8 @@ impl From<&Problems> for Failure {
     }
 }
 
-impl From<&RunError> for Failure {
-    fn from(error: &RunError) -> Self {
+impl From<RunError> for Failure {
+    fn from(error: RunError) -> Self {
         let code = if error.is_physics() {
             PHYSICS
         } else {
@@ -87,12 +87,6 @@ impl From<&RunError> for Failure {
             },
             None => Self::new(error, code),
         }
-    }
-}
-
-impl From<RunError> for Failure {
-    fn from(error: RunError) -> Self {
-        Self::from(&error)
     }
 }
 

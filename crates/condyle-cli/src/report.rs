@@ -7,7 +7,10 @@ use std::{
 
 use condyle_report::{
     Picture, Results, pictures,
-    runs::{Differences, Run, write_runs},
+    runs::{
+        CurveDifference, Differences, MapDifference, NumberDifference, Run, SettingDifference,
+        write_runs,
+    },
 };
 use condyle_results::PLOTTED;
 
@@ -18,7 +21,21 @@ use crate::{
 
 pub fn report(arguments: &Report) -> Done {
     match arguments.results.as_slice() {
-        [folder] if arguments.out.is_none() => of_one(folder, arguments.pictures),
+        [folder] if arguments.out.is_none() => {
+            let (page, left_out) = condyle_report::write_readable_report(folder)?;
+            let left_out = left_out.iter();
+            output::warn(left_out.map(|why| format!("left out of the page: {why}")));
+            note_unfinished(folder);
+            let mut written = vec![page];
+            if arguments.pictures {
+                written.extend(condyle_report::write_pictures(folder)?);
+            }
+            let mut lines = Lines::default();
+            for path in written {
+                lines.line(format!("wrote {}", path.display()));
+            }
+            output::print(lines.text())
+        }
         [_] => Err(Failure::bad_input(
             "--out is for the page of several runs; the report of one is in its folder",
         )),
@@ -26,38 +43,18 @@ pub fn report(arguments: &Report) -> Done {
             "--pictures is for one results folder; condyle plot writes the pictures of each",
         )),
         folders => {
+            let runs = folders.iter().map(|folder| Run::read(folder));
+            let runs: Vec<Run> = runs.collect::<Result<_, _>>()?;
             let out = arguments.out.as_deref();
-            side_by_side(folders, out.unwrap_or(Path::new("runs.html")))
+            let page = write_runs(out.unwrap_or(Path::new("runs.html")), &runs)?;
+            for run in &runs {
+                let left_out = run.results.left_out.iter();
+                output::warn(left_out.map(|why| format!("left out of {}: {why}", run.name)));
+            }
+            folders.iter().for_each(|folder| note_unfinished(folder));
+            output::print(&format!("wrote {}\n", page.display()))
         }
     }
-}
-
-fn side_by_side(folders: &[PathBuf], out: &Path) -> Done {
-    let runs = folders.iter().map(|folder| Run::read(folder));
-    let runs: Vec<Run> = runs.collect::<Result<_, _>>()?;
-    let page = write_runs(out, &runs)?;
-    for run in &runs {
-        let left_out = run.results.left_out.iter();
-        output::warn(left_out.map(|why| format!("left out of {}: {why}", run.name)));
-    }
-    folders.iter().for_each(|folder| note_unfinished(folder));
-    output::print(&format!("wrote {}\n", page.display()))
-}
-
-fn of_one(folder: &Path, has_pictures: bool) -> Done {
-    let (page, left_out) = condyle_report::write_readable_report(folder)?;
-    let left_out = left_out.iter();
-    output::warn(left_out.map(|why| format!("left out of the page: {why}")));
-    note_unfinished(folder);
-    let mut written = vec![page];
-    if has_pictures {
-        written.extend(condyle_report::write_pictures(folder)?);
-    }
-    let mut lines = Lines::default();
-    for path in written {
-        lines.line(format!("wrote {}", path.display()));
-    }
-    output::print(lines.text())
 }
 
 /// Notes that the run of a results folder is not finished, so that its results are not taken for those of the whole
@@ -138,83 +135,76 @@ pub fn diff(arguments: &Diff) -> Done {
     for note in &differences.notes {
         lines.line(format!("note: {note}"));
     }
-    add_settings(&differences, &mut lines);
-    add_numbers(&differences, &mut lines);
-    add_curves(&differences, &mut lines);
-    add_maps(&differences, &mut lines);
+    add(
+        "settings that differ, A and B",
+        differences.settings.iter().map(setting_row),
+        &mut lines,
+    );
+    add(
+        "numbers, by size over errors                       A           B       B - A         %    errors  that is",
+        differences.numbers.iter().map(number_row),
+        &mut lines,
+    );
+    add(
+        "curves, by size over range                       rms  % of range     largest      at %",
+        differences.curves.iter().take(MAX_CURVES).map(curve_row),
+        &mut lines,
+    );
+    // The curves are ranked, so that those left out differ least.
+    let left = differences.curves.len().saturating_sub(MAX_CURVES);
+    if left > 0 {
+        lines.line(format!("  and {left} more that differ less"));
+    }
+    add(
+        "maps, by size over largest value             largest           %   mean size  at x, z, mm",
+        differences.maps.iter().map(map_row),
+        &mut lines,
+    );
     if differences.is_none() {
         lines.line("nothing differs in the results that both have");
     }
     output::print(lines.text())
 }
 
-fn add_settings(differences: &Differences, lines: &mut Lines) {
-    if differences.settings.is_empty() {
-        return;
-    }
-    lines.line("settings that differ, A and B");
-    for one in &differences.settings {
-        let [first, second] =
-            [&one.first, &one.second].map(|value| value.as_deref().unwrap_or("-"));
-        lines.line(format!("  {:<38}  {first}  {second}", one.key));
+fn add(heading: &str, rows: impl Iterator<Item = String>, lines: &mut Lines) {
+    let mut rows = rows.peekable();
+    if rows.peek().is_some() {
+        lines.line(heading);
+        rows.for_each(|row| lines.line(row));
     }
 }
 
-fn add_numbers(differences: &Differences, lines: &mut Lines) {
-    if differences.numbers.is_empty() {
-        return;
-    }
-    lines.line("numbers, by size over errors                       A           B       B - A         %    errors  that is");
-    for one in &differences.numbers {
-        let percent = or_dash(one.difference_percent, |percent| format!("{percent:+.2}"));
-        let errors = or_dash(one.errors(), |errors| digits(errors, 2));
-        let difference = digits(one.difference, 4);
-        let [first, second] = [one.first, one.second].map(|value| digits(value, 5));
-        lines.line(format!(
-            "  {:<38}{first:>12}{second:>12}{difference:>12}{percent:>10}{errors:>10}  {}",
-            one.key,
-            one.verdict()
-        ));
-    }
+fn setting_row(one: &SettingDifference) -> String {
+    let [first, second] = [&one.first, &one.second].map(|value| value.as_deref().unwrap_or("-"));
+    format!("  {:<38}  {first}  {second}", one.key)
 }
 
-fn add_curves(differences: &Differences, lines: &mut Lines) {
-    if differences.curves.is_empty() {
-        return;
-    }
-    lines.line(
-        "curves, by size over range                       rms  % of range     largest      at %",
+fn number_row(one: &NumberDifference) -> String {
+    let percent = or_dash(one.difference_percent, |percent| format!("{percent:+.2}"));
+    let errors = or_dash(one.errors(), |errors| digits(errors, 2));
+    let (difference, verdict) = (digits(one.difference, 4), one.verdict());
+    let [first, second] = [one.first, one.second].map(|value| digits(value, 5));
+    format!(
+        "  {:<38}{first:>12}{second:>12}{difference:>12}{percent:>10}{errors:>10}  {verdict}",
+        one.key
+    )
+}
+
+fn curve_row(one: &CurveDifference) -> String {
+    let name = format!("{}, {} cycle", one.column, one.cycle);
+    let of_range = or_dash(one.rms_percent_of_range, |percent| format!("{percent:.2}"));
+    let ([rms, largest], at) = (
+        [one.rms, one.largest].map(|value| digits(value, 4)),
+        one.largest_at_percent,
     );
-    for one in differences.curves.iter().take(MAX_CURVES) {
-        let name = format!("{}, {} cycle", one.column, one.cycle);
-        let of_range = or_dash(one.rms_percent_of_range, |percent| format!("{percent:.2}"));
-        let [rms, largest] = [one.rms, one.largest].map(|value| digits(value, 4));
-        lines.line(format!(
-            "  {name:<38}{rms:>12}{of_range:>12}{largest:>12}{:>10.1}",
-            one.largest_at_percent
-        ));
-    }
-    let left = differences.curves.len().saturating_sub(MAX_CURVES);
-    if left > 0 {
-        lines.line(format!("  and {left} more that differ less"));
-    }
+    format!("  {name:<38}{rms:>12}{of_range:>12}{largest:>12}{at:>10.1}")
 }
 
-fn add_maps(differences: &Differences, lines: &mut Lines) {
-    if differences.maps.is_empty() {
-        return;
-    }
-    lines.line(
-        "maps, by size over largest value             largest           %   mean size  at x, z, mm",
-    );
-    for one in &differences.maps {
-        let percent = or_dash(one.largest_percent, |percent| format!("{percent:+.2}"));
-        let [largest, mean] = [one.largest, one.mean_absolute].map(|value| digits(value, 4));
-        lines.line(format!(
-            "  {:<38}{largest:>12}{percent:>12}{mean:>12}  {:.1}, {:.1}",
-            one.field, one.x_mm, one.z_mm
-        ));
-    }
+fn map_row(one: &MapDifference) -> String {
+    let percent = or_dash(one.largest_percent, |percent| format!("{percent:+.2}"));
+    let [largest, mean] = [one.largest, one.mean_absolute].map(|value| digits(value, 4));
+    let (field, x, z) = (one.field, one.x_mm, one.z_mm);
+    format!("  {field:<38}{largest:>12}{percent:>12}{mean:>12}  {x:.1}, {z:.1}")
 }
 
 fn or_dash(value: Option<f64>, in_words: impl Fn(f64) -> String) -> String {

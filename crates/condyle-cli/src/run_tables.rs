@@ -7,24 +7,19 @@ use crate::output::Lines;
 /// Adds the table if there is more than one law, then the factor of a cross-linked insert.
 pub fn add_laws(laws: &[LawWear], wear_over_conventional: Option<f64>, lines: &mut Lines) {
     if laws.len() >= 2 {
-        add_table(laws, lines);
+        lines
+            .line("   wear by law, same cycles    mg/Mcycles        mg        mm   outside of fit");
+        laws.iter().for_each(|law| lines.line(row_of_law(law)));
+        if laws.iter().any(|law| law.approximate) {
+            lines.line(
+                "   ~ approximate: the formula or a constant is quoted from memory, not checked at the source",
+            );
+        }
     }
     if let Some(times) = wear_over_conventional {
         lines.line(format_args!(
             "   cross-linked polyethylene: every law, fitted to conventional one, times {times}, whatever pressure and cross-shear"
         ));
-    }
-}
-
-fn add_table(laws: &[LawWear], lines: &mut Lines) {
-    lines.line("   wear by law, same cycles    mg/Mcycles        mg        mm   outside of fit");
-    for law in laws {
-        lines.line(row_of_law(law));
-    }
-    if laws.iter().any(|law| law.approximate) {
-        lines.line(
-            "   ~ approximate: the formula or a constant is quoted from memory, not checked at the source",
-        );
     }
 }
 
@@ -55,23 +50,19 @@ pub fn add_activities(activities: &[ActivitySummary], lines: &mut Lines) {
         "   by activity          cycles %   wear mg    peak MPa     mm2       N   AP mm  IE deg",
     );
     for activity in activities {
-        lines.line(row_of_activity(activity));
+        lines.line(format_args!(
+            "   {:<20} {:>8.2} {:>9.2} {:>11.1} {:>7.0} {:>7.0} {:>7.2} {:>7.2}",
+            activity.name,
+            100.0 * activity.share_of_cycles,
+            activity.mass_loss_mg,
+            activity.peak_pressure_mpa,
+            activity.peak_contact_area_mm2,
+            activity.peak_axial_force_n,
+            activity.ap_range_mm,
+            activity.ie_range_deg
+        ));
     }
     lines.line("   wear is shared out by pressure times sliding at each place; AP, IE and N are of first cycles");
-}
-
-fn row_of_activity(activity: &ActivitySummary) -> String {
-    format!(
-        "   {:<20} {:>8.2} {:>9.2} {:>11.1} {:>7.0} {:>7.0} {:>7.2} {:>7.2}",
-        activity.name,
-        100.0 * activity.share_of_cycles,
-        activity.mass_loss_mg,
-        activity.peak_pressure_mpa,
-        activity.peak_contact_area_mm2,
-        activity.peak_axial_force_n,
-        activity.ap_range_mm,
-        activity.ie_range_deg
-    )
 }
 
 #[cfg(test)]

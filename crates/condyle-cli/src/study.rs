@@ -11,8 +11,8 @@ use std::{
 use condyle_case::cache::Cache;
 use condyle_lab::{Outcome, RunOptions, run_case};
 use condyle_study::{
-    ConvergeOptions, Listener, Plan, Shard, Store, StudyError, StudyOptions, UncertaintyOptions,
-    merge, run_study, write_answers,
+    ConvergeOptions, Listener, Plan, Shard, Store, StudyError, StudyOptions, merge, run_study,
+    write_answers,
 };
 
 use crate::{
@@ -71,13 +71,10 @@ pub fn sensitivity(arguments: &Sensitivity) -> Done {
 }
 
 pub fn uncertainty(arguments: &Uncertainty) -> Done {
-    let options = UncertaintyOptions {
-        runs: arguments.runs.into(),
-        seed: arguments.seed,
-        threads: threads(arguments.threads),
-    };
-    let case = &arguments.case;
-    let found = in_memory(|listener| condyle_study::uncertainty(case, options, listener))?;
+    let (case, threads) = (&arguments.case, threads(arguments.threads));
+    let (runs, seed) = (arguments.runs.into(), arguments.seed);
+    let found =
+        in_memory(|listener| condyle_study::uncertainty(case, runs, seed, threads, listener))?;
     if arguments.json {
         return output::print(&output::json(&found));
     }
@@ -105,7 +102,7 @@ impl From<StudyError> for Failure {
             StudyError::Run(error) => error.into(),
             StudyError::RunWith { number, source } => {
                 note(format_args!("in the run with {number}:"));
-                Self::from(&*source)
+                Self::from(*source)
             }
             StudyError::Interrupted => Self::interrupted(
                 "interrupted: the results so far are kept; the same command resumes",

@@ -108,8 +108,13 @@ impl Preview {
         let on_insert = |vertex: &Vec3| at_rest.pose.to_insert(vertex);
         let femur = self.femur_triangles.clone().mapped(on_insert);
         let insert = TriangleMesh::of_quads(insert.nodes.clone(), insert.boundary_quads());
-        let [femur, insert, contact] =
-            [femur, insert, pressed(march, at_rest)].map(|body| mirrored(body, side));
+        let bodies = [femur, insert, pressed(march, at_rest)];
+        let [femur, insert, contact] = bodies.map(|mut body| {
+            // A left knee is computed as a right one.
+            let vertices = body.vertices.iter_mut();
+            vertices.for_each(|vertex| vertex.z *= sign(side));
+            body
+        });
         bodies_svg(&BodiesPicture {
             title: &self.title,
             side,
@@ -317,14 +322,6 @@ fn pressed(march: &March, at_rest: &AtRest) -> TriangleMesh {
     let faces = march.test().insert.surface_faces().iter().copied();
     let faces = faces.filter(|face| corners(face) >= MAX_CORNERS);
     TriangleMesh::of_quads(places, faces)
-}
-
-/// Mirrors a body to the side of the files: a left knee is computed as a right one.
-fn mirrored(mut body: TriangleMesh, side: Side) -> TriangleMesh {
-    body.vertices
-        .iter_mut()
-        .for_each(|vertex| vertex.z *= sign(side));
-    body
 }
 
 fn sign(side: Side) -> f64 {

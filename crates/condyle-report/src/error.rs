@@ -5,32 +5,9 @@ use std::path::{Path, PathBuf};
 /// A report could not be made.
 #[derive(Debug, thiserror::Error)]
 pub enum ReportError {
-    /// The path is not a folder.
-    #[error("There is no folder {0}. Give the folder that `condyle run --out` wrote.")]
-    NoFolder(PathBuf),
-    /// The folder holds none of the files that a run writes.
-    #[error(
-        "The folder {0} holds no results: no summary.json, wear.csv, kinematics.csv or insert_*.vtu. Give the folder that `condyle run --out` wrote."
-    )]
-    NoResults(PathBuf),
-    /// The folder holds results, and none of them can be read.
-    #[error("Nothing in the folder {folder} can be read. {reasons}")]
-    NothingReadable {
-        /// The folder.
-        folder: PathBuf,
-        /// One sentence for each file.
-        reasons: String,
-    },
-    /// A picture needs a file that is not in the folder.
-    #[error(
-        "The file {path} is missing, and the picture {picture} cannot be drawn without it. Run the case again."
-    )]
-    MissingFile {
-        /// The file.
-        path: PathBuf,
-        /// The picture that needs it.
-        picture: &'static str,
-    },
+    /// There is no such folder, or it lacks what the report needs; the text includes the remedy.
+    #[error("{0}")]
+    Unusable(String),
     /// The system refuses to read or write a file.
     #[error("The file {path} cannot be {action}: {source}.")]
     Inaccessible {
@@ -60,6 +37,14 @@ pub enum ReportError {
 }
 
 impl ReportError {
+    pub(crate) fn no_results(folder: &Path) -> Self {
+        let folder = folder.display();
+        Self::Unusable(format!(
+            "The folder {folder} holds no results: no summary.json, wear.csv, kinematics.csv or insert_*.vtu. Give the folder \
+            that `condyle run --out` wrote."
+        ))
+    }
+
     pub(crate) fn content(path: &Path, problem: impl Into<String>) -> Self {
         Self::Content {
             path: path.to_owned(),

@@ -8,22 +8,13 @@ use crate::figure::{
 };
 use crate::results::SurfaceFields;
 
-/// A column of kinematics.csv, predicted and measured at the same instants.
-#[derive(Clone, Debug, PartialEq)]
-pub struct ComparedCurve {
-    /// Name of the column.
-    pub column: &'static str,
-    /// (percent of the cycle, predicted, measured), in rising percent.
-    pub points: Vec<[f64; 3]>,
-}
-
-/// Draws an SVG file with a row for each column: the curves on the left, predicted minus measured on the right.
-pub fn compared_kinematics_svg(title: &str, curves: &[ComparedCurve]) -> String {
+/// Draws an SVG file with a row for each column of kinematics.csv: the curves on the left, predicted minus measured on the
+/// right. The points of a column are (percent of the cycle, predicted, measured), in rising percent.
+pub fn compared_kinematics_svg(title: &str, columns: &[(&str, &[[f64; 3]])]) -> String {
     const SIZE: (f64, f64) = (430.0, 226.0);
-    let row = |curve: &ComparedCurve| {
-        let channel = Channel::find(curve.column)?;
-        let line =
-            |class, value: fn(&[f64; 3]) -> f64| Curve::new(class, with_gaps(&curve.points, value));
+    let row = |&(column, points): &(&str, &[[f64; 3]])| {
+        let channel = Channel::find(column)?;
+        let line = |class, value: fn(&[f64; 3]) -> f64| Curve::new(class, with_gaps(points, value));
         let panel = |curves| Panel {
             size: SIZE,
             from_zero: false,
@@ -42,7 +33,7 @@ pub fn compared_kinematics_svg(title: &str, curves: &[ComparedCurve]) -> String 
         };
         Some([both, difference])
     };
-    let panels: Vec<Panel> = curves.iter().filter_map(row).flatten().collect();
+    let panels: Vec<Panel> = columns.iter().filter_map(row).flatten().collect();
     let key = [("first", "measured"), ("last", "predicted")];
     let desc =
         "Measured and predicted motions against percent of the gait cycle, and their difference.";
@@ -66,29 +57,23 @@ fn with_gaps(points: &[[f64; 3]], value: fn(&[f64; 3]) -> f64) -> Vec<(f64, f64)
     line
 }
 
-/// Soak-corrected and predicted mass loss against cycles.
-#[derive(Clone, Debug, PartialEq)]
-pub struct ComparedWear {
-    /// (cycles, mg) of each specimen.
-    pub specimens: Vec<Vec<(f64, f64)>>,
-    /// (cycles, mg) at both ends of the line through all weighings.
-    pub line: [(f64, f64); 2],
-    /// (cycles, mg) of the prediction.
-    pub predicted: Vec<(f64, f64)>,
-}
-
-/// Draws an SVG file with the specimens as dots, their regression line, and the prediction.
-pub fn compared_wear_svg(wear: &ComparedWear) -> String {
+/// Draws an SVG file of mass loss, (cycles, mg): the soak-corrected specimens as dots, the ends of the line through all
+/// weighings, and the prediction.
+pub fn compared_wear_svg(
+    specimens: &[Vec<(f64, f64)>],
+    line: &[(f64, f64)],
+    predicted: &[(f64, f64)],
+) -> String {
     const DESC: &str = "Soak-corrected mass loss of each specimen, the line of least squares through all weighings, and the \
         predicted mass loss, in mg against million cycles.";
     let curve = |class, points: &[(f64, f64)]| {
         let points = points.iter().map(|(cycles, mg)| (cycles / 1e6, *mg));
         Curve::new(class, points.collect())
     };
-    let mut curves = vec![curve("first", &wear.line)];
-    let specimens = wear.specimens.iter();
+    let mut curves = vec![curve("first", line)];
+    let specimens = specimens.iter();
     curves.extend(specimens.map(|points| curve(MEASURED, points).dotted()));
-    curves.push(curve("last", &wear.predicted));
+    curves.push(curve("last", predicted));
     let all = curves.iter().flat_map(|curve| &curve.points);
     let most = all.map(|point| point.0).fold(0.0, f64::max);
     let panel = Panel {

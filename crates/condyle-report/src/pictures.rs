@@ -89,10 +89,10 @@ pub fn picture_svg(results_dir: &Path, name: &'static str) -> Result<String, Rep
         let problem = format!("has no {content}, which the picture {name} needs");
         return Err(ReportError::content(&path, problem));
     }
-    Err(ReportError::MissingFile {
-        path,
-        picture: name,
-    })
+    Err(ReportError::Unusable(format!(
+        "The file {} is missing, and the picture {name} cannot be drawn without it. Run the case again.",
+        path.display()
+    )))
 }
 
 /// Writes `wear_map.svg`, `wear.svg` and `kinematics.svg` into a results folder and returns the paths.

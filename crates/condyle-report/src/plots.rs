@@ -52,6 +52,7 @@ impl Plot {
                 [] => Axis::covering(
                     low,
                     high,
+                    // Round-off of a constant result must not fill the axis.
                     1e-9 * low.abs().max(high.abs()).max(1e-9),
                     intervals,
                 ),

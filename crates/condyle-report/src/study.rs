@@ -56,39 +56,27 @@ pub struct Bar {
     pub interval: Option<[f64; 2]>,
 }
 
-/// A picture of bars.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Bars {
-    /// The heading.
-    pub title: String,
-    /// Unit of the values; may be empty.
-    pub unit: String,
-    /// A vertical line for comparison.
-    pub middle: Option<f64>,
-    /// The bars from the top.
-    pub bars: Vec<Bar>,
-}
-
-/// Returns the text of an SVG file.
-pub fn bars_svg(bars: &Bars) -> String {
-    let ends = bars.bars.iter().flat_map(|bar| {
+/// Draws bars from the top as the text of an SVG file; `unit` may be empty, and `middle` is a vertical line for comparison.
+pub fn bars_svg(title: &str, unit: &str, middle: Option<f64>, bars: &[Bar]) -> String {
+    let ends = bars.iter().flat_map(|bar| {
         let interval = bar.interval.into_iter().flatten();
         bar.span.into_iter().chain(interval)
     });
-    let (low, high) = finite_range(ends.chain(bars.middle)).unwrap_or((0.0, 1.0));
+    let (low, high) = finite_range(ends.chain(middle)).unwrap_or((0.0, 1.0));
+    // Round-off of a constant result must not fill the axis.
     let min_span = 1e-9 * low.abs().max(high.abs()).max(1e-9);
     let axis = Axis::covering(low, high, min_span, MAX_INTERVALS);
     let to_x = |value: f64| LEFT + axis.fraction(value) * (WIDTH - LEFT - RIGHT);
-    let bottom = TOP + PITCH * bars.bars.len() as f64;
-    let title = titled(&bars.title, &bars.unit);
-    let mut body = format!(r#"<text x="0" y="16" class="title">{title}</text>"#);
+    let bottom = TOP + PITCH * bars.len() as f64;
+    let heading = titled(title, unit);
+    let mut body = format!(r#"<text x="0" y="16" class="title">{heading}</text>"#);
     for tick in axis.ticks() {
         let (x, base, label) = (to_x(tick), bottom + 17.0, axis.label(tick));
         body += &format!(
             r#"<path class="grid" d="M{x:.1} {TOP}V{bottom}"/><text x="{x:.1}" y="{base}" text-anchor="middle">{label}</text>"#
         );
     }
-    for (place, bar) in bars.bars.iter().enumerate() {
+    for (place, bar) in bars.iter().enumerate() {
         let y = TOP + PITCH * (place as f64 + 0.5);
         let [low, high] = bar.span;
         let (x, end) = (to_x(low.min(high)), to_x(low.max(high)));
@@ -106,16 +94,16 @@ pub fn bars_svg(bars: &Bars) -> String {
         let (label, label_x) = (significant(high - low, 3), label_at + 6.0);
         body += &format!(r#"<text x="{label_x:.1}" y="{base:.1}">{label}</text>"#);
     }
-    if let Some(middle) = bars.middle {
+    if let Some(middle) = middle {
         let x = to_x(middle);
         body += &format!(r#"<path class="axis" d="M{x:.1} {TOP}V{bottom}"/>"#);
     }
-    let described = bars.bars.iter().map(|bar| {
+    let described = bars.iter().map(|bar| {
         let [low, high] = bar.span.map(|end| significant(end, 4));
         format!("{}: {low} to {high}", bar.name)
     });
     let described = described.collect::<Vec<_>>().join("; ");
-    svg_file(&bars.title, &described, (WIDTH, bottom + 26.0), &body)
+    svg_file(title, &described, (WIDTH, bottom + 26.0), &body)
 }
 
 /// The distribution of an output.
@@ -184,6 +172,7 @@ fn outline(sorted: &[f64]) -> Vec<(f64, f64)> {
     // With more slices than this the picture shows noise.
     const MAX_SLICES: usize = 60;
     let slices = ((sorted.len() as f64).sqrt().ceil() as usize).clamp(1, MAX_SLICES);
+    // Equal values would give slices without a width.
     let width = ((high - low) / slices as f64).max(1e-12 * high.abs().max(1e-300));
     let mut counts = vec![0.0; slices];
     for value in sorted {
@@ -210,12 +199,8 @@ mod tests {
             span: [1.0, high],
             interval: Some([high - 0.1, high + 0.1]),
         };
-        let svg = bars_svg(&Bars {
-            title: "Mass & more".to_owned(),
-            unit: "mg".to_owned(),
-            middle: Some(1.0),
-            bars: vec![bar("friction <a>", 3.0), bar("load", 2.0)],
-        });
+        let bars = [bar("friction <a>", 3.0), bar("load", 2.0)];
+        let svg = bars_svg("Mass & more", "mg", Some(1.0), &bars);
         assert_eq!(svg.matches("<rect class=\"bar\"").count(), 2);
         assert!(svg.contains("friction &lt;a&gt;") && svg.contains("Mass &amp; more"));
         assert!(roxmltree::Document::parse(&svg).is_ok());

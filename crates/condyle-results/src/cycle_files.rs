@@ -13,7 +13,7 @@ use condyle_mesh::{
     formats::{Grid, MeshFileError, PointArray, PointValues, compact_vtu_bytes, pvd_text},
 };
 
-use super::side::{Side, point_on_side, quad_on_side, triangle_on_side};
+use super::side::{Side, face_on_side, point_on_side};
 
 /// The two cycles whose motions are stored.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -70,7 +70,7 @@ pub fn insert_frame(
     let positions = cycle.surface.positions.iter();
     let nodes: Vec<Vec3> = positions.map(|place| point_on_side(place, side)).collect();
     let faces = march.insert().surface_faces().iter();
-    let quads: Vec<[u32; 4]> = faces.map(|&face| quad_on_side(face, side)).collect();
+    let quads: Vec<[u32; 4]> = faces.map(|&face| face_on_side(face, side)).collect();
     let array = PointArray {
         name: "pressure_mpa",
         values: PointValues::Float32(&pressure),
@@ -87,7 +87,7 @@ pub fn femur_vtu(femur: &TriangleMesh, pose: &Pose, side: Side) -> Result<Vec<u8
 /// Returns the femur in the insert frame at a pose, in a knee of the given side.
 pub fn femur_on_side(femur: &TriangleMesh, pose: &Pose, side: Side) -> TriangleMesh {
     let place = |vertex: &Vec3| point_on_side(&pose.to_insert(vertex), side);
-    let triangle = |&corners| triangle_on_side(corners, side);
+    let triangle = |&corners| face_on_side(corners, side);
     TriangleMesh {
         vertices: femur.vertices.iter().map(place).collect(),
         triangles: femur.triangles.iter().map(triangle).collect(),

@@ -71,19 +71,11 @@ pub(super) fn pose_on_side(pose: &Pose, side: Side) -> Pose {
 }
 
 /// Returns a face with its corners reordered if mirrored, so that it faces out.
-pub(super) fn quad_on_side([a, b, c, d]: [u32; 4], side: Side) -> [u32; 4] {
-    match side {
-        Side::Right => [a, b, c, d],
-        Side::Left => [a, d, c, b],
+pub(super) fn face_on_side<const N: usize>(mut corners: [u32; N], side: Side) -> [u32; N] {
+    if side == Side::Left {
+        corners[1..].reverse();
     }
-}
-
-/// Returns a triangle with its corners reordered if mirrored, so that it faces out.
-pub(super) fn triangle_on_side([a, b, c]: [u32; 3], side: Side) -> [u32; 3] {
-    match side {
-        Side::Right => [a, b, c],
-        Side::Left => [a, c, b],
-    }
+    corners
 }
 
 pub(super) fn mesh_on_side(mesh: &HexMesh, side: Side) -> HexMesh {

@@ -38,8 +38,14 @@ impl ResultsFolder {
                 ),
             ));
         }
+        // One file may have several paths.
+        let place = |path: &Path| fs::canonicalize(path).ok();
         let files = Self::existing(path).files_of_a_run();
-        match read.iter().find(|file| is_among(file, &files)) {
+        let files: Vec<PathBuf> = files.iter().filter_map(|file| place(file)).collect();
+        match read
+            .iter()
+            .find(|file| place(file).is_some_and(|file| files.contains(&file)))
+        {
             Some(file) => Err(unusable(
                 path,
                 format!(
@@ -123,10 +129,4 @@ fn is_numbered(name: &str, body: &str) -> bool {
         .and_then(|rest| rest.strip_prefix('_'))
         .and_then(|rest| rest.strip_suffix(".vtu"));
     number.is_some_and(|digits| digits.bytes().all(|byte| byte.is_ascii_digit()))
-}
-
-fn is_among(file: &Path, files: &[PathBuf]) -> bool {
-    let place = |path: &Path| fs::canonicalize(path).ok();
-    let found = place(file);
-    found.is_some() && files.iter().any(|other| place(other) == found)
 }

@@ -343,6 +343,7 @@ impl Convergence {
             title: output.label[..1].to_uppercase() + &output.label[1..],
             unit: superscript(output.unit()),
             x_marks: places.iter().copied().zip(values).collect(),
+            // A result of 0 has no share; the axis still needs a length.
             min_span: MIN_SHOWN_SHARE * finest.abs().max(f64::MIN_POSITIVE),
             reference: match self.extrapolation(output) {
                 Extrapolation::Converging { extrapolated, .. } => {

@@ -1,7 +1,7 @@
 //! The reasons why a study fails.
 
 use std::{
-    io,
+    error::Error,
     path::{Path, PathBuf},
 };
 
@@ -9,10 +9,9 @@ use condyle_case::{case::AssignmentError, config::Problems};
 use condyle_lab::RunError;
 use condyle_report::ReportError;
 use condyle_results::ResultsError;
-use thiserror::Error;
 
 /// The reason why a study fails.
-#[derive(Debug, Error)]
+#[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum StudyError {
     /// The study file or its case has problems.
@@ -21,35 +20,19 @@ pub enum StudyError {
     /// The case does not accept the key or a value of a convergence study.
     #[error(transparent)]
     Assignment(#[from] AssignmentError),
-    /// The tests cannot be planned or run as requested; the text includes the remedy.
+    /// The tests cannot be planned or run as requested, or the folder cannot be used; the text includes the remedy.
     #[error("{0}")]
     Plan(String),
-    /// The study cannot use the folder.
-    #[error("{}: {problem}", folder.display())]
-    Folder {
-        /// The folder.
-        folder: PathBuf,
-        /// Its content, and the remedy.
-        problem: &'static str,
-    },
     /// The listener stopped the study; stored tests are kept.
     #[error("interrupted")]
     Interrupted,
-    /// The database cannot be used.
-    #[error("{}: {source}; check that the disk is not full and the file can be written", path.display())]
-    Store {
-        /// The file.
-        path: PathBuf,
-        /// The reason.
-        source: rusqlite::Error,
-    },
-    /// The system refused to read or write.
+    /// The system or the database refused to read or write.
     #[error("{}: {source}; check that the folder can be written and the disk is not full", path.display())]
     Refused {
         /// The file or folder.
         path: PathBuf,
         /// The reason.
-        source: io::Error,
+        source: Box<dyn Error + Send + Sync>,
     },
     /// The folder is in use.
     #[error(transparent)]
@@ -71,9 +54,8 @@ pub enum StudyError {
 }
 
 impl StudyError {
-    pub(crate) fn folder(folder: &Path, problem: &'static str) -> Self {
-        let folder = folder.to_path_buf();
-        Self::Folder { folder, problem }
+    pub(crate) fn folder(folder: &Path, problem: &str) -> Self {
+        Self::Plan(format!("{}: {problem}", folder.display()))
     }
 
     pub(crate) fn no_shards() -> Self {
@@ -81,12 +63,14 @@ impl StudyError {
         Self::Plan(problem.to_owned())
     }
 
-    /// Converts a system error to the error for a file or folder that the system refuses to read or write.
-    pub(crate) fn refused(path: &Path) -> impl Fn(io::Error) -> Self {
+    /// Converts an error of the system or the database to the error for a file or folder that it refuses to read or write.
+    pub(crate) fn refused<E: Into<Box<dyn Error + Send + Sync>>>(
+        path: &Path,
+    ) -> impl Fn(E) -> Self {
         let path = path.to_path_buf();
         move |source| Self::Refused {
             path: path.clone(),
-            source,
+            source: source.into(),
         }
     }
 }

@@ -29,5 +29,5 @@ pub use crate::{
     plan::{Plan, Shard, Test, TestResult},
     sensitivity::{Sensitivity, sensitivity},
     store::Store,
-    uncertainty::{Uncertainty, UncertaintyOptions, uncertainty},
+    uncertainty::{Uncertainty, uncertainty},
 };

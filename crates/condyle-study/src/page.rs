@@ -4,7 +4,7 @@ use std::{fs, path::Path};
 
 use condyle_report::{
     Plot, plots_svg,
-    study::{Bar, Bars, Distribution, bars_svg, distributions_svg, write_study_page},
+    study::{Bar, Distribution, bars_svg, distributions_svg, write_study_page},
 };
 
 use crate::{
@@ -78,15 +78,6 @@ pub(crate) fn superscript(unit: &str) -> String {
     unit.replace('2', "\u{b2}").replace('3', "\u{b3}")
 }
 
-fn bars(title: String, unit: &str, middle: Option<f64>, bars: Vec<Bar>) -> String {
-    bars_svg(&Bars {
-        title,
-        unit: superscript(unit),
-        middle,
-        bars,
-    })
-}
-
 fn ranking(ranking: &Ranking) -> Picture {
     let designs = ranking.designs.iter().map(|design| Bar {
         name: format!("{} (best in {:.0} %)", design.name, 100.0 * design.best),
@@ -96,7 +87,8 @@ fn ranking(ranking: &Ranking) -> Picture {
     let title = format!("Designs by {}", ranking.title);
     let caption = "Mean over the disturbances, with 1.96 standard deviations to either side. Every design met the same \
                    disturbances: the table states how often one beats another, which these intervals cannot.";
-    let svg = bars(title, ranking.unit, None, designs.collect());
+    let bars: Vec<Bar> = designs.collect();
+    let svg = bars_svg(&title, &superscript(ranking.unit), None, &bars);
     ("ranking.svg", caption.to_owned(), svg)
 }
 
@@ -127,7 +119,7 @@ fn indices(answers: &Answers) -> Option<Picture> {
         interval: Some(index.total_interval),
     });
     let caption = "The part of the variance that would remain if all other inputs were known, with 95 % intervals.";
-    let svg = bars(title, "", None, most.collect());
+    let svg = bars_svg(&title, "", None, &most.collect::<Vec<_>>());
     Some(("indices.svg", caption.to_owned(), svg))
 }
 
@@ -143,7 +135,7 @@ fn elementary(answers: &Answers) -> Option<Picture> {
         interval: Some([-1.0, 1.0].map(|by| one.mu_star + by * one.mu_star_half_interval)),
     });
     let caption = "The change of the output as an input goes from its low end to its high end, with 95 % intervals.";
-    let svg = bars(title, "", None, most.collect());
+    let svg = bars_svg(&title, "", None, &most.collect::<Vec<_>>());
     Some(("morris.svg", caption.to_owned(), svg))
 }
 
@@ -177,7 +169,7 @@ fn tornado(answers: &Answers) -> Option<Picture> {
         let (most, unit) = (shown(most), superscript(spread.unit));
         caption += &format!(" An inactive input would span up to {most} {unit} by chance.");
     }
-    let svg = bars(title, spread.unit, Some(spread.mean), all);
+    let svg = bars_svg(&title, &superscript(spread.unit), Some(spread.mean), &all);
     Some(("tornado.svg", caption, svg))
 }
 

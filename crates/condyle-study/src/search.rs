@@ -92,6 +92,7 @@ fn worth(plan: &Plan, keys: &OptimiseKeys, found: &TestResult) -> (f64, f64) {
         return (f64::INFINITY, f64::INFINITY);
     };
     let beyond = |bound: &Bound| {
+        // A limit of 0 is no scale; the smallest one avoids a division by zero.
         let scale = bound.most.or(bound.least).unwrap_or(1.0).abs().max(1e-300);
         bound.excess(output_value(outputs, bound.output)) / scale
     };

@@ -93,10 +93,7 @@ impl Store {
     }
 
     fn connect(path: PathBuf) -> Result<Self, StudyError> {
-        let connection = Connection::open(&path).map_err(|source| StudyError::Store {
-            path: path.clone(),
-            source,
-        })?;
+        let connection = Connection::open(&path).map_err(StudyError::refused(&path))?;
         let store = Self {
             connection,
             path,
@@ -111,10 +108,7 @@ impl Store {
         &self,
         work: impl FnOnce(&Connection) -> rusqlite::Result<T>,
     ) -> Result<T, StudyError> {
-        work(&self.connection).map_err(|source| StudyError::Store {
-            path: self.path.clone(),
-            source,
-        })
+        work(&self.connection).map_err(StudyError::refused(&self.path))
     }
 
     fn create(&self, plan: &Plan, shard: Shard) -> Result<(), StudyError> {
@@ -423,7 +417,6 @@ fn quoted(name: &str) -> String {
     format!("\"{}\"", name.replace('"', "\"\""))
 }
 
-/// Returns the SQL query for these columns of one test.
 fn select(columns: &[&str], more: &str) -> String {
     let columns: Vec<String> = columns.iter().map(|name| quoted(name)).collect();
     format!(

@@ -67,6 +67,7 @@ impl Scatter {
     /// One standard deviation in words, such as `2 %` or `0.5 mm`.
     fn deviation(&self) -> String {
         if self.is_part {
+            // Rounded to a tenth of a percent: products of decimal numbers have rounding errors.
             return format!("{} %", (1e3 * self.deviation).round() / 10.0);
         }
         let unit = unit_of(self.keys[0]).unwrap_or_default();
@@ -96,17 +97,6 @@ impl Scatter {
         input.scaled = Some(scaled.collect());
         input
     }
-}
-
-/// Options of a study of uncertainty.
-#[derive(Clone, Copy, Debug)]
-pub struct UncertaintyOptions {
-    /// Tests with scattered inputs, at least 2.
-    pub runs: u64,
-    /// Seed of the inputs.
-    pub seed: u64,
-    /// Tests at the same time; results do not depend on it.
-    pub threads: usize,
 }
 
 /// The uncertainty of the results of a case.
@@ -162,21 +152,19 @@ pub(crate) fn compared() -> impl Iterator<Item = &'static Scalar> {
     KEYS.into_iter().filter_map(catalogue::scalar)
 }
 
-/// Runs the case at `case_path` without changes, with its estimate of the error, and again with scattered inputs: a Latin
-/// hypercube of independent normal distributions, truncated at three standard deviations. Nothing is written.
+/// Runs the case at `case_path` without changes, with its estimate of the error, and again in `size` tests, at least 2, with
+/// scattered inputs: a Latin hypercube of independent normal distributions, truncated at three standard deviations. Nothing
+/// is written, and results do not depend on the number of threads.
 ///
 /// # Errors
 /// A case that cannot be run without changes. A test with scattered inputs that fails is counted among the results.
 pub fn uncertainty(
     case_path: &Path,
-    options: UncertaintyOptions,
+    size: u64,
+    seed: u64,
+    threads: usize,
     listener: &mut Listener<'_>,
 ) -> Result<Uncertainty, StudyError> {
-    let UncertaintyOptions {
-        runs: size,
-        seed,
-        threads,
-    } = options;
     let sample = Design::LatinHypercube(SampleKeys { size, seed });
     let mut study = Study::of_case(case_path, sample)?;
     let as_given = with_error(&study.case)?;

@@ -2,7 +2,7 @@
 
 use std::{fs, path::Path};
 
-use condyle_case::case::{Draft, DraftError, Preset};
+use condyle_case::case::{DraftError, Drafted, Preset};
 
 use crate::{
     failure::Failure,
@@ -11,22 +11,15 @@ use crate::{
 
 /// Writes the case of two meshes at `path`; unit, axes and start are concluded from the shapes.
 pub fn draft(path: &Path, femur: &Path, insert: &Path) -> Result<(), Failure> {
-    let draft = Draft {
-        preset: Preset::StanmoreForce,
-        side: None,
-        femur,
-        insert,
-    };
     let folder = path
         .parent()
         .filter(|folder| !folder.as_os_str().is_empty());
-    let drafted =
-        draft
-            .drafted(folder.unwrap_or(Path::new(".")))
-            .map_err(|error| match &error {
-                DraftError::Case(problems) => Failure::from(problems),
-                _ => Failure::of_words(error),
-            })?;
+    let folder = folder.unwrap_or(Path::new("."));
+    let drafted = Drafted::new(Preset::StanmoreForce, None, [femur, insert], folder);
+    let drafted = drafted.map_err(|error| match &error {
+        DraftError::Case(problems) => Failure::from(problems),
+        _ => Failure::of_words(error),
+    })?;
     for remark in drafted.remarks {
         send(&Message::Remark(remark));
     }

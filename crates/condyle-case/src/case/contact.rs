@@ -178,7 +178,6 @@ const CURVE: [(f64, f64); 4] = [
 ];
 
 impl PlasticityChoice {
-    /// Returns the yield stress and its hardening, if the insert yields.
     pub(crate) fn hardening(&self) -> Option<Hardening> {
         match self {
             Self::None => None,

@@ -23,19 +23,6 @@ use crate::config::{Problems, quoted};
 /// Distance along x from the dishes' middle beyond which an origin is not that of a machine, mm.
 const MAX_ALONG_MM: f64 = 20.0;
 
-/// Input of a draft.
-#[derive(Clone, Copy, Debug)]
-pub struct Draft<'a> {
-    /// The simulator.
-    pub preset: Preset,
-    /// The side of the knee; by default, that of the femur's shape.
-    pub side: Option<Side>,
-    /// Mesh of the femoral component.
-    pub femur: &'a Path,
-    /// Mesh of the insert, closed or an open articulating surface.
-    pub insert: &'a Path,
-}
-
 /// A case drafted from meshes.
 #[derive(Clone, Debug)]
 pub struct Drafted {
@@ -45,14 +32,20 @@ pub struct Drafted {
     pub remarks: Vec<String>,
 }
 
-impl Draft<'_> {
-    /// Returns the case, to be kept in `folder`.
+impl Drafted {
+    /// Drafts the case of two meshes, to be kept in `folder`; the insert may be closed or an open articulating surface.
+    /// Without a side, the shape of the femur determines it.
     ///
     /// # Errors
     /// A file that cannot be read, does not form a shell, or does not have the size of a part of a knee.
-    pub fn drafted(&self, folder: &Path) -> Result<Drafted, DraftError> {
-        let femur = Concluded::from(Body::Femur, self.femur)?;
-        let insert = Concluded::from(Body::Insert, self.insert)?;
+    pub fn new(
+        preset: Preset,
+        side: Option<Side>,
+        [femur, insert]: [&Path; 2],
+        folder: &Path,
+    ) -> Result<Self, DraftError> {
+        let femur = Concluded::from(Body::Femur, femur)?;
+        let insert = Concluded::from(Body::Insert, insert)?;
         let femur_lies = femur.orientation(&insert.best());
         let insert_lies = insert.orientation(&[femur_lies]);
         let (femur_shell, whole) = (femur.shell(&femur_lies)?, insert.shell(&insert_lies)?);
@@ -78,10 +71,10 @@ impl Draft<'_> {
                 middle.norm()
             ));
         }
-        let (side, of_side) = self.side(&femur_shell.mesh);
+        let (side, of_side) = with_reason(side, &femur_shell.mesh);
         let mut of_femur = femur.remarks(&femur_lies, &femur_shell);
         of_femur.push(of_side);
-        let machine = format!("[machine]\npreset = \"{}\"\n", self.preset.word());
+        let machine = format!("[machine]\npreset = \"{}\"\n", preset.word());
         let flexion_rad = Case::parse(&machine, "machine", Path::new(""))?.start_flexion_rad();
         let start = start_over_the_dishes_mm(&femur_shell.mesh, &alone.shell.mesh, flexion_rad);
         let (x, z) = start.unwrap_or_default();
@@ -96,32 +89,31 @@ impl Draft<'_> {
             text = text.replacen(&format!("\n{table}"), &format!("\n{lines}{table}"), 1);
         }
         let remarks = [of_femur, of_insert].concat();
-        Ok(Drafted { text, remarks })
+        Ok(Self { text, remarks })
     }
+}
 
-    /// Returns the side of the knee of a femur with x anterior, y superior, z right, and the reason for it.
-    fn side(&self, femur: &TriangleMesh) -> (Side, String) {
-        let given = self.side;
-        let shown = flange_lead_mm(femur).map(|lead| {
-            let side = if lead > 0.0 { Side::Right } else { Side::Left };
-            (side, lead.abs())
-        });
-        let side = given.or(shown.map(|(side, _)| side)).unwrap_or(Side::Right);
-        let of_shape = match shown {
-            Some((shown, lead_mm)) => format!(
-                "likely a {} knee, since one flange of the trochlea stands out by {lead_mm:.1} mm there",
-                shown.word()
-            ),
-            None => "the shape does not show it, since both sides of it are alike".to_owned(),
-        };
-        let why = match given {
-            Some(_) => "as given",
-            None if shown.is_some() => "check it",
-            None => "assumed: check it",
-        };
-        let remark = format!("  side \"{}\", {why}; {of_shape}.", side.word());
-        (side, remark)
-    }
+/// Returns the side of the knee of a femur with x anterior, y superior, z right, and the reason for it.
+fn with_reason(given: Option<Side>, femur: &TriangleMesh) -> (Side, String) {
+    let shown = flange_lead_mm(femur).map(|lead| {
+        let side = if lead > 0.0 { Side::Right } else { Side::Left };
+        (side, lead.abs())
+    });
+    let side = given.or(shown.map(|(side, _)| side)).unwrap_or(Side::Right);
+    let of_shape = match shown {
+        Some((shown, lead_mm)) => format!(
+            "likely a {} knee, since one flange of the trochlea stands out by {lead_mm:.1} mm there",
+            shown.word()
+        ),
+        None => "the shape does not show it, since both sides of it are alike".to_owned(),
+    };
+    let why = match given {
+        Some(_) => "as given",
+        None if shown.is_some() => "check it",
+        None => "assumed: check it",
+    };
+    let remark = format!("  side \"{}\", {why}; {of_shape}.", side.word());
+    (side, remark)
 }
 
 /// A body of the draft, with the conclusions from its shape.

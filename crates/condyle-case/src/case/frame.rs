@@ -72,9 +72,19 @@ impl Axes {
     /// # Errors
     /// In words: two axes along one line, or a left-handed frame.
     pub fn rotation(&self, side: Side) -> Result<Mat3, &'static str> {
-        let columns = self.words.map(|word| direction(word, side));
-        let rotation = Mat3::from_columns(&columns);
+        let direction = |word| {
+            let word = match (word, side) {
+                ("lateral", Side::Right) | ("medial", Side::Left) => "right",
+                ("lateral", Side::Left) | ("medial", Side::Right) => "left",
+                (word, _) => word,
+            };
+            let place = WORDS.iter().position(|known| *known == word).unwrap_or(0);
+            let axis: Vec3 = Vec3::ith(place / 2, 1.0);
+            if place % 2 == 0 { axis } else { -axis }
+        };
+        let rotation = Mat3::from_columns(&self.words.map(direction));
         let determinant = rotation.determinant();
+        // The determinant of three directions of the frame is 0, 1 or -1.
         if determinant.abs() < 0.5 {
             Err("two of the axes are parallel; give three perpendicular axes")
         } else if determinant < 0.0 {
@@ -83,18 +93,6 @@ impl Axes {
             Ok(rotation)
         }
     }
-}
-
-/// Returns the direction of a word in x anterior, y superior, z right.
-fn direction(word: &str, side: Side) -> Vec3 {
-    let word = match (word, side) {
-        ("lateral", Side::Right) | ("medial", Side::Left) => "right",
-        ("lateral", Side::Left) | ("medial", Side::Right) => "left",
-        (word, _) => word,
-    };
-    let place = WORDS.iter().position(|known| *known == word).unwrap_or(0);
-    let axis = Vec3::ith(place / 2, 1.0);
-    if place % 2 == 0 { axis } else { -axis }
 }
 
 impl Setting for Axes {

@@ -183,6 +183,7 @@ impl Freedom {
             }
             JointKind::Rotation => {
                 let moment = "Moment of inertia that moves with it.";
+                // Files state SI units; the library computes in t, mm and s, and 1 t mm2 is 1e-3 kg m2.
                 let inertia_kg_m2 = 1e-3 * knee::MOMENT_OF_INERTIA_TONNE_MM2;
                 let damping_nm_s_per_rad = 1e-3 * knee::DAMPING_NMM_S_PER_RAD;
                 [
@@ -275,7 +276,6 @@ impl Freedoms {
         &self.rows[joint.place()]
     }
 
-    /// Returns the waveforms that the freedoms need.
     pub(super) fn channels(&self) -> impl Iterator<Item = &'static Channel> {
         self.in_files()
             .filter_map(|(joint, freedom)| freedom.drive.channel(joint))
@@ -355,7 +355,6 @@ impl Waveforms {
         complete.then_some(Self { given })
     }
 
-    /// Writes a table for each waveform.
     pub(super) fn write(&self, out: &mut Writer) {
         for channel in KNEE.channels {
             if let Some(waveform) = self.get(channel) {

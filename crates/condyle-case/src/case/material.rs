@@ -108,7 +108,6 @@ variants! {
 }
 
 impl Creep {
-    /// Returns the law, if the insert creeps.
     pub(super) fn law(&self) -> Option<LeePienkowski> {
         match self {
             Self::None => None,

@@ -32,4 +32,4 @@ pub use self::{
 };
 
 #[cfg(feature = "file-system")]
-pub use draft::{Draft, DraftError, Drafted};
+pub use draft::{DraftError, Drafted};

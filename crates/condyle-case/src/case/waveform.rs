@@ -64,7 +64,6 @@ pub(super) fn words_of(channel: &'static Channel) -> Vec<&'static str> {
     named(channel).map(|named| named.word).collect()
 }
 
-/// Returns the key that gives the points of a channel in the case file.
 fn knots_key(channel: &Channel) -> Key {
     let name = match channel.unit {
         ChannelUnit::Newton => "knots_n",
@@ -398,7 +397,6 @@ fn column_points(columns: &Columns<'_>, index: usize) -> Result<PlacedKnots, Vec
     Ok(rows.unzip())
 }
 
-/// Returns the first value outside the channel's range.
 fn first_outside(channel: &Channel, knots: &[Knot]) -> Option<(usize, Fault)> {
     let limits = limits(channel);
     let index = knots.iter().position(|knot| !limits.allow(knot.value))?;

@@ -147,14 +147,10 @@ const CONVERSIONS: &[(&str, &str, f64)] = &[
 ];
 
 pub(crate) fn likeliest(key: &str, keys: &[&str]) -> Option<String> {
-    synonym(key, keys).or_else(|| nearest(key, keys.iter().copied()))
-}
-
-/// Returns the key for which `key` is a synonym, with or without a unit.
-fn synonym(key: &str, keys: &[&str]) -> Option<String> {
     let written = key.to_lowercase();
     let mut words = std::iter::once(written.as_str()).chain(bases(&written));
-    words.find_map(|word| meant(word, keys)).map(str::to_owned)
+    let synonym = words.find_map(|word| meant(word, keys)).map(str::to_owned);
+    synonym.or_else(|| nearest(key, keys.iter().copied()))
 }
 
 pub(super) fn bases(key: &str) -> impl Iterator<Item = &str> {

@@ -18,7 +18,6 @@ pub(crate) enum Item {
     Needs(&'static str, &'static str),
 }
 
-/// A table inside another one.
 #[derive(Clone, Debug)]
 pub(crate) struct TableItem {
     pub name: &'static str,

@@ -6,7 +6,6 @@ use std::fmt;
 use condyle::parameter::Parameter;
 use toml::de::DeValue;
 
-/// A declared key.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Key {
     /// Name in the file, which ends in the unit of a quantity.
@@ -64,7 +63,6 @@ pub(crate) fn names(keys: &[Key]) -> impl Iterator<Item = &'static str> + '_ {
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(crate) enum Kind {
     Number,
-    /// A number without a fraction.
     WholeNumber,
     /// 1 or -1.
     Sign,
@@ -77,9 +75,7 @@ pub(crate) enum Kind {
     Names,
     /// Numbers or words, one or more.
     Levels,
-    /// A list of so many numbers.
     Numbers(usize),
-    /// Any number of pairs of numbers.
     Pairs,
 }
 
@@ -153,7 +149,6 @@ pub(crate) fn quoted_list(words: &[&str]) -> String {
     }
 }
 
-/// Returns the type of a value in words.
 pub(crate) fn type_name(value: &DeValue<'_>) -> &'static str {
     match value {
         DeValue::String(_) => "text in quotes",

@@ -123,7 +123,6 @@ pub(crate) struct Base<'a> {
 }
 
 impl<'a> Base<'a> {
-    /// Returns the folder of the file at `path`.
     pub(crate) fn of(files: &'a Arc<dyn Files>, path: &'a Path) -> Self {
         let folder = path.parent().unwrap_or(Path::new(""));
         Self { files, folder }

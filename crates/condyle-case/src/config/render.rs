@@ -45,15 +45,11 @@ impl Problems {
             let shown = handler.render_report(&mut text, &Shown::new(problem));
             debug_assert!(shown.is_ok(), "writing to a String does not fail");
         }
-        text + &of_the_rest(self.problems().len())
-    }
-}
-
-fn of_the_rest(all: usize) -> String {
-    match all.saturating_sub(MAX_SHOWN) {
-        0 => String::new(),
-        1 => "and 1 more problem; correct these first\n".to_owned(),
-        more => format!("and {more} more problems; correct these first\n"),
+        match self.problems().len().saturating_sub(MAX_SHOWN) {
+            0 => text,
+            1 => text + "and 1 more problem; correct these first\n",
+            more => text + &format!("and {more} more problems; correct these first\n"),
+        }
     }
 }
 

@@ -176,7 +176,6 @@ impl<'a> Section<'a> {
         }
     }
 
-    /// Reports every key that is none of `known`.
     pub(crate) fn check_keys(&self, known: &[&str], log: &mut Log<'_>) {
         for (key, value) in self.other_keys(known) {
             let fault = explain(key.get_ref(), value, &self.name(), known);

@@ -174,14 +174,12 @@ impl<T: Setting> Setting for Option<T> {
     }
 }
 
-/// Reports that `value` has another type than `key` takes.
 pub(crate) fn wrong_type(value: &Spanned<DeValue<'_>>, key: &Key, log: &mut Log<'_>) {
     let found = type_name(value.get_ref());
     let fault = type_fault(key.name, &key.kind.to_string(), found);
     log.problem(value.span(), fault);
 }
 
-/// Reads one of `words`, or reports why it cannot be used.
 pub(crate) fn read_word<'w>(
     value: &Spanned<DeValue<'_>>,
     key: &Key,
@@ -354,7 +352,6 @@ pub(crate) struct Writer {
 const COMMENT_COLUMN: usize = 40;
 
 impl Writer {
-    /// Returns a writer of waveforms by their names or by their points.
     pub(crate) fn new(names_waveforms: bool) -> Self {
         Self {
             names_waveforms,
@@ -382,7 +379,6 @@ impl Writer {
         self.text.push_str(&format!("# {text}\n"));
     }
 
-    /// Writes an assignment followed by its meaning.
     pub(crate) fn line(&mut self, assignment: &str, doc: &str) {
         let doc = doc.trim();
         let line = format!("{assignment:<COMMENT_COLUMN$} # {doc}\n");

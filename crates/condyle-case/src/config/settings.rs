@@ -21,17 +21,14 @@ pub(crate) trait Settings: Sized {
         keys(&Self::items()).into_iter().cloned().collect()
     }
 
-    /// Describes the part as the table `name`.
     fn item(name: &'static str, about: &str) -> Item {
         Item::Table(TableItem::new(name, about, Self::items()))
     }
 
-    /// Reads the part from the table `name` of `above`.
     fn read_in(above: &Section<'_>, name: &'static str, log: &mut Log<'_>) -> Option<Self> {
         Self::read(&above.table(name, log), log)
     }
 
-    /// Writes the part as the table `name`.
     fn write_in(&self, name: &str, out: &mut Writer) {
         out.table(name, |out| self.write(out));
     }

@@ -156,6 +156,7 @@ fn rounded(number: f64) -> f64 {
 
 /// Returns the smallest and the largest number, and every word: if the case accepts these, it accepts all.
 fn decisive(levels: impl Iterator<Item = Level>) -> Vec<Level> {
+    // A range that the first number replaces.
     let (mut low, mut high) = (f64::INFINITY, f64::NEG_INFINITY);
     let (mut words, mut seen) = (Vec::new(), BTreeSet::new());
     for level in levels {

@@ -166,7 +166,6 @@ impl GravimetricComparison {
         }
     }
 
-    /// Returns whether intervals count specimens rather than weighings.
     pub(crate) fn counts_specimens(&self) -> bool {
         self.aim == IntervalWord::Specimens
     }

@@ -20,8 +20,7 @@ pub use error::{CalibrateError, CompareError};
 
 pub use crate::measured::{
     calibrate::{
-        CalibratedConstant, CalibratedTest, Calibration, CalibrationRequest, Estimate, Prediction,
-        Trial, calibrate,
+        CalibratedConstant, CalibratedTest, Calibration, Estimate, Prediction, Trial, calibrate,
     },
     gravimetric::{GravimetricComparison, Interval, Rate, Weighing},
     kinematics::{ColumnComparison, Errors, KinematicsComparison, PhaseErrors},

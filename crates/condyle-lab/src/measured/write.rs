@@ -7,10 +7,7 @@ use std::{
 
 use condyle_report::{
     SurfaceFields,
-    measured::{
-        ComparedCurve, ComparedWear, compared_kinematics_svg, compared_surface_svg,
-        compared_wear_svg,
-    },
+    measured::{compared_kinematics_svg, compared_surface_svg, compared_wear_svg},
 };
 use condyle_results::{COMPARED_KINEMATICS, COMPARED_NUMBERS, COMPARED_SURFACE, COMPARED_WEAR};
 
@@ -68,14 +65,9 @@ impl Comparison {
 impl KinematicsComparison {
     fn svg(&self) -> String {
         let columns = self.columns.iter();
-        let curves: Vec<ComparedCurve> = columns
-            .map(|column| ComparedCurve {
-                column: column.column,
-                points: column.points.clone(),
-            })
-            .collect();
+        let columns = columns.map(|column| (column.column, column.points.as_slice()));
         let title = format!("Motion in the {} cycle, measured and predicted", self.cycle);
-        compared_kinematics_svg(&title, &curves)
+        compared_kinematics_svg(&title, &columns.collect::<Vec<_>>())
     }
 
     /// Returns the aligned measurement, a row for each instant of the run's cycle and a column for each measured one;
@@ -120,7 +112,7 @@ impl GravimetricComparison {
 
     fn svg(&self) -> String {
         let weighings = || self.weighings.iter();
-        let specimen = |index: usize| {
+        let specimen = |index: usize| -> Vec<(f64, f64)> {
             let points = weighings().map(|weighing| (weighing.cycles, weighing.loss_mg[index]));
             points.collect()
         };
@@ -131,16 +123,11 @@ impl GravimetricComparison {
         let line = ends.map(|weighing| {
             let cycles = weighing.map_or(0.0, |weighing| weighing.cycles);
             let start = self.all.intercept_mg.unwrap_or_default();
-            (
-                cycles,
-                start + self.all.mg_per_million_cycles * cycles / 1e6,
-            )
+            let rise_mg = self.all.mg_per_million_cycles * cycles / 1e6;
+            (cycles, start + rise_mg)
         });
-        compared_wear_svg(&ComparedWear {
-            specimens: (0..self.specimens.len()).map(specimen).collect(),
-            line,
-            predicted: predicted.collect(),
-        })
+        let specimens: Vec<_> = (0..self.specimens.len()).map(specimen).collect();
+        compared_wear_svg(&specimens, &line, &predicted.collect::<Vec<_>>())
     }
 }
 

@@ -11,7 +11,7 @@ use condyle_results::{
     },
 };
 
-use super::finished::{Finished, SolvedCycle};
+use super::finished::{Finished, SolvedCycle, warning};
 
 /// Distance from the rim, mm, within which a foundation over-estimates pressure and the pressure of an elastic body
 /// is unbounded: about the reach of the neighbours that are missing there.
@@ -47,19 +47,14 @@ pub(crate) fn wear_at_rim(finished: &Finished<'_>) -> Option<PlausibilityWarning
     } else {
         0.0
     };
-    (percent > MAX_AT_RIM_PERCENT).then(|| PlausibilityWarning {
-        check: "wear_at_rim".to_owned(),
-        value: percent,
-        limit: MAX_AT_RIM_PERCENT,
-        unit: "%".to_owned(),
-        message: format!(
-            "{percent:.1} % of the worn volume lies within {NEAR_RIM_MM} mm of the rim of the articulating surface; up to \
+    let message = format!(
+        "{percent:.1} % of the worn volume lies within {NEAR_RIM_MM} mm of the rim of the articulating surface; up to \
              {MAX_AT_RIM_PERCENT:.0} % would be sound"
-        ),
-        advice: "The femur rides on an edge, where the pressure of an elastic model is not to be believed: look at the placement \
-                 of the bodies, their axes and sides, and at where the outline of the insert was cut."
-            .to_owned(),
-    })
+    );
+    let advice = "The femur rides on an edge, where the pressure of an elastic model is not to be believed: look at the placement \
+                 of the bodies, their axes and sides, and at where the outline of the insert was cut.";
+    let value = (percent, MAX_AT_RIM_PERCENT, "%");
+    (percent > MAX_AT_RIM_PERCENT).then(|| warning("wear_at_rim", value, message, advice))
 }
 
 /// Warns if the node with the highest pressure, in the first or the last cycle, lies within 1.5 mm of the rim.
@@ -75,20 +70,15 @@ pub(crate) fn pressure_at_rim(finished: &Finished<'_>) -> Option<PlausibilityWar
         });
     let (from_rim_mm, highest, node, cycle) = at_rim.min_by(|a, b| a.0.total_cmp(&b.0))?;
     let place = finished.surface.positions[node];
-    Some(PlausibilityWarning {
-        check: "pressure_at_rim".to_owned(),
-        value: from_rim_mm,
-        limit: NEAR_RIM_MM,
-        unit: "mm".to_owned(),
-        message: format!(
-            "the {cycle} cycle's highest pressure, {highest:.1} MPa, is {from_rim_mm:.2} mm from the rim, at x {:.1} mm, z \
+    let message = format!(
+        "the {cycle} cycle's highest pressure, {highest:.1} MPa, is {from_rim_mm:.2} mm from the rim, at x {:.1} mm, z \
              {:.1} mm",
-            place.x, place.z
-        ),
-        advice:
-            "The femur rides on an edge: see the placement of the bodies, their axes and sides."
-                .to_owned(),
-    })
+        place.x, place.z
+    );
+    let advice =
+        "The femur rides on an edge: see the placement of the bodies, their axes and sides.";
+    let value = (from_rim_mm, NEAR_RIM_MM, "mm");
+    Some(warning("pressure_at_rim", value, message, advice))
 }
 
 /// Returns the highest pressure at every surface node in the first and in the last cycle, MPa; once if both cycles
@@ -105,20 +95,15 @@ fn pressures<'a>(finished: &Finished<'a>) -> Vec<(&'static str, &'a [f64])> {
 pub(crate) fn pressure_beyond_flow(finished: &Finished<'_>) -> Option<PlausibilityWarning> {
     let limit = FULL_FLOW * YIELD_MPA;
     let peak = finished.summary[&PEAK_PRESSURE_MPA];
-    (peak > limit).then(|| PlausibilityWarning {
-        check: "pressure_beyond_flow".to_owned(),
-        value: peak,
-        limit,
-        unit: "MPa".to_owned(),
-        message: format!(
-            "the highest pressure is {peak:.1} MPa, after {:.0} cycles; from about {limit:.0} MPa polyethylene flows, and there \
+    let message = format!(
+        "the highest pressure is {peak:.1} MPa, after {:.0} cycles; from about {limit:.0} MPa polyethylene flows, and there \
              is no such pressure",
-            finished.summary[&PEAK_PRESSURE_CYCLE]
-        ),
-        advice: "See that the sizes and units of both bodies, their axes, sides and placement are right, and the load: the \
-                 contact is far smaller than that of a knee."
-            .to_owned(),
-    })
+        finished.summary[&PEAK_PRESSURE_CYCLE]
+    );
+    let advice = "See that the sizes and units of both bodies, their axes, sides and placement are right, and the load: the \
+                 contact is far smaller than that of a knee.";
+    let value = (peak, limit, "MPa");
+    (peak > limit).then(|| warning("pressure_beyond_flow", value, message, advice))
 }
 
 /// Warns of pressure at which polyethylene would yield below the surface, for an insert that is modelled without
@@ -132,19 +117,14 @@ pub(crate) fn pressure_beyond_yield(finished: &Finished<'_>) -> Option<Plausibil
         extents.collect::<Vec<_>>().join("; ")
     };
     let yields = finished.summary.get(&MAX_PLASTIC_STRAIN).is_some();
-    (peak > limit && !yields).then(|| PlausibilityWarning {
-        check: "pressure_beyond_yield".to_owned(),
-        value: peak,
-        limit,
-        unit: "MPa".to_owned(),
-        message: format!(
-            "the highest pressure is {peak:.1} MPa, and polyethylene yields below the surface from about {limit:.1} MPa; {}",
-            extents()
-        ),
-        advice: "The insert of the model does not yield: take pressure there as an upper bound, and wear, which goes by \
-                 force times sliding, as less affected."
-            .to_owned(),
-    })
+    let message = format!(
+        "the highest pressure is {peak:.1} MPa, and polyethylene yields below the surface from about {limit:.1} MPa; {}",
+        extents()
+    );
+    let advice = "The insert of the model does not yield: take pressure there as an upper bound, and wear, which goes by \
+                 force times sliding, as less affected.";
+    let value = (peak, limit, "MPa");
+    (peak > limit && !yields).then(|| warning("pressure_beyond_yield", value, message, advice))
 }
 
 /// Returns the area above a limit of pressure in a cycle, and its time, in words.
@@ -152,37 +132,26 @@ fn extent(finished: &Finished<'_>, cycle: &str, pressures: &[f64], limit_mpa: f6
     let shares = pressures.iter().zip(&finished.surface.shares);
     let above = shares.filter(|(pressure_mpa, _)| **pressure_mpa > limit_mpa);
     let area_mm2 = above.fold(0.0, |sum, (_, share)| sum + share.area_mm2);
-    format!(
-        "in the {cycle} cycle {area_mm2:.0} mm2 are pressed harder than that, for {:.0} % of it",
-        time_above_percent(finished, cycle, limit_mpa)
-    )
-}
-
-/// Returns the part of the first or the last cycle with a pressure above a limit, in the activity that has most of
-/// it, %.
-fn time_above_percent(finished: &Finished<'_>, cycle: &str, limit_mpa: f64) -> f64 {
+    // Of several activities, the one with most time above the limit.
     let solved = finished.cycles().filter(|solved| solved.name == cycle);
-    let percents =
-        solved.map(|solved| solved.percent_of_rows(|row| row.peak_pressure_mpa > limit_mpa));
-    percents.fold(0.0, f64::max)
+    let percents = solved.map(|one| one.percent_of_rows(|row| row.peak_pressure_mpa > limit_mpa));
+    let percent = percents.fold(0.0, f64::max);
+    format!(
+        "in the {cycle} cycle {area_mm2:.0} mm2 are pressed harder than that, for {percent:.0} % of it"
+    )
 }
 
 /// Warns of an insert that rocks on its tray; the lock of the model does not hold it down.
 pub(crate) fn insert_rocks(finished: &Finished<'_>) -> Option<PlausibilityWarning> {
     let lift_mm = finished.summary.get(&BACKSIDE_LIFT_MM)?;
-    (lift_mm > MAX_LIFT_MM).then(|| PlausibilityWarning {
-        check: "insert_rocks".to_owned(),
-        value: lift_mm,
-        limit: MAX_LIFT_MM,
-        unit: "mm".to_owned(),
-        message: format!(
-            "the insert lifts off its tray by {lift_mm:.2} mm: it rocks, as under a load beside the flat part of its backside, and \
+    let message = format!(
+        "the insert lifts off its tray by {lift_mm:.2} mm: it rocks, as under a load beside the flat part of its backside, and \
              nothing in the model holds it down"
-        ),
-        advice: "A tray's lock would: see whether the load bears above the tray, and take [contact.deformable] backside = \"bonded\" where \
-                 the insert is held down."
-            .to_owned(),
-    })
+    );
+    let advice = "A tray's lock would: see whether the load bears above the tray, and take [contact.deformable] backside = \"bonded\" where \
+                 the insert is held down.";
+    let value = (lift_mm, MAX_LIFT_MM, "mm");
+    (lift_mm > MAX_LIFT_MM).then(|| warning("insert_rocks", value, message, advice))
 }
 
 pub(crate) fn thin_polyethylene(finished: &Finished<'_>) -> Option<PlausibilityWarning> {
@@ -192,17 +161,13 @@ pub(crate) fn thin_polyethylene(finished: &Finished<'_>) -> Option<PlausibilityW
     let under_scar = nodes.filter(|(depth_mm, _)| **depth_mm > in_scar);
     let thinnest = under_scar.map(|(_, thickness_mm)| *thickness_mm);
     let thinnest = thinnest.fold(f64::INFINITY, f64::min);
-    (thinnest < MIN_THICKNESS_MM).then(|| PlausibilityWarning {
-        check: "thin_polyethylene".to_owned(),
-        value: thinnest,
-        limit: MIN_THICKNESS_MM,
-        unit: "mm".to_owned(),
-        message: format!(
-            "under the scar {thinnest:.2} mm of polyethylene are left at the thinnest; below {MIN_THICKNESS_MM:.0} mm stresses \
+    let message = format!(
+        "under the scar {thinnest:.2} mm of polyethylene are left at the thinnest; below {MIN_THICKNESS_MM:.0} mm stresses \
              rise steeply"
-        ),
-        advice: "Check that the insert's mesh reaches down to its tray and that its `unit` in the case is right.".to_owned(),
-    })
+    );
+    let advice = "Check that the insert's mesh reaches down to its tray and that its `unit` in the case is right.";
+    let value = (thinnest, MIN_THICKNESS_MM, "mm");
+    (thinnest < MIN_THICKNESS_MM).then(|| warning("thin_polyethylene", value, message, advice))
 }
 
 /// Largest part of a cycle during which a condyle may be beyond the rim, %; our choice.
@@ -213,30 +178,22 @@ const NEAR_MM: f64 = 1.5;
 /// Largest number of instants of a cycle that are examined.
 const INSTANTS: usize = 50;
 
-struct Beyond {
-    percent: f64,
-    side: &'static str,
-    cycle: &'static str,
-}
+/// Part of a cycle, %, with the names of the side and of the cycle.
+type Beyond = (f64, &'static str, &'static str);
 
 /// Warns of a condyle that is nearest to the insert at the rim of the articulating surface, loaded there or not: its
 /// middle is on the rim or beyond.
 pub(crate) fn femur_beyond_rim(finished: &Finished<'_>) -> Option<PlausibilityWarning> {
     let beyond = finished.cycles().flat_map(|cycle| beyond(finished, &cycle));
-    let most = beyond.max_by(|a, b| a.percent.total_cmp(&b.percent));
-    let too_much = most.filter(|beyond| beyond.percent > MAX_BEYOND_PERCENT);
-    too_much.map(|Beyond { percent, side, cycle }| PlausibilityWarning {
-        check: "femur_beyond_rim".to_owned(),
-        value: percent,
-        limit: MAX_BEYOND_PERCENT,
-        unit: "%".to_owned(),
-        message: format!(
-            "for {percent:.0} % of the {cycle} cycle the {side} condyle is on or beyond the rim of the articulating surface"
-        ),
-        advice: "The femur rides off the insert: look at the placement of the bodies (start_mm, axes, sides), the sizes of \
-                 both, loads and springs, and at where the outline of the insert was cut."
-            .to_owned(),
-    })
+    let most = beyond.max_by(|a, b| a.0.total_cmp(&b.0));
+    let (percent, side, cycle) = most.filter(|beyond| beyond.0 > MAX_BEYOND_PERCENT)?;
+    let message = format!(
+        "for {percent:.0} % of the {cycle} cycle the {side} condyle is on or beyond the rim of the articulating surface"
+    );
+    let advice = "The femur rides off the insert: look at the placement of the bodies (start_mm, axes, sides), the sizes of \
+                    both, loads and springs, and at where the outline of the insert was cut.";
+    let value = (percent, MAX_BEYOND_PERCENT, "%");
+    Some(warning("femur_beyond_rim", value, message, advice))
 }
 
 /// Returns, for every side, the part of a cycle during which its condyle is nearest to the rim.
@@ -261,11 +218,8 @@ fn beyond(finished: &Finished<'_>, cycle: &SolvedCycle<'_>) -> Vec<Beyond> {
         let at_rim = looked_at
             .iter()
             .filter(|pose| is_at_rim(finished, pose, side));
-        Beyond {
-            percent: 100.0 * at_rim.count() as f64 / looked_at.len().max(1) as f64,
-            side: region.name,
-            cycle: cycle.name,
-        }
+        let part = at_rim.count() as f64 / looked_at.len().max(1) as f64;
+        (100.0 * part, region.name, cycle.name)
     };
     sides.map(of_side).collect()
 }

@@ -3,14 +3,29 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use condyle::{
-    Vec3,
     evolve::{CycleRecord, March},
     geometry::{ArticulatingSurface, Insert},
     machine::{CycleRow, Machine},
 };
-use condyle_results::Summary;
+use condyle_results::{PlausibilityWarning, Summary};
 
-/// A finished march, its surface and its summary.
+/// Returns the warning of the check called `check`, of a value beyond its limit, in their unit.
+pub(super) fn warning(
+    check: &str,
+    (value, limit, unit): (f64, f64, &str),
+    message: String,
+    advice: &str,
+) -> PlausibilityWarning {
+    PlausibilityWarning {
+        check: check.to_owned(),
+        value,
+        limit,
+        unit: unit.to_owned(),
+        message,
+        advice: advice.to_owned(),
+    }
+}
+
 pub(crate) struct Finished<'a> {
     pub march: &'a March,
     pub summary: &'a Summary,
@@ -57,7 +72,12 @@ impl<'a> Finished<'a> {
         let place = self.surface.positions[node];
         let edges = self.rim.iter();
         let edges = edges.map(|edge| edge.map(|node| self.surface.positions[node as usize]));
-        let distances = edges.map(|edge| distance_mm(&place, &edge));
+        let distances = edges.map(|[from, to]| {
+            let along = to - from;
+            // The nearest place of the line may lie beyond an end of the edge.
+            let part = (place - from).dot(&along) / along.norm_squared().max(f64::MIN_POSITIVE);
+            (place - (from + along * part.clamp(0.0, 1.0))).norm()
+        });
         distances.fold(f64::INFINITY, f64::min)
     }
 
@@ -100,10 +120,4 @@ fn rim_of(insert: &Insert) -> Vec<[u32; 2]> {
     }
     let at_end = faces_at.into_iter().filter(|(_, faces)| *faces == 1);
     at_end.map(|(edge, _)| edge).collect()
-}
-
-fn distance_mm(place: &Vec3, [from, to]: &[Vec3; 2]) -> f64 {
-    let along = to - from;
-    let part = (place - from).dot(&along) / along.norm_squared().max(f64::MIN_POSITIVE);
-    (place - (from + along * part.clamp(0.0, 1.0))).norm()
 }

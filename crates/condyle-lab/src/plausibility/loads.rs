@@ -6,7 +6,7 @@ use condyle::machine::{
 };
 use condyle_results::{PlausibilityWarning, joint_range};
 
-use super::finished::{Finished, SolvedCycle};
+use super::finished::{Finished, SolvedCycle, warning};
 
 /// A load of the machine, and the accuracy with which it must be reached.
 struct Applied {
@@ -57,32 +57,24 @@ pub(crate) fn not_reached(finished: &Finished<'_>) -> Vec<PlausibilityWarning> {
         let cycles = finished.cycles();
         let missed = cycles.filter_map(|cycle| missed(finished.machine(&cycle), &cycle, applied));
         let worst = missed.max_by(|a, b| a.percent.total_cmp(&b.percent))?;
-        (worst.percent > applied.most_percent).then(|| not_reached_by(applied, &worst))
+        let (per_unit, unit) = match KNEE.joint(applied.joint).kind() {
+            JointKind::Rotation => (1000.0, "N m"),
+            JointKind::Translation => (1.0, "N"),
+        };
+        let (most, load) = (worst.most / per_unit, worst.load / per_unit);
+        let (percent, cycle, name) = (worst.percent, worst.cycle, applied.name);
+        let within_percent = 100.0 * applied.within;
+        let message = format!(
+            "for {percent:.0} % of the {cycle} cycle contact and springs leave over {within_percent:.0} % of the {name}: up to \
+                {most:.1} {unit} of {load:.1} {unit}, which inertia and damping take"
+        );
+        let advice = "The femur leaves the insert, or is thrown or dragged about: see that the load does not jump, the \
+                    frequency, and inertia and damping of the machine.";
+        let value = (percent, applied.most_percent, "%");
+        (percent > applied.most_percent)
+            .then(|| warning("load_not_reached", value, message, advice))
     });
     missed.collect()
-}
-
-fn not_reached_by(applied: &Applied, missed: &Missed) -> PlausibilityWarning {
-    let (per_unit, unit) = match KNEE.joint(applied.joint).kind() {
-        JointKind::Rotation => (1000.0, "N m"),
-        JointKind::Translation => (1.0, "N"),
-    };
-    let (most, load) = (missed.most / per_unit, missed.load / per_unit);
-    let (percent, cycle, name) = (missed.percent, missed.cycle, applied.name);
-    let within_percent = 100.0 * applied.within;
-    PlausibilityWarning {
-        check: "load_not_reached".to_owned(),
-        value: percent,
-        limit: applied.most_percent,
-        unit: "%".to_owned(),
-        message: format!(
-            "for {percent:.0} % of the {cycle} cycle contact and springs leave over {within_percent:.0} % of the {name}: up to \
-             {most:.1} {unit} of {load:.1} {unit}, which inertia and damping take"
-        ),
-        advice: "The femur leaves the insert, or is thrown or dragged about: see that the load does not jump, the \
-                 frequency, and inertia and damping of the machine."
-            .to_owned(),
-    }
 }
 
 /// Returns the part of a load that is missed in a cycle; none for a joint without a load.
@@ -178,18 +170,13 @@ fn far(pulled: Pulled) -> PlausibilityWarning {
         at_percent,
         cycle,
     } = pulled;
-    PlausibilityWarning {
-        check: "springs_far".to_owned(),
-        value: beyond_mm,
-        limit: FARTHEST_MM,
-        unit: "mm".to_owned(),
-        message: format!(
-            "a spring is {beyond_mm:.1} mm beyond its free play and holds with {force_n:.0} N, at {at_percent:.0} % of the \
-             {cycle} cycle; the model's springs have no end, a machine's come to theirs after some {FARTHEST_MM:.0} mm"
-        ),
-        advice: "See the AP force and IE torque with their signs, and stiffness and free play in [machine.springs]."
-            .to_owned(),
-    }
+    let message = format!(
+        "a spring is {beyond_mm:.1} mm beyond its free play and holds with {force_n:.0} N, at {at_percent:.0} % of the \
+            {cycle} cycle; the model's springs have no end, a machine's come to theirs after some {FARTHEST_MM:.0} mm"
+    );
+    let advice = "See the AP force and IE torque with their signs, and stiffness and free play in [machine.springs].";
+    let value = (beyond_mm, FARTHEST_MM, "mm");
+    warning("springs_far", value, message, advice)
 }
 
 /// A freedom, and an upper bound of the motion of knees along it in walking and stairs, in the unit of files.
@@ -219,18 +206,13 @@ fn range(finished: &Finished<'_>, (joint, most): MostMotion) -> Option<Plausibil
         "deg" => "degrees",
         unit => unit,
     };
-    (range > most).then(|| PlausibilityWarning {
-        check: format!("{}_range", description.name),
-        value: range,
-        limit: most,
-        unit: unit.to_owned(),
-        message: format!(
-            "{} moves by {range:.1} {unit} in the {cycle} cycle; knees stay below {most:.0}",
-            description.symbol
-        ),
-        advice: "See the loads, the springs and their free play, and whether the femur is held by the dishes at all."
-            .to_owned(),
-    })
+    let message = format!(
+        "{} moves by {range:.1} {unit} in the {cycle} cycle; knees stay below {most:.0}",
+        description.symbol
+    );
+    let advice = "See the loads, the springs and their free play, and whether the femur is held by the dishes at all.";
+    let (check, value) = (format!("{}_range", description.name), (range, most, unit));
+    (range > most).then(|| warning(&check, value, message, advice))
 }
 
 /// Warns if one side carries no load while the joint is loaded.
@@ -239,20 +221,15 @@ pub(crate) fn lift_off(finished: &Finished<'_>) -> Option<PlausibilityWarning> {
         .cycles()
         .map(|cycle| (lifted_percent(&cycle), cycle.name));
     let most = lifted.max_by(|a, b| a.0.total_cmp(&b.0));
-    let beyond = most.filter(|(percent, _)| *percent > MAX_LIFTED_PERCENT);
-    beyond.map(|(percent, cycle)| PlausibilityWarning {
-        check: "lift_off".to_owned(),
-        value: percent,
-        limit: MAX_LIFTED_PERCENT,
-        unit: "%".to_owned(),
-        message: format!(
-            "for {percent:.0} % of the {cycle} cycle one side carries nothing while the joint is loaded; up to \
-             {MAX_LIFTED_PERCENT:.0} % would be sound"
-        ),
-        advice: "See vv_axis_medial_mm, which splits the load between the sides, start_mm, and whether both bodies are of \
-                 the same side."
-            .to_owned(),
-    })
+    let (percent, cycle) = most.filter(|(percent, _)| *percent > MAX_LIFTED_PERCENT)?;
+    let message = format!(
+        "for {percent:.0} % of the {cycle} cycle one side carries nothing while the joint is loaded; up to \
+            {MAX_LIFTED_PERCENT:.0} % would be sound"
+    );
+    let advice = "See vv_axis_medial_mm, which splits the load between the sides, start_mm, and whether both bodies are of \
+                    the same side.";
+    let value = (percent, MAX_LIFTED_PERCENT, "%");
+    Some(warning("lift_off", value, message, advice))
 }
 
 fn lifted_percent(cycle: &SolvedCycle<'_>) -> f64 {

@@ -17,7 +17,7 @@ use condyle_results::{
     },
 };
 
-use finished::Finished;
+use finished::{Finished, warning};
 
 /// A check of one number; none if the run is plausible.
 type Check = fn(&Finished<'_>) -> Option<PlausibilityWarning>;
@@ -78,33 +78,25 @@ pub(crate) fn counts_of_volume(finished: &Finished<'_>) -> Option<PlausibilityWa
         [&VOLUME_LOSS_MM3, &VOLUME_LOSS_MESH_MM3].map(|volume| finished.summary[volume]);
     // Without wear both are 0: MIN_POSITIVE makes the result 0 % instead of NaN.
     let percent = 100.0 * (depth - mesh).abs() / depth.max(mesh).max(f64::MIN_POSITIVE);
-    (percent > COUNTS_PERCENT).then(|| PlausibilityWarning {
-        check: "counts_of_volume".to_owned(),
-        value: percent,
-        limit: COUNTS_PERCENT,
-        unit: "%".to_owned(),
-        message: format!(
-            "the worn volume is {depth:.2} mm3 by depth times area and {mesh:.2} mm3 by the change of the mesh, {percent:.1} % \
+    let message = format!(
+        "the worn volume is {depth:.2} mm3 by depth times area and {mesh:.2} mm3 by the change of the mesh, {percent:.1} % \
              apart"
-        ),
-        advice: "The mesh is too coarse for the scar, or worn at a crease: take a smaller edge_mm.".to_owned(),
-    })
+    );
+    let advice =
+        "The mesh is too coarse for the scar, or worn at a crease: take a smaller edge_mm.";
+    let value = (percent, COUNTS_PERCENT, "%");
+    (percent > COUNTS_PERCENT).then(|| warning("counts_of_volume", value, message, advice))
 }
 
 pub(crate) fn mesh_quality(finished: &Finished<'_>) -> Option<PlausibilityWarning> {
     let quality = finished.summary[&WORST_QUALITY];
-    (quality < MIN_QUALITY).then(|| PlausibilityWarning {
-        check: "mesh_quality".to_owned(),
-        value: quality,
-        limit: MIN_QUALITY,
-        unit: String::new(),
-        message: format!(
-            "the worst element is nearly flat: its scaled Jacobian is {quality:.3}, and {MIN_QUALITY} would be sound"
-        ),
-        advice: "Fewer layers or a larger edge_mm at the outline; where the wear itself folds them, more updates or fewer \
-                 cycles."
-            .to_owned(),
-    })
+    let message = format!(
+        "the worst element is nearly flat: its scaled Jacobian is {quality:.3}, and {MIN_QUALITY} would be sound"
+    );
+    let advice = "Fewer layers or a larger edge_mm at the outline; where the wear itself folds them, more updates or fewer \
+                 cycles.";
+    (quality < MIN_QUALITY)
+        .then(|| warning("mesh_quality", (quality, MIN_QUALITY, ""), message, advice))
 }
 
 pub(crate) fn error_of_mass(finished: &Finished<'_>) -> Option<PlausibilityWarning> {
@@ -121,14 +113,13 @@ fn large_error(
     finished: &Finished<'_>,
 ) -> Option<PlausibilityWarning> {
     let percent = finished.summary.error.as_ref()?.of(scalar).percent.total;
-    (percent > MAX_ERROR_PERCENT).then(|| PlausibilityWarning {
-        check: check.to_owned(),
-        value: percent,
-        limit: MAX_ERROR_PERCENT,
-        unit: "%".to_owned(),
-        message: format!("the {} has a discretisation error of {percent:.1} %", scalar.label),
-        advice: "The parts of the error say what to refine: increments, updates, edge_mm or slip tolerance.".to_owned(),
-    })
+    let message = format!(
+        "the {} has a discretisation error of {percent:.1} %",
+        scalar.label
+    );
+    let advice = "The parts of the error say what to refine: increments, updates, edge_mm or slip tolerance.";
+    (percent > MAX_ERROR_PERCENT)
+        .then(|| warning(check, (percent, MAX_ERROR_PERCENT, "%"), message, advice))
 }
 
 /// Warns of a single update that wears the scar of the first cycle for the whole test, so deep that the pressure
@@ -137,63 +128,44 @@ pub(crate) fn single_update(finished: &Finished<'_>) -> Option<PlausibilityWarni
     let state = finished.march.state();
     let step = state.last_step.as_ref()?;
     let relaxed = step.relaxation_per_cycle * step.interval;
-    (state.updates.len() == 1 && relaxed > MAX_RELAXED).then(|| PlausibilityWarning {
-        check: "single_update".to_owned(),
-        value: relaxed,
-        limit: MAX_RELAXED,
-        unit: String::new(),
-        message: format!(
-            "one update digs the scar of the first cycle for all cycles, {relaxed:.1} times as deep as would even out the \
+    let message = format!(
+        "one update digs the scar of the first cycle for all cycles, {relaxed:.1} times as deep as would even out the \
              pressure at its bottom; what that costs is not known, and not in the error stated"
-        ),
-        advice: "Take more updates, or update = \"auto\".".to_owned(),
-    })
+    );
+    let advice = "Take more updates, or update = \"auto\".";
+    (state.updates.len() == 1 && relaxed > MAX_RELAXED)
+        .then(|| warning("single_update", (relaxed, MAX_RELAXED, ""), message, advice))
 }
 
 /// Warns of steps of the march that are so long that the estimate of their error is too small.
 pub(crate) fn updates_too_few(finished: &Finished<'_>) -> Option<PlausibilityWarning> {
     let error = finished.summary.error.as_ref()?;
     let percent = error.of(&MAX_DEPTH_MM).percent.updates?.abs();
-    (percent > MAX_OF_UPDATES_PERCENT).then(|| PlausibilityWarning {
-        check: "updates_too_few".to_owned(),
-        value: percent,
-        limit: MAX_OF_UPDATES_PERCENT,
-        unit: "%".to_owned(),
-        message: format!(
-            "so few updates cost {percent:.1} % of the deepest wear by the estimate; with steps as long as that the error stated \
+    let message = format!(
+        "so few updates cost {percent:.1} % of the deepest wear by the estimate; with steps as long as that the error stated \
              of mass and depth may be several times too small"
-        ),
-        advice: "Take more updates, or update = \"auto\".".to_owned(),
-    })
+    );
+    let advice = "Take more updates, or update = \"auto\".";
+    let value = (percent, MAX_OF_UPDATES_PERCENT, "%");
+    (percent > MAX_OF_UPDATES_PERCENT).then(|| warning("updates_too_few", value, message, advice))
 }
 
 pub(crate) fn added_inertia(finished: &Finished<'_>) -> Option<PlausibilityWarning> {
     let added = finished.summary.get(&ADDED_INERTIA)?;
-    (added > MAX_ADDED_INERTIA).then(|| PlausibilityWarning {
-        check: "added_inertia".to_owned(),
-        value: added,
-        limit: MAX_ADDED_INERTIA,
-        unit: String::new(),
-        message: format!(
-            "the explicit steps asked for are stable only with up to {added:.0} times the machine's inertia added to it, and \
+    let message = format!(
+        "the explicit steps asked for are stable only with up to {added:.0} times the machine's inertia added to it, and \
              that moves otherwise than the machine"
-        ),
-        advice: "Set a shorter explicit_step_s (0 takes the longest stable step), a larger slip_tolerance_mm_per_s, or \
-                 integrator = \"implicit\"."
-            .to_owned(),
-    })
+    );
+    let advice = "Set a shorter explicit_step_s (0 takes the longest stable step), a larger slip_tolerance_mm_per_s, or \
+                 integrator = \"implicit\".";
+    let value = (added, MAX_ADDED_INERTIA, "");
+    (added > MAX_ADDED_INERTIA).then(|| warning("added_inertia", value, message, advice))
 }
 
 pub(crate) fn cycles_not_repeating(finished: &Finished<'_>) -> Option<PlausibilityWarning> {
     let count = finished.summary[&CYCLES_NOT_REPEATING];
-    (count > 0.0).then(|| PlausibilityWarning {
-        check: "cycles_not_repeating".to_owned(),
-        value: count,
-        limit: 0.0,
-        unit: String::new(),
-        message: format!("in {count} updates no cycle repeated itself within the tolerance"),
-        advice: "The motion goes on changing from cycle to cycle: more cycles an update, or a machine with more \
-                 damping or stiffer springs."
-            .to_owned(),
-    })
+    let message = format!("in {count} updates no cycle repeated itself within the tolerance");
+    let advice = "The motion goes on changing from cycle to cycle: more cycles an update, or a machine with more \
+                 damping or stiffer springs.";
+    (count > 0.0).then(|| warning("cycles_not_repeating", (count, 0.0, ""), message, advice))
 }

@@ -2,7 +2,7 @@
 
 pub(crate) mod fit;
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use condyle::{
     contact::{
@@ -39,17 +39,6 @@ use crate::{
 const MAX_FITTED: usize = 40;
 /// Increments with at least this part of the cycle's highest axial force are stance.
 const STANCE: f64 = 0.2;
-
-/// A request for a calibration.
-#[derive(Clone, Debug)]
-pub struct CalibrateRequest {
-    /// The case file.
-    pub case: PathBuf,
-    /// Changes of the case.
-    pub changes: Vec<Assignment>,
-    /// Cases on which the table is tested, but to which it is not fitted.
-    pub held_out: Vec<PathBuf>,
-}
 
 /// The foundation and the deformable insert in one increment, under the same forces or at the same pose.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -94,18 +83,21 @@ struct HeldOut {
     left_before: RunErrors,
 }
 
-/// Fits a pressure table with which the foundation of a case presses as its deformable insert does, under the forces of
-/// the first cycle of its first activity; then runs both.
+/// Fits a pressure table with which the foundation of the changed case at `case_path` presses as its deformable insert does,
+/// under the forces of the first cycle of its first activity; then runs both.
 ///
-/// `on_step` receives the name of each step as it begins.
+/// The table is tested on the cases `held_out` too, to which it is not fitted. `on_step` receives the name of each step as
+/// it begins.
 ///
 /// # Errors
 /// The case does not run with one of the two models.
 pub fn calibrate(
-    request: &CalibrateRequest,
+    case_path: &Path,
+    changes: &[Assignment],
+    held_out: &[PathBuf],
     on_step: &mut dyn FnMut(&str),
 ) -> Result<CalibratedLaw, RunError> {
-    let case = Case::read_changed(&request.case, &request.changes)?;
+    let case = Case::read_changed(case_path, changes)?;
     on_step("the deformable insert");
     // The insert before it wears, and its first cycle: the table is fitted to the unworn bodies.
     let (mut insert, mut targets) = (None, Vec::new());
@@ -124,13 +116,13 @@ pub fn calibrate(
     let worst = |cycle: &CycleErrors| cycle.peak_pressure.most_percent;
     let worst = worst(&left.first_cycle).max(worst(&left.last_cycle));
     let peak_error_percent = (worst * 10.0).ceil() / 10.0;
-    let mut held_out = Vec::new();
-    for path in &request.held_out {
+    let mut tested = Vec::new();
+    for path in held_out {
         on_step(&path.display().to_string());
         let case = Case::read_changed(path, &[])?;
         let deformable = run(&with_deformable(&case), &mut |_| ())?;
         let (left, left_before) = errors(&case, &table, &deformable)?;
-        held_out.push(HeldOut {
+        tested.push(HeldOut {
             case: path.to_owned(),
             left,
             left_before,
@@ -141,7 +133,7 @@ pub fn calibrate(
         increments,
         left,
         left_before,
-        held_out,
+        held_out: tested,
         table: table.points().to_vec(),
         case: with_table(&case, table, Some(peak_error_percent)),
     })
@@ -186,7 +178,6 @@ fn with_table(case: &Case, points: PressureTable, peak_error_percent: Option<f64
     with_law(case, PressureLawChoice::TabulatedStrain(table))
 }
 
-/// A finished march and its summary.
 pub(crate) struct Ran {
     pub march: March,
     pub summary: Summary,

@@ -70,6 +70,7 @@ impl Axis {
         if decimals <= MAX_DECIMALS {
             return fixed(tick, decimals);
         }
+        // Round-off keeps the tick at zero from being exactly zero.
         if tick.abs() < self.step / 2.0 {
             return fixed(0.0, 0);
         }
@@ -100,11 +101,13 @@ pub(crate) fn round_step(least: f64) -> f64 {
     [1.0, 2.0, 5.0, 10.0]
         .map(|factor| factor * power)
         .into_iter()
+        // Round-off must not skip a step that fits exactly.
         .find(|step| *step >= least * (1.0 - 1e-9))
         .unwrap_or(10.0 * power)
 }
 
 fn decimals(step: f64) -> usize {
+    // The logarithm of a power of ten may be a little below a whole number.
     (-(step.log10() + 1e-9).floor()).max(0.0) as usize
 }
 

@@ -44,7 +44,6 @@ pub(crate) fn escape(text: &str) -> String {
     text.replace('>', "&gt;").replace('"', "&quot;")
 }
 
-/// Returns a title with its unit, for a `<text>` element.
 pub(crate) fn titled(title: &str, unit: &str) -> String {
     let title = escape(title);
     if unit.is_empty() {

@@ -60,7 +60,7 @@ impl Results {
         if results.has_any() {
             return Ok(results);
         }
-        Err(ReportError::NoResults(folder.to_owned()))
+        Err(ReportError::no_results(folder))
     }
 
     /// Reads the readable part of a results folder: damaged parts become `None` too, and [`Results::left_out`] has the
@@ -81,17 +81,21 @@ impl Results {
                 ..results
             });
         }
-        let folder = folder.to_owned();
         if left_out.is_empty() {
-            return Err(ReportError::NoResults(folder));
+            return Err(ReportError::no_results(folder));
         }
-        let reasons = left_out.join(" ");
-        Err(ReportError::NothingReadable { folder, reasons })
+        let (folder, reasons) = (folder.display(), left_out.join(" "));
+        Err(ReportError::Unusable(format!(
+            "Nothing in the folder {folder} can be read. {reasons}"
+        )))
     }
 
     fn read_parts(folder: &Path, on_damage: OnDamage<'_>) -> Result<Self, ReportError> {
         if !folder.is_dir() {
-            return Err(ReportError::NoFolder(folder.to_owned()));
+            let folder = folder.display();
+            return Err(ReportError::Unusable(format!(
+                "There is no folder {folder}. Give the folder that `condyle run --out` wrote."
+            )));
         }
         let case = part(case(&folder.join("case.toml")), on_damage)?;
         let summary = part(summary(&folder.join("summary.json")), on_damage)?;

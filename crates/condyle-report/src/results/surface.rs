@@ -159,6 +159,7 @@ impl SurfaceFields {
         self.quads.iter().filter_map(move |&quad| {
             let [a, b, c, d] = self.corners(quad);
             let is_inside = region.holds((a.z + b.z + c.z + d.z) / 4.0);
+            // The diagonals of a quad span twice its area.
             is_inside.then(|| (quad, (c - a).cross(&(d - b)).norm() / 2.0))
         })
     }

@@ -107,8 +107,8 @@ fn sheets(runs: &[Run]) -> Vec<Sheet> {
     let wear = runs
         .iter()
         .map(|run| charts::wear_up_to(&run.results, cycles));
-    let wear = together(wear, Curves::Last);
-    let motion = |pick| together(runs.iter().map(|run| charts::cycle(&run.results)), pick);
+    let wear = together(wear, |curves| curves.next_back());
+    let motion = || runs.iter().map(|run| charts::cycle(&run.results));
     let names = runs.iter().map(|run| run.name.as_str());
     let key: Vec<_> = (0..).map(line).zip(names).collect();
     let mut sheets: Vec<Sheet> = Vec::new();
@@ -124,14 +124,14 @@ fn sheets(runs: &[Run]) -> Vec<Sheet> {
             "runs_first_cycle.svg",
             "The first cycle, on unworn inserts.",
             "Motion and load in the first cycle",
-            motion(Curves::First),
+            together(motion(), |curves| curves.next()),
             3,
         ),
         (
             "runs_last_cycle.svg",
             "The last cycle that each run solved.",
             "Motion and load in the last cycle",
-            motion(Curves::Last),
+            together(motion(), |curves| curves.next_back()),
             3,
         ),
     ] {
@@ -157,24 +157,17 @@ fn line(run: usize) -> &'static str {
     LINES[run % LINES.len()]
 }
 
-#[derive(Clone, Copy)]
-enum Curves {
-    First,
-    Last,
-}
-
-/// Panels of the same quantity as one, with a curve for each run.
-fn together(of_runs: impl Iterator<Item = Vec<Panel>>, pick: Curves) -> Vec<Panel> {
+/// Panels of the same quantity as one, with the curve that `pick` takes of each run.
+fn together(
+    of_runs: impl Iterator<Item = Vec<Panel>>,
+    pick: fn(&mut dyn DoubleEndedIterator<Item = Curve>) -> Option<Curve>,
+) -> Vec<Panel> {
     let mut all: Vec<Panel> = Vec::new();
     for (run, panels) in of_runs.enumerate() {
         for mut panel in panels {
             let curves = std::mem::take(&mut panel.curves).into_iter();
             let mut own = curves.filter(|curve| curve.class != MEASURED);
-            let own = match pick {
-                Curves::First => own.next(),
-                Curves::Last => own.next_back(),
-            };
-            let curve = own.map(|curve| Curve::new(line(run), curve.points));
+            let curve = pick(&mut own).map(|curve| Curve::new(line(run), curve.points));
             let place = all.iter().position(|known| known.id == panel.id);
             let place = place.unwrap_or_else(|| {
                 all.push(panel);

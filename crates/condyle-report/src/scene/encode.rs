@@ -192,6 +192,7 @@ impl Arrays {
     /// Adds numbers in 16 bits of their range; values that are not finite become the lower end.
     fn quantised(&mut self, name: &str, values: impl Iterator<Item = f64>, range: [f64; 2]) {
         let [low, high] = range;
+        // A constant field has no span to divide by.
         let span = (high - low).max(f64::MIN_POSITIVE);
         let level = |value: f64| (((value - low) / span).clamp(0.0, 1.0) * LEVELS).round() as u16;
         let bytes = values.flat_map(|value| level(value).to_le_bytes());

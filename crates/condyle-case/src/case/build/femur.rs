@@ -249,6 +249,7 @@ fn sphere(radius_mm: f64, about: f64) -> TriangleMesh {
 }
 
 fn icosahedron() -> TriangleMesh {
+    // The corners of an icosahedron are those of three golden rectangles.
     let golden = f64::midpoint(1.0, 5f64.sqrt());
     let mut vertices = Vec::new();
     for (a, b) in [
@@ -270,6 +271,7 @@ fn icosahedron() -> TriangleMesh {
                 let [a, b, c]: [Vec3; 3] = [i, j, k].map(|n| vertices[n as usize]);
                 // Neighbours are 2 apart.
                 let is_edge =
+                    // The edges are 2 long, and the tolerance is for round-off.
                     |(one, other): (Vec3, Vec3)| ((one - other).norm() - 2.0).abs() < 1e-9;
                 if [(a, b), (b, c), (c, a)].into_iter().all(is_edge) {
                     let outward = (b - a).cross(&(c - a)).dot(&a) > 0.0;

@@ -8,8 +8,8 @@ use condyle::machine::{
 };
 
 use crate::case::contents::Case;
+use crate::case::machine as case;
 use crate::case::machine::{DriveWord, Freedom, StiffnessOf};
-use crate::case::{activity, machine as case};
 
 const TONNE_PER_KG: f64 = 1e-3;
 const TONNE_MM2_PER_KG_M2: f64 = 1e3;
@@ -95,37 +95,31 @@ pub(super) fn start_flexion_rad(machine: &Machine) -> f64 {
 }
 
 impl Case {
-    /// Builds every activity around an insert whose dishes are lowest at `low_point_mm`.
     pub(super) fn built_activities(&self, low_point_mm: Vec3) -> Vec<Activity> {
         if self.activities.is_empty() {
             return vec![Activity::only("gait", self.machine.build(low_point_mm))];
         }
         let activities = self.activities.iter().zip(self.activities.shares());
-        let built = activities.map(|(activity, share)| Activity {
-            name: activity.keys.name.clone(),
-            machine: self.machine.doing(activity).build(low_point_mm),
-            share,
+        let built = activities.map(|(activity, share)| {
+            let (mut machine, keys) = (self.machine.clone(), &activity.keys);
+            machine.waveforms = activity.waveforms.clone();
+            let own = &mut machine.settings;
+            own.frequency_hz = keys.frequency_hz.unwrap_or(own.frequency_hz);
+            own.flexion_offset_deg = keys.flexion_offset_deg.unwrap_or(own.flexion_offset_deg);
+            own.ap_force_sign = keys.ap_force_sign.unwrap_or(own.ap_force_sign);
+            own.ie_torque_sign = keys.ie_torque_sign.unwrap_or(own.ie_torque_sign);
+            Activity {
+                name: keys.name.clone(),
+                machine: machine.build(low_point_mm),
+                share,
+            }
         });
         built.collect()
     }
 
-    /// Returns the flexion at the start of the first activity.
     #[cfg(feature = "file-system")]
     pub(in crate::case) fn start_flexion_rad(&self) -> f64 {
         start_flexion_rad(&self.built_activities(Vec3::zeros())[0].machine)
-    }
-}
-
-impl case::Machine {
-    fn doing(&self, activity: &activity::Activity) -> Self {
-        let (mut machine, keys) = (self.clone(), &activity.keys);
-        machine.waveforms = activity.waveforms.clone();
-        let own = &mut machine.settings;
-        own.frequency_hz = keys.frequency_hz.unwrap_or(own.frequency_hz);
-        own.flexion_offset_deg = keys.flexion_offset_deg.unwrap_or(own.flexion_offset_deg);
-        own.ap_force_sign = keys.ap_force_sign.unwrap_or(own.ap_force_sign);
-        own.ie_torque_sign = keys.ie_torque_sign.unwrap_or(own.ie_torque_sign);
-        machine
     }
 }
 

@@ -34,6 +34,7 @@ pub(super) fn check_points(
     points: &[Vec3],
     unit: LengthUnit,
 ) -> Result<(), BuildError> {
+    // A box that the first point replaces.
     let none = (Vec3::repeat(f64::INFINITY), Vec3::repeat(f64::NEG_INFINITY));
     let (low, high) = points
         .iter()
@@ -86,11 +87,6 @@ impl Piece {
     fn diagonal_mm(&self) -> f64 {
         (self.high - self.low).norm()
     }
-
-    fn distance_mm(&self, other: &Self) -> f64 {
-        let apart = (self.low - other.high).sup(&(other.low - self.high));
-        apart.sup(&Vec3::zeros()).norm()
-    }
 }
 
 /// Returns the piece farthest from the largest one, if its distance exceeds half of the size of the largest: the two
@@ -99,7 +95,11 @@ pub(super) fn stray_piece(mesh: &TriangleMesh) -> Option<StrayPiece> {
     let pieces = pieces(mesh);
     let larger = |a: &&Piece, b: &&Piece| a.diagonal_mm().total_cmp(&b.diagonal_mm());
     let body = pieces.iter().max_by(larger)?;
-    let away_mm = |piece: &Piece| piece.distance_mm(body);
+    let away_mm = |piece: &Piece| {
+        // Along an axis on which the boxes overlap, both differences are negative.
+        let apart = (piece.low - body.high).sup(&(body.low - piece.high));
+        apart.sup(&Vec3::zeros()).norm()
+    };
     let farther = |a: &&Piece, b: &&Piece| away_mm(a).total_cmp(&away_mm(b));
     let farthest = pieces.iter().max_by(farther)?;
     let (at, away) = ((farthest.low + farthest.high) / 2.0, away_mm(farthest));

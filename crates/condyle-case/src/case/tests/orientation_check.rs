@@ -10,7 +10,7 @@ use condyle::geometry::{
 };
 use tempfile::TempDir;
 
-use crate::case::{Body, BuildWarning, Case, Draft, Preset, Side};
+use crate::case::{Body, BuildWarning, Case, Drafted, Preset, Side};
 use condyle_mesh::files::Disk;
 use condyle_mesh::formats::{read_surface, write_stl};
 
@@ -147,13 +147,9 @@ fn a_drafted_case_builds_without_warnings_of_axes_from_any_unit_and_orientation(
     for pair in &pairs {
         for (i, (unit_mm, word)) in units.into_iter().enumerate() {
             let (folder, femur, insert) = written(pair, &orientations[7 * i + 1], unit_mm);
-            let draft = Draft {
-                preset: Preset::StanmoreForce,
-                side: None,
-                femur: &femur,
-                insert: &insert,
-            };
-            let drafted = draft.drafted(folder.path()).unwrap();
+            let meshes = [femur.as_path(), insert.as_path()];
+            let drafted = Drafted::new(Preset::StanmoreForce, None, meshes, folder.path());
+            let drafted = drafted.unwrap();
             let unit = format!("length_unit = \"{word}\"");
             assert_eq!(drafted.text.matches(&unit).count(), 2, "{}", drafted.text);
             assert!(
@@ -244,13 +240,9 @@ fn a_draft_takes_the_side_that_the_trochlea_shows_unless_it_is_given() {
         ];
         for (pair, side, word, why) in cases {
             let (folder, femur, insert) = written(pair, &Orientation::ISB, 1.0);
-            let draft = Draft {
-                preset: Preset::StanmoreForce,
-                side,
-                femur: &femur,
-                insert: &insert,
-            };
-            let text = draft.drafted(folder.path()).unwrap().text;
+            let meshes = [femur.as_path(), insert.as_path()];
+            let drafted = Drafted::new(Preset::StanmoreForce, side, meshes, folder.path());
+            let text = drafted.unwrap().text;
             assert!(text.contains(&format!("\nside = \"{word}\"")), "{text}");
             assert!(text.contains(&format!("side \"{word}\", {why};")), "{text}");
         }
@@ -273,13 +265,9 @@ fn a_draft_puts_the_origin_between_dishes_that_lie_off_that_of_their_file() {
     let mut starts = Vec::new();
     for (pair, is_centred) in [(&pair, false), (&away, true)] {
         let (folder, femur, insert) = written(pair, &Orientation::ISB, 1.0);
-        let draft = Draft {
-            preset: Preset::StanmoreForce,
-            side: None,
-            femur: &femur,
-            insert: &insert,
-        };
-        let text = draft.drafted(folder.path()).unwrap().text;
+        let meshes = [femur.as_path(), insert.as_path()];
+        let drafted = Drafted::new(Preset::StanmoreForce, None, meshes, folder.path());
+        let text = drafted.unwrap().text;
         assert_eq!(text.contains("origin = \"centre\""), is_centred, "{text}");
         let case = Case::parse(&text, "case.toml", folder.path()).unwrap();
         let built = case.build(1).unwrap();

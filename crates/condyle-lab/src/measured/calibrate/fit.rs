@@ -27,7 +27,6 @@ pub(crate) struct Start {
     pub(crate) in_proportion: bool,
 }
 
-/// The result of least squares.
 #[derive(Clone, Debug)]
 pub(crate) struct Fit {
     pub(crate) at: Vec<f64>,

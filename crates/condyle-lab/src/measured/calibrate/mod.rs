@@ -21,33 +21,6 @@ use crate::{
     run::running::march_watched,
 };
 
-/// A request for a calibration.
-#[derive(Clone, Debug, Default)]
-pub struct CalibrationRequest {
-    /// Results folders, each with a file of measured data.
-    pub tests: Vec<(PathBuf, PathBuf)>,
-    /// Names of the constants to find; if there are none, the amount of wear whatever the cycle.
-    pub constants: Vec<String>,
-    /// Cases to predict with them.
-    pub predict: Vec<PathBuf>,
-}
-
-impl CalibrationRequest {
-    /// Pairs paths that alternate between results folders and measured data.
-    ///
-    /// # Errors
-    /// An odd number of paths.
-    pub fn pairs(paths: &[PathBuf]) -> Result<Vec<(PathBuf, PathBuf)>, CalibrateError> {
-        let pairs = paths.chunks_exact(2);
-        if paths.is_empty() || !pairs.remainder().is_empty() {
-            return Err(no_pairs(paths.len()));
-        }
-        Ok(pairs
-            .map(|pair| (pair[0].clone(), pair[1].clone()))
-            .collect())
-    }
-}
-
 /// Constants of a wear law found from weighings.
 #[derive(Clone, Debug, Serialize)]
 pub struct Calibration {
@@ -147,8 +120,11 @@ struct WearFactor {
     wear_factor_interval_mm3_per_nm: Option<Interval>,
 }
 
-/// Finds the constants of the law of the results folders that reproduce the weighings, by running their cases again;
-/// `tried` receives every run.
+/// Finds the constants of a wear law that reproduce the weighings, by running the cases of results folders again; `tried`
+/// receives every run.
+///
+/// `paths` alternate between results folders and files of measured data. `names` are those of the constants to find; if
+/// there are none, the amount of wear is found, whatever the cycle. The cases `predicted` are run with the result.
 ///
 /// More wear conforms the surfaces and so changes the wear that follows, so that rates are only nearly in proportion to
 /// how much a law wears: least squares by iteration, until a step changes no rate by more than 0.1 %.
@@ -156,16 +132,18 @@ struct WearFactor {
 /// # Errors
 /// No weighings, no wear, tests that do not determine the constants, or a run that fails.
 pub fn calibrate(
-    request: &CalibrationRequest,
+    paths: &[PathBuf],
+    names: &[String],
+    predicted: &[PathBuf],
     tried: &mut dyn FnMut(&Trial),
 ) -> Result<Calibration, CalibrateError> {
-    let tests = read(&request.tests)?;
-    let free = Free::new(tests[0].case.wear.clone(), &request.constants)?;
+    let tests = read(paths)?;
+    let free = Free::new(tests[0].case.wear.clone(), names)?;
     for test in &tests {
         test.check()?;
     }
-    let predicted = request.predict.iter().map(|path| Case::read(path));
-    let predicted: Vec<Case> = predicted.collect::<Result<_, _>>()?;
+    let cases = predicted.iter().map(|path| Case::read(path));
+    let cases: Vec<Case> = cases.collect::<Result<_, _>>()?;
     let mut trials = Vec::new();
     let mut model = |at: &[f64]| {
         let law = free.law(at)?;
@@ -184,26 +162,23 @@ pub fn calibrate(
         .collect();
     let confidence = tests[0].weighed.confidence_percent / 100.0;
     let fit = fit(&mut model, free.start(), &observations, confidence)?;
-    let each = request.predict.iter().zip(&predicted);
+    let each = predicted.iter().zip(&cases);
     let predictions = each.map(|(path, case)| predict(path, case, &free, &fit));
     let predictions = predictions.collect::<Result<_, _>>()?;
     Ok(results(&tests, &free, &fit, predictions, trials))
 }
 
-fn no_pairs(given: usize) -> CalibrateError {
-    CalibrateError::Unsuitable(format!(
-        "give a results folder and a file of measured data for each test: {given} paths are no pairs"
-    ))
-}
-
-fn read(pairs: &[(PathBuf, PathBuf)]) -> Result<Vec<Test>, CalibrateError> {
-    let tests = pairs
-        .iter()
-        .map(|(results, measured)| Test::read(results, measured));
+fn read(paths: &[PathBuf]) -> Result<Vec<Test>, CalibrateError> {
+    let pairs = paths.chunks_exact(2);
+    if paths.is_empty() || !pairs.remainder().is_empty() {
+        let given = paths.len();
+        return Err(CalibrateError::Unsuitable(format!(
+            "give a results folder and a file of measured data for each test: {given} paths are no pairs"
+        )));
+    }
+    let tests = pairs.map(|pair| Test::read(&pair[0], &pair[1]));
     let tests: Vec<Test> = tests.collect::<Result<_, _>>()?;
-    let Some(first) = tests.first() else {
-        return Err(no_pairs(0));
-    };
+    let first = &tests[0];
     for test in &tests {
         let [law, own] = [test, first].map(|test| test.case.wear.kind().word);
         if law != own {

@@ -146,7 +146,6 @@ pub struct NodeDepths {
     pub difference_mm: f64,
 }
 
-/// Returns the comparison of a registered scan.
 pub(crate) fn summarised(
     unworn: &SurfaceFields,
     compared: &Compared,
@@ -201,7 +200,6 @@ pub(crate) fn summarised(
     })
 }
 
-/// Returns the remarks on the interpretation of a comparison.
 fn notes(registration: &Registration, covered_area_share: f64) -> Vec<String> {
     let mut notes = vec![CREEP.to_owned()];
     let standard_error_mm = registration.weakest_standard_error_mm;

@@ -66,7 +66,6 @@ impl Registration {
         self.motion.transform_point(&(*point).into()).coords
     }
 
-    /// Rotates a direction of the scan by the registration.
     pub(crate) fn turned(&self, direction: &Vec3) -> Vec3 {
         self.motion.transform_vector(direction)
     }
@@ -234,7 +233,6 @@ impl Fit {
         Some(Isometry3::from_parts(Translation3::from(shift), rotation))
     }
 
-    /// Returns the approximate length of a motion of the points.
     fn length_of(&self, motion: &Isometry3<f64>) -> f64 {
         let shift = motion.transform_point(&self.middle.into()).coords - self.middle;
         motion.rotation.angle() * self.gyration_mm + shift.norm()
