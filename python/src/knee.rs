@@ -1,6 +1,6 @@
 //! The parts of a run: the bodies of a case, their contact at a pose, and one cycle.
 
-use condyle::contact::{ContactMemory, ContactModel, NotBorne, Settled};
+use condyle::contact::{ContactMemory, ContactModel, Settled};
 use condyle::evolve::{March, SolvedCycle};
 use condyle::spatial::{Pose, RelativeMotion};
 use condyle::{Mat3, Vec3};
@@ -130,26 +130,14 @@ fn settle(contact: &mut dyn ContactModel, motion: &RelativeMotion) -> PyResult<(
     for _ in 0..MAX_TURNS {
         contact.respond(motion);
         let settled = contact.settle(motion);
-        if settled.map_err(|why| errors::not_solved(message(why)))? == Settled::Yes {
+        let not_borne = |why| format!("at this pose the femur {why}, or lift the femur");
+        if settled.map_err(|why| errors::not_solved(not_borne(why)))? == Settled::Yes {
             return Ok(());
         }
     }
     Err(errors::not_solved(format!(
         "load and insert did not settle together in {MAX_TURNS} turns at this pose; lift the femur"
     )))
-}
-
-fn message(why: NotBorne) -> String {
-    match why {
-        NotBorne::Flattened { plastic_strain } => format!(
-            "the femur presses the insert flat at this pose: a plastic strain of {plastic_strain:.2} was reached; lift \
-             the femur, or see yield_stress_mpa and hardening"
-        ),
-        NotBorne::Tipped { moved_mm } => format!(
-            "the femur tips the insert off its tray at this pose: its backside finds no rest, and had moved by {moved_mm:.2} \
-             mm; lift the femur, or take [contact.deformable] backside = \"bonded\""
-        ),
-    }
 }
 
 fn cycle_arrays<'py>(py: Python<'py>, cycle: &SolvedCycle<'_>) -> PyResult<Bound<'py, PyDict>> {

@@ -31,7 +31,7 @@ PARTS = [
     ("contact: rest", r"contact/(contact_patch|foundation)"),
     (
         "histories and wear",
-        r"contact/history|condyle/src/wear/|evolve/(rates|step|step_rules|next_step|activity_wear|accumulated_error)|record .*machine/simulator",
+        r"contact/history|condyle/src/wear/|evolve/(rates|step|step_rules|next_step|comparison_laws|accumulated_error)|record .*machine/simulator",
     ),
     ("surface: normals, areas and averages", r"geometry/(articulating_surface|share|connectivity)"),
     ("mesh: the inside follows", r"condyle-fem/src/follow"),

@@ -9,11 +9,10 @@ use nalgebra::Matrix3;
 
 use crate::{
     Vec3,
-    elastic::Elastic,
+    elastic::{Elastic, Strain, Stress},
     element::{Modes, POINTS, Stiffness},
-    material::{Material, MaterialPoint},
+    plastic::{Material, MaterialPoint},
     solid::{ElasticSolid, moved},
-    stress::{Strain, Stress},
 };
 
 impl ElasticSolid {

@@ -14,8 +14,7 @@ use wide::f64x4;
 
 use crate::{
     Vec3,
-    elastic::Elastic,
-    stress::{Strain, Stress},
+    elastic::{Elastic, Strain, Stress},
 };
 
 pub(crate) const POINTS: usize = 8;

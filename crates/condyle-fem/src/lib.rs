@@ -61,25 +61,23 @@ mod eigenstrain;
 mod elastic;
 mod element;
 mod follow;
-mod material;
 mod mesh;
 mod plastic;
 mod solid;
 mod sparse;
-mod stress;
 mod support;
 #[cfg(test)]
 mod tests;
 
 pub use compliance::HalfSolved;
 pub use eigenstrain::{ElementMean, YieldingElement};
-pub use elastic::{Elastic, ElasticError};
+pub use elastic::{Elastic, ElasticError, Strain, Stress};
 pub use follow::InteriorFollower;
-pub use material::{Material, MaterialPoint};
 pub use mesh::{HEX_FACES, HexMesh, trilinear_volume, volume_below};
-pub use plastic::{ElasticPlastic, Hardening, HardeningError, PlasticPoint};
+pub use plastic::{
+    ElasticPlastic, Hardening, HardeningError, Material, MaterialPoint, PlasticPoint,
+};
 pub use solid::{ElasticSolid, SolidError};
-pub use stress::{Strain, Stress};
 pub use support::MovedSupports;
 
 /// A point or a vector in space.

@@ -2,8 +2,7 @@
 
 use crate::{
     Vec3,
-    triangle::{closest_point, weighted},
-    triangle_mesh::TriangleMesh,
+    triangle_mesh::{TriangleMesh, closest_point, weighted},
 };
 
 /// Vertex normals that lean further from their triangle's than 30 degrees mark a sharp edge.
@@ -18,7 +17,8 @@ const MIN_SLOPE_COSINE: f64 = 0.5;
 /// coordinates b_i is lifted along the normals by (1/2) sum b_i ((v_i - c) . n_i) n_i. Half of the
 /// blended tangent planes (Boubekeur & Alexa 2008, alpha = 1/2) is exact for a quadratic surface.
 pub struct CurvedMesh<'a> {
-    mesh: &'a TriangleMesh,
+    /// The mesh.
+    pub mesh: &'a TriangleMesh,
     vertex_normals: Vec<Vec3>,
     planes: Vec<(Vec3, f64)>,
 }
@@ -71,6 +71,7 @@ impl<'a> CurvedMesh<'a> {
 
     fn is_smooth(&self, triangles: &[u32]) -> bool {
         let normal = |triangle: &u32| self.planes[*triangle as usize].0;
+        // Every pair: around the tip of a cone neighbours differ little, and opposite facets much.
         triangles.iter().enumerate().all(|(n, one)| {
             let mut others = triangles[n + 1..].iter();
             others.all(|other| normal(one).dot(&normal(other)) > MIN_COSINE)
@@ -86,16 +87,6 @@ impl<'a> CurvedMesh<'a> {
         normal - along * (2.0 * normal.dot(&along))
     }
 
-    /// Returns the number of triangles.
-    pub fn triangle_count(&self) -> usize {
-        self.mesh.triangles.len()
-    }
-
-    /// Returns the positions of the corners of a triangle.
-    pub fn corners(&self, triangle: usize) -> [Vec3; 3] {
-        self.mesh.corners(triangle)
-    }
-
     /// Returns the squared distance from a point to the triangle's plane, mm2: a cheap lower bound.
     pub fn plane_distance2(&self, triangle: usize, point: &Vec3) -> f64 {
         let (normal, offset) = self.planes[triangle];
@@ -104,7 +95,7 @@ impl<'a> CurvedMesh<'a> {
 
     /// Returns the squared distance from a point to the flat triangle, mm2.
     pub fn distance2(&self, triangle: usize, point: &Vec3) -> f64 {
-        Self::distance2_to_triangle(&self.corners(triangle), point)
+        Self::distance2_to_triangle(&self.mesh.corners(triangle), point)
     }
 
     /// Returns the squared distance from a point to a flat triangle, mm2.
@@ -124,7 +115,7 @@ impl<'a> CurvedMesh<'a> {
     ) -> Option<Over> {
         // Places on an edge belong to both of its triangles in spite of rounding.
         const COVERED: f64 = -1e-9;
-        let corners = self.corners(triangle);
+        let corners = self.mesh.corners(triangle);
         let [a, b, c] = corners;
         let twice_area = |p: [f64; 2], q: &Vec3, r: &Vec3| {
             (q.x - p[0]) * (r.z - p[1]) - (q.z - p[1]) * (r.x - p[0])
@@ -152,15 +143,9 @@ impl<'a> CurvedMesh<'a> {
         Some(Over { height, upward })
     }
 
-    /// Returns the signed distance from a point to the curved surface over the triangle, mm; > 0 outside.
-    pub fn curved_gap_mm(&self, triangle: usize, point: &Vec3) -> f64 {
-        let foot = self.foot(triangle, point);
-        (point - foot.point).dot(&foot.normal)
-    }
-
     /// Returns the place of the curved surface over the triangle that belongs to a point.
     pub fn foot(&self, triangle: usize, point: &Vec3) -> Foot {
-        let corners = self.corners(triangle);
+        let corners = self.mesh.corners(triangle);
         let normals = self.mesh.triangles[triangle].map(|v| self.vertex_normals[v as usize]);
         let weights = closest_point(&corners, point);
         let flat = weighted(&corners, weights);

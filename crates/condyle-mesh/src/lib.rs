@@ -31,10 +31,9 @@ mod curved_mesh;
 pub mod files;
 pub mod formats;
 pub mod repair;
-pub mod triangle;
 mod triangle_mesh;
 
 pub use coarse::coarser;
 pub use condyle_fem::Vec3;
 pub use curved_mesh::{CurvedMesh, Foot};
-pub use triangle_mesh::{TriangleMesh, bounds};
+pub use triangle_mesh::{TriangleMesh, bounds, hit};

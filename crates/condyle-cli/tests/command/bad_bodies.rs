@@ -328,7 +328,7 @@ fn a_load_that_presses_a_yielding_insert_flat_is_physics() {
     let said = bench.say(&["run", "case.toml", "--out", "out"]);
     let words = [
         "update 1",
-        "the load presses the insert flat at",
+        "the load presses the insert flat",
         "check the load, and [contact.deformable] yield_stress_mpa and its hardening",
         "kept in out",
     ];

@@ -11,28 +11,9 @@ use crate::source::{Edge, Sources, made_up};
 const MAY_USE: &[(&str, &[&str])] = &[
     ("condyle_fem::mesh", &[]),
     ("condyle_fem::follow", &["condyle_fem::mesh"]),
-    ("condyle_fem::stress", &[]),
-    ("condyle_fem::elastic", &["condyle_fem::stress"]),
-    (
-        "condyle_fem::material",
-        &["condyle_fem::elastic", "condyle_fem::stress"],
-    ),
-    (
-        "condyle_fem::plastic",
-        &[
-            "condyle_fem::elastic",
-            "condyle_fem::material",
-            "condyle_fem::stress",
-        ],
-    ),
-    (
-        "condyle_fem::element",
-        &[
-            "condyle_fem::elastic",
-            "condyle_fem::material",
-            "condyle_fem::stress",
-        ],
-    ),
+    ("condyle_fem::elastic", &[]),
+    ("condyle_fem::plastic", &["condyle_fem::elastic"]),
+    ("condyle_fem::element", &["condyle_fem::elastic"]),
     (
         "condyle_fem::sparse",
         &["condyle_fem::element", "condyle_fem::mesh"],
@@ -42,7 +23,6 @@ const MAY_USE: &[(&str, &[&str])] = &[
         &[
             "condyle_fem::elastic",
             "condyle_fem::element",
-            "condyle_fem::stress",
             "condyle_fem::mesh",
             "condyle_fem::sparse",
         ],
@@ -60,16 +40,14 @@ const MAY_USE: &[(&str, &[&str])] = &[
         &[
             "condyle_fem::elastic",
             "condyle_fem::element",
-            "condyle_fem::material",
-            "condyle_fem::stress",
+            "condyle_fem::plastic",
             "condyle_fem::solid",
         ],
     ),
-    ("condyle_mesh::triangle", &[]),
-    ("condyle_mesh::triangle_mesh", &["condyle_mesh::triangle"]),
+    ("condyle_mesh::triangle_mesh", &[]),
     (
         "condyle_mesh::curved_mesh",
-        &["condyle_mesh::triangle", "condyle_mesh::triangle_mesh"],
+        &["condyle_mesh::triangle_mesh"],
     ),
     (
         "condyle_mesh::columns",
@@ -79,10 +57,7 @@ const MAY_USE: &[(&str, &[&str])] = &[
             "condyle_mesh::triangle_mesh",
         ],
     ),
-    (
-        "condyle_mesh::repair",
-        &["condyle_mesh::triangle", "condyle_mesh::triangle_mesh"],
-    ),
+    ("condyle_mesh::repair", &["condyle_mesh::triangle_mesh"]),
     ("condyle_mesh::coarse", &["condyle_mesh::triangle_mesh"]),
     ("condyle_mesh::files", &[]),
     (

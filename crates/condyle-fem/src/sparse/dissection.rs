@@ -137,6 +137,7 @@ impl Cutter<'_> {
         let along = |node: &u32| self.mesh.nodes[*node as usize][axis];
         // Ties by number, so that the order does not depend on the sort.
         nodes.sort_by(|a, b| along(a).total_cmp(&along(b)).then(a.cmp(b)));
+        // Halves of equal count balance the work, also where nodes are denser on one side.
         let upper = nodes.split_off(nodes.len() / 2);
         self.cuts += 1;
         for &node in &nodes {

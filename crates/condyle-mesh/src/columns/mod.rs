@@ -16,7 +16,6 @@ mod grid;
 mod holes;
 mod outline;
 mod ring;
-mod shape;
 mod vertical_lines;
 
 use thiserror::Error;
@@ -165,6 +164,7 @@ fn standing(
     for (outer, inner) in ring.spokes() {
         let [from, to] = [outer, inner].map(|n| plan.places_mm[n as usize]);
         let mut inward = HAIRS.map(|share| from + (to - from) * share).into_iter();
+        // Where the shell is thick enough if possible, else wherever it is met.
         let holds = inward.clone().find(|place| footprint.holds(*place));
         let meets = || inward.find(|place| footprint.through(*place).is_some());
         plan.places_mm[outer as usize] = holds.or_else(meets).unwrap_or(from);

@@ -238,6 +238,7 @@ impl Loop {
     /// Returns the shorter way along the line from one length to another, mm; negative backwards.
     pub(super) fn signed_way(&self, from: f64, to: f64) -> f64 {
         let length = self.length_mm();
+        // The remainder lies within half of the line either way.
         (to - from + length / 2.0).rem_euclid(length) - length / 2.0
     }
 

@@ -76,6 +76,7 @@ fn holes(mesh: &TriangleMesh, pieces: &[Piece]) -> Vec<Vec<u32>> {
 /// Adds the triangles inside the loops, seen in a plane of this normal; loops within others are holes. The triangles
 /// face along the normal.
 pub(super) fn fill(mesh: &mut TriangleMesh, loops: &[Vec<u32>], normal: &Vec3) {
+    // Across the axis that the normal leans to least: their product is never near zero.
     let first = normal.cross(&Vec3::ith(normal.iamin(), 1.0)).normalize();
     let axes = [first, normal.cross(&first).normalize()];
     let rings = loops.iter().map(|around| Ring::new(mesh, around, &axes));

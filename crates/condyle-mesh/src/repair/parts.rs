@@ -5,7 +5,10 @@ use std::collections::BTreeMap;
 use serde::{Deserialize, Serialize};
 
 use super::{edges::Piece, weld::drop_unused};
-use crate::{Vec3, triangle::height_over, triangle_mesh::TriangleMesh};
+use crate::{
+    Vec3,
+    triangle_mesh::{TriangleMesh, height_over},
+};
 
 /// Distance between the lines of sight from above, mm ...
 const LINES_EVERY_MM: f64 = 0.5;

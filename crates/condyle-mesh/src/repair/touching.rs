@@ -111,6 +111,7 @@ impl View {
                 a[axis].min(b[axis]).min(c[axis]),
                 a[axis].max(b[axis]).max(c[axis]),
             );
+            // Less a half: the lines run through the middles of the cells.
             let place = |at: f64| (at - self.origin_mm[axis]) / self.cell_mm - 0.5;
             let first = place(low).ceil().max(0.0) as usize;
             first..((place(high).floor() + 1.0) as usize).min(self.cells[axis])

@@ -8,12 +8,10 @@
 
 mod recognition;
 mod signs;
-mod start;
 #[cfg(test)]
 mod tests;
 mod views;
 
-pub use recognition::{Recognition, Sureness};
+pub use recognition::{Recognition, Sureness, start_over_the_dishes_mm};
 pub use signs::flange_lead_mm;
-pub use start::start_over_the_dishes_mm;
 pub use views::Orientation;

@@ -132,6 +132,7 @@ impl Views {
     /// Widens the spans at the middles of those cells that the triangle covers, seen along `axis`.
     fn add(&mut self, axis: usize, corners: &[Vec3; 3]) {
         let (u, v) = ((axis + 1) % 3, (axis + 2) % 3);
+        // Less a half, so that whole numbers are the middles of cells.
         let [a, b, c] = corners.map(|corner| (corner[u] * CELLS - 0.5, corner[v] * CELLS - 0.5));
         let area = cross(a, b, c);
         if area == 0.0 {

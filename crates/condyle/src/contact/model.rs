@@ -3,6 +3,7 @@
 use std::any::Any;
 
 use serde::{Deserialize, Serialize};
+use thiserror::Error;
 
 use crate::{
     Vec3,
@@ -70,19 +71,22 @@ pub enum Settled {
     RespondAgain,
 }
 
-/// The insert cannot bear the load.
-#[derive(Clone, Copy, Debug, PartialEq)]
+/// The insert cannot bear the load. The message continues "the load ...".
+#[expect(missing_docs, reason = "the messages describe the fields")]
+#[derive(Clone, Copy, Debug, PartialEq, Error)]
 pub enum NotBorne {
     /// The material yields, and no equilibrium is found.
-    Flattened {
-        /// The largest plastic strain when the search was given up.
-        plastic_strain: f64,
-    },
+    #[error(
+        "presses the insert flat: where plastic strain has reached {plastic_strain:.2} it finds no balance; check the load, and \
+         [contact.deformable] yield_stress_mpa and its hardening, or take plasticity = \"none\""
+    )]
+    Flattened { plastic_strain: f64 },
     /// The insert rests on its tray and tips off it.
-    Tipped {
-        /// The largest displacement of the backside when the search was given up, mm.
-        moved_mm: f64,
-    },
+    #[error(
+        "tips the insert off its tray: its backside finds no rest, and had moved by {moved_mm:.2e} mm when the search was given \
+         up; check whether the load lies within the tray, or take [contact.deformable] backside = \"bonded\""
+    )]
+    Tipped { moved_mm: f64 },
 }
 
 /// A contact between femur and insert, as the machine sees it: without meshes.

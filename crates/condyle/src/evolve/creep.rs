@@ -173,6 +173,7 @@ impl Node {
     /// Recoverable depth after a step of `down_mm`, mm: the inverse of the law's depth.
     fn recoverable_mm(&self, law: &LeePienkowski, down_mm: f64) -> f64 {
         let depth_mm = self.before_mm + down_mm;
+        // Without recovery the depth does not depend on it below the deepest, and there is no inverse.
         if depth_mm >= self.deepest_mm || law.recovering_fraction == 0.0 {
             return depth_mm;
         }
@@ -356,6 +357,7 @@ impl CreepContact {
     fn sunk_mm(&self, lost_n: &[f64]) -> Vec<f64> {
         let sides = lost_n.iter().zip(&self.sides);
         sides
+            // A side without load has lost no force; the bound only avoids 0/0.
             .map(|(lost_n, side)| lost_n / side.n_per_mm.max(f64::MIN_POSITIVE))
             .collect()
     }

@@ -76,7 +76,7 @@ impl DepthFields {
 
     /// Returns the sum of all causes at every surface node, mm.
     pub fn total_mm(&self) -> Vec<f64> {
-        total_mm(&self.fields, self.node_count)
+        sum_mm(&self.fields, self.node_count)
     }
 
     /// Adds the depths of a step, cause by cause; a new cause starts with it.
@@ -94,16 +94,10 @@ impl DepthFields {
 }
 
 /// Returns the sum of some fields at every node, mm.
-pub(super) fn total_mm(fields: &[DepthField], node_count: usize) -> Vec<f64> {
-    summed(fields.iter(), node_count)
-}
-
-/// Returns the sum of the fields that lose mass at every node, mm.
-pub(super) fn lost_mm(fields: &[DepthField], node_count: usize) -> Vec<f64> {
-    summed(fields.iter().filter(|field| field.loses_mass), node_count)
-}
-
-fn summed<'a>(fields: impl Iterator<Item = &'a DepthField>, node_count: usize) -> Vec<f64> {
+pub(super) fn sum_mm<'a>(
+    fields: impl IntoIterator<Item = &'a DepthField>,
+    node_count: usize,
+) -> Vec<f64> {
     let mut sum = vec![0.0; node_count];
     for field in fields {
         let depths = sum.iter_mut().zip(&field.depth_mm);
@@ -120,8 +114,9 @@ mod tests {
     fn a_field_that_loses_no_mass_moves_the_surface_alone() {
         let creep = DepthField::creep(vec![0.5, 0.0]);
         let step = [DepthField::wear(vec![1.0, 2.0]), creep];
-        assert_eq!(total_mm(&step, 2), [1.5, 2.0]);
-        assert_eq!(lost_mm(&step, 2), [1.0, 2.0]);
+        assert_eq!(sum_mm(&step, 2), [1.5, 2.0]);
+        let lost = step.iter().filter(|field| field.loses_mass);
+        assert_eq!(sum_mm(lost, 2), [1.0, 2.0]);
 
         let mut depths = DepthFields::none(2);
         depths.add(&step);

@@ -6,10 +6,9 @@ use std::ops::ControlFlow;
 use super::{
     Activity, CreepRecord, CreepState, DepthField, DepthFields, MarchError, MarchState, NodeFields,
     PlacementError, Progress, Snapshot, SolvedCycle, UnderSurfaceRecord, UpdateRecord, WearTest,
-    activity_wear::wear_of_each,
-    comparison_laws::{ComparisonLaw, outside_mm3, sum},
+    comparison_laws::{ComparisonLaw, outside_mm3, sum, wear_of_each},
     creep::{CreepContact, CreepStep},
-    depth::{lost_mm, total_mm},
+    depth::sum_mm,
     next_step::next_step,
     placement::place,
     rates::{Rates, SolvedStep, StepStart, WearStep, mean_cycles, volume_mm3, worn},
@@ -348,7 +347,7 @@ impl March {
         taken: &[DepthField],
     ) -> Result<Lowered, MarchError> {
         let update = self.state.updates.len() + 1;
-        let down_mm = total_mm(taken, surface.positions.len());
+        let down_mm = sum_mm(taken, surface.positions.len());
         let mut nodes = down_mm.iter().zip(self.insert.thickness_mm());
         if let Some(node) = nodes.position(|(depth, thickness)| depth >= thickness) {
             // Wear and creep there, if the insert creeps.
@@ -391,7 +390,8 @@ impl March {
         under_surface: Option<UnderSurfaceRecord>,
     ) -> UpdateRecord {
         let (area_mm2, last) = (&rates.area_mm2, self.state.updates.last());
-        let lost_mm3 = volume_mm3(area_mm2, &lost_mm(taken, area_mm2.len()));
+        let lost = taken.iter().filter(|field| field.loses_mass);
+        let lost_mm3 = volume_mm3(area_mm2, &sum_mm(lost, area_mm2.len()));
         let volume_loss_mm3 = lost_mm3 + last.map_or(0.0, |last| last.volume_loss_mm3);
         let creep = self.creep_record(taken, area_mm2);
         let creep_mm3 = creep.map_or(0.0, |creep| creep.volume_mm3);

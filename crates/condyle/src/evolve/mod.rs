@@ -8,12 +8,11 @@
 //! | `solved_cycles` | the solution of the cycles of an update |
 //! | `rates` | the wear per cycle, the rate at which wear changes it, and a step of the march |
 //! | `next_step`, `step_rules` | the interval of a step, the wear over it, and the error that its length causes |
-//! | `comparison_laws`, `activity_wear` | the wear by other laws, and by each activity |
+//! | `comparison_laws` | the wear by other laws, and by each activity |
 //! | `depth` | the depth of the surface by cause |
 //! | `creep` | the depth by creep, and the load that causes it |
 //! | `records`, `state` | the results of an update, and the state from which a march resumes |
 
-mod activity_wear;
 mod comparison_laws;
 mod creep;
 mod depth;
@@ -28,8 +27,7 @@ mod state;
 mod step_rules;
 mod wear_test;
 
-pub use activity_wear::ActivityWear;
-pub use comparison_laws::ComparisonLaw;
+pub use comparison_laws::{ActivityWear, ComparisonLaw};
 pub use creep::CreepState;
 pub use depth::{DepthField, DepthFields};
 pub use error::{MarchError, PlacementError};

@@ -96,6 +96,7 @@ pub(super) fn volume_mm3(area_mm2: &[f64], depth_mm: &[f64]) -> f64 {
 /// Returns the mean of `values` over the volume of `depth_mm`; 0 if there is none.
 pub fn mean_over_volume(area_mm2: &[f64], depth_mm: &[f64], values: &[f64]) -> f64 {
     let volumes = area_mm2.iter().zip(depth_mm).map(|(a, d)| a * d);
+    // Without a volume the sum is zero, and so is the quotient.
     let sum: f64 = volumes.zip(values).map(|(v, value)| v * value).sum();
     sum / volume_mm3(area_mm2, depth_mm).max(f64::MIN_POSITIVE)
 }

@@ -82,11 +82,11 @@ pub(super) fn solve(
     let (update, done) = (state.updates.len() + 1, state.cycles());
     let interval = likely_interval(test, state);
     let is_reported = update == 1 || done + interval >= LAST * test.schedule.cycles;
-    let time = if is_reported {
-        test.time.repeating_within(REPORTED)
-    } else {
-        test.time
-    };
+    let mut time = test.time;
+    if is_reported {
+        time.repeat_tolerance_mm *= REPORTED;
+        time.repeat_tolerance_rad *= REPORTED;
+    }
     spent.resize_with(activities.len(), CycleHistory::default);
     let mut counters = state.counters;
     let mut cycles = Vec::with_capacity(activities.len());
@@ -141,6 +141,7 @@ fn likely_interval(test: &WearTest, state: &MarchState) -> f64 {
 impl SolvedCycles {
     pub fn touch(&self) -> bool {
         let mut rows = self.cycles.iter().flat_map(|cycle| &cycle.rows);
+        // Exactly zero: a row without touched nodes is a sum of nothing.
         rows.any(|row| row.axial_force_n != 0.0)
     }
 

@@ -126,6 +126,7 @@ impl<'a> Profile<'a> {
 
     fn heights(&self, lowest_mm: f64) -> impl Iterator<Item = f64> + use<> {
         let dish_mm = self.dish_mm;
+        // Counted from the dishes, so that the heights do not depend on the place of the body.
         let count = ((dish_mm - lowest_mm) / SECTIONS_EVERY_MM) as usize;
         (1..=count).map(move |n| dish_mm - n as f64 * SECTIONS_EVERY_MM)
     }

@@ -102,19 +102,6 @@ impl Insert {
         Ok((insert.with_rim_along_walls(), holes))
     }
 
-    /// Divides the surface into other regions: `names`, and `region_of` an unworn position, mm.
-    ///
-    /// # Panics
-    /// As in [`SurfaceRegions::split`].
-    pub fn split_into(self, names: &[&str], region_of: impl Fn(&Vec3) -> usize) -> Self {
-        let positions = self.unworn.surface_positions();
-        let regions = SurfaceRegions::split(names, positions, region_of);
-        Self {
-            regions: Arc::new(regions),
-            ..self
-        }
-    }
-
     /// Returns the regions of the articulating surface.
     pub fn regions(&self) -> &SurfaceRegions {
         &self.regions
@@ -381,21 +368,13 @@ mod tests {
     }
 
     #[test]
-    fn regions_are_the_sides_of_a_knee_unless_said_otherwise() {
+    fn regions_are_the_sides_of_a_knee() {
         let insert = block();
         let positions = insert.surface().positions;
         for (node, position) in positions.iter().enumerate() {
             assert_eq!(
                 insert.regions().of_node(node),
                 usize::from(position.z >= 0.0)
-            );
-        }
-        let halves = insert.split_into(&["front", "back"], |at| usize::from(at.x < 0.0));
-        assert_eq!(halves.regions().names(), ["front", "back"]);
-        for (node, position) in positions.iter().enumerate() {
-            assert_eq!(
-                halves.regions().of_node(node),
-                usize::from(position.x < 0.0)
             );
         }
     }

@@ -150,15 +150,6 @@ pub struct TimeSettings {
 }
 
 impl TimeSettings {
-    /// Scales the tolerances of the repetition by `part`.
-    pub(crate) fn repeating_within(self, part: f64) -> Self {
-        Self {
-            repeat_tolerance_mm: part * self.repeat_tolerance_mm,
-            repeat_tolerance_rad: part * self.repeat_tolerance_rad,
-            ..self
-        }
-    }
-
     /// Returns the length of an increment at a cycle frequency, s.
     pub(crate) fn increment_s(&self, frequency_hz: f64) -> f64 {
         1.0 / (frequency_hz * self.increments as f64)
@@ -261,19 +252,9 @@ pub enum CycleError {
          integrator = \"implicit\""
     )]
     Unstable { percent: f64, readings: String },
-    /// A load that presses the insert flat.
-    #[error(
-        "the load presses the insert flat at {percent:.2} % of the cycle: where plastic strain has reached {plastic_strain:.2} the \
-         insert finds no balance; check the load, and [contact.deformable] yield_stress_mpa and its hardening, or take plasticity = \"none\""
-    )]
-    Flattened { percent: f64, plastic_strain: f64 },
-    /// A load that tips an insert resting on its tray.
-    #[error(
-        "the load tips the insert off its tray at {percent:.2} % of the cycle: its backside finds no rest, and had moved by \
-         {moved_mm:.2e} mm when the search was given up; check whether the load lies within the tray, or take [contact] \
-         backside = \"bonded\""
-    )]
-    Tipped { percent: f64, moved_mm: f64 },
+    /// A load that the insert cannot bear.
+    #[error("at {percent:.2} % of the cycle the load {why}")]
+    NotBorne { percent: f64, why: NotBorne },
     /// A load under which the insert continues to flow or slip however often the step is solved.
     #[error(
         "load and insert do not settle at {percent:.2} % of the cycle, even in the smallest steps: each of {turns} turns \
@@ -288,20 +269,6 @@ pub enum CycleError {
     NoInertia { joint: &'static str },
 }
 
-impl CycleError {
-    /// Converts a load that the insert cannot bear, at a phase of the cycle, to an error.
-    pub(super) fn not_borne(phase: f64, why: NotBorne) -> Self {
-        let percent = 100.0 * phase;
-        match why {
-            NotBorne::Flattened { plastic_strain } => Self::Flattened {
-                percent,
-                plastic_strain,
-            },
-            NotBorne::Tipped { moved_mm } => Self::Tipped { percent, moved_mm },
-        }
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -309,9 +276,10 @@ mod tests {
     #[test]
     fn an_insert_that_tips_says_where_and_what_to_do() {
         let tipped = NotBorne::Tipped { moved_mm: 12.0 };
-        let message = CycleError::not_borne(0.25, tipped).to_string();
+        let (percent, why) = (25.0, tipped);
+        let message = CycleError::NotBorne { percent, why }.to_string();
         for words in [
-            "tips the insert off its tray at 25.00 %",
+            "at 25.00 % of the cycle the load tips the insert off its tray",
             "backside = \"bonded\"",
         ] {
             assert!(message.contains(words), "{message}");

@@ -45,7 +45,8 @@ impl Simulator<'_> {
                 let (next, motion) = self.explicit_step(&now, phase, step, inertia_factor)?;
                 // The steps are so short that the contact's own state may follow one step behind.
                 let settled = self.contact.settle(&motion);
-                settled.map_err(|why| CycleError::not_borne(phase, why))?;
+                let percent = 100.0 * phase;
+                settled.map_err(|why| CycleError::NotBorne { percent, why })?;
                 self.contact.accept(&motion);
                 now = next;
                 if left == 0 {

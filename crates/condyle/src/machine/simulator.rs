@@ -229,8 +229,8 @@ impl<'a> Simulator<'a> {
         for _ in 0..MAX_TURNS {
             let ended = self.implicit_step(from, step, warm_start.as_ref())?;
             let settled = self.contact.settle(&ended.motion);
-            let not_borne = |why| CycleError::not_borne(ended.state.phase, why);
-            if settled.map_err(not_borne)? == Settled::Yes {
+            let percent = 100.0 * ended.state.phase;
+            if settled.map_err(|why| CycleError::NotBorne { percent, why })? == Settled::Yes {
                 return Ok(ended);
             }
             warm_start = ended.warm_start;

@@ -220,6 +220,7 @@ pub fn without_drift(samples: &[Knot]) -> Vec<Knot> {
     let drift = last.value - first.value;
     let level = |knot: &Knot| Knot {
         percent: knot.percent,
+        // About the middle of the cycle, so that the mean stays.
         value: knot.value - drift * (knot.percent / 100.0 - 0.5),
     };
     let mut levelled: Vec<Knot> = samples.iter().map(level).collect();
@@ -247,6 +248,7 @@ pub fn low_passed(waveform: &Waveform, harmonics: usize) -> Vec<Knot> {
     let value = |percent: f64| {
         let term = |(order, (c, s)): (usize, &(f64, f64))| {
             let (sine, cosine) = (TAU * order as f64 * percent / 100.0).sin_cos();
+            // A harmonic stands for its positive and its negative frequency; the mean occurs once.
             (c * cosine + s * sine) * if order == 0 { 1.0 } else { 2.0 }
         };
         terms.iter().enumerate().map(term).sum()

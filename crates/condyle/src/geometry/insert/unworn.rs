@@ -4,7 +4,7 @@ use condyle_fem::{HexMesh, InteriorFollower};
 use condyle_mesh::{
     bounds,
     columns::{ColumnError, TooManyNodes},
-    triangle,
+    hit,
 };
 use thiserror::Error;
 
@@ -215,11 +215,12 @@ impl Backside {
         if direction.y >= 0.0 {
             return None;
         }
+        // Below the lowest place of the backside there is nothing to hit: only the bins down to it are searched.
         let end = from + direction * ((self.low.y - from.y) / direction.y).max(0.0);
         let mut nearest: Option<f64> = None;
         for bin in self.bins_between(&from.inf(&end), &from.sup(&end)) {
             for &index in &self.bins[bin] {
-                let distance = triangle::hit(&self.triangles[index as usize], from, direction);
+                let distance = hit(&self.triangles[index as usize], from, direction);
                 nearest = nearest.map_or(distance, |d| Some(distance.map_or(d, |e| d.min(e))));
             }
         }

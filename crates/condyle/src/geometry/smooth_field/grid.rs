@@ -88,32 +88,33 @@ pub const BEYOND_BAND_MM: f64 = 1e3;
 ///
 /// Each of `threads` fills its own layers, and no number depends on the thread that computed it. With one thread, the
 /// thread of the caller does the work.
-pub fn gaps_at_nodes(grid: &NodeGrid, mesh: &CurvedMesh<'_>, threads: usize) -> Vec<f64> {
+pub fn gaps_at_nodes(grid: &NodeGrid, curved: &CurvedMesh<'_>, threads: usize) -> Vec<f64> {
     let mut gaps = vec![BEYOND_BAND_MM; grid.node_count()];
     if threads <= 1 {
-        fill_layers(grid, mesh, 0, &mut gaps);
+        fill_layers(grid, curved, 0, &mut gaps);
         return gaps;
     }
     let [_, _, layer] = grid.strides();
     let layers = grid.counts[2].div_ceil(threads);
     std::thread::scope(|scope| {
         for (index, part) in gaps.chunks_mut(layer * layers).enumerate() {
-            scope.spawn(move || fill_layers(grid, mesh, index * layers, part));
+            scope.spawn(move || fill_layers(grid, curved, index * layers, part));
         }
     });
     gaps
 }
 
 /// Fills the layers of nodes from `first_layer` with their gaps to the nearest triangle.
-fn fill_layers(grid: &NodeGrid, mesh: &CurvedMesh<'_>, first_layer: usize, gaps: &mut [f64]) {
-    let nearest = nearest_triangles(grid, mesh, first_layer, gaps.len());
+fn fill_layers(grid: &NodeGrid, curved: &CurvedMesh<'_>, first_layer: usize, gaps: &mut [f64]) {
+    let nearest = nearest_triangles(grid, curved, first_layer, gaps.len());
     let [_, row, layer] = grid.strides();
     for (here, (gap, triangle)) in gaps.iter_mut().zip(nearest).enumerate() {
         if let Some(triangle) = triangle {
             let (i, j, k) = (here % row, here % layer / row, here / layer);
             // Only for the nearest facet: the gap to the curved surface is far more expensive than the distance to a facet.
             let node = grid.position(i, j, k + first_layer);
-            *gap = mesh.curved_gap_mm(triangle, &node);
+            let foot = curved.foot(triangle, &node);
+            *gap = (node - foot.point).dot(&foot.normal);
         }
     }
 }
@@ -121,7 +122,7 @@ fn fill_layers(grid: &NodeGrid, mesh: &CurvedMesh<'_>, first_layer: usize, gaps:
 /// Returns the triangle nearest to each of `count` nodes from `first_layer` on; none beyond the band.
 fn nearest_triangles(
     grid: &NodeGrid,
-    mesh: &CurvedMesh<'_>,
+    curved: &CurvedMesh<'_>,
     first_layer: usize,
     count: usize,
 ) -> impl Iterator<Item = Option<usize>> {
@@ -131,18 +132,18 @@ fn nearest_triangles(
     // Squared distances: the root is taken once, for the nearest triangle only.
     let mut nearest2 = vec![BAND_MM * BAND_MM; count];
     let mut nearest = vec![NONE; count];
-    for triangle in 0..mesh.triangle_count() {
-        let [low, high] = grid.band_around(mesh.corners(triangle));
+    for triangle in 0..curved.mesh.triangles.len() {
+        let [low, high] = grid.band_around(curved.mesh.corners(triangle));
         for k in low[2].max(first_layer)..high[2].min(last_layer) {
             for j in low[1]..high[1] {
                 for i in low[0]..high[0] {
                     let here = i + row * j + layer * (k - first_layer);
                     let node = grid.position(i, j, k);
                     // The plane is never farther than the triangle, and cheaper to evaluate.
-                    if mesh.plane_distance2(triangle, &node) >= nearest2[here] {
+                    if curved.plane_distance2(triangle, &node) >= nearest2[here] {
                         continue;
                     }
-                    let distance2 = mesh.distance2(triangle, &node);
+                    let distance2 = curved.distance2(triangle, &node);
                     if distance2 < nearest2[here] {
                         (nearest2[here], nearest[here]) = (distance2, triangle as u32);
                     }

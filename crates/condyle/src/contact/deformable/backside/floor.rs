@@ -39,6 +39,7 @@ impl Floor {
         let inward: Vec3 = level.iter().map(|face| face.inward).sum();
         let normal = inward.try_normalize(0.0).unwrap_or_else(Vec3::y);
         // The median height by area: half of the level faces lie below it.
+        // Along the normal, so that a tilted floor is flat, too.
         let height_mm = |face: &Face| face.middle.dot(&normal);
         level.sort_by(|a, b| height_mm(a).total_cmp(&height_mm(b)));
         let half_mm2 = level.iter().map(|face| face.inward.norm()).sum::<f64>() / 2.0;

@@ -181,6 +181,7 @@ impl<M: Material> PlasticInsert<M> {
     ) -> Result<f64, NotBorne> {
         // The von Mises stress of a sum is at most the sum of the von Mises stresses: without a peak high enough nothing
         // yields, and nothing has to be evaluated.
+        // Hardening only raises the yield stress: the initial one is a lower bound.
         let by_load = MAX_OF_PRESSURE * peak_mpa / self.material.initial_yield_stress();
         if self.trial.is_empty() && self.residual_use + by_load <= 1.0 {
             return Ok(0.0);
@@ -385,6 +386,7 @@ impl<M: Material> PlasticInsert<M> {
         tiles.sort_unstable();
         tiles.dedup();
         let shear_modulus = self.material.elastic().shear_modulus();
+        // The plastic strain by which stress misses the yield surface: a strain moves the equivalent stress by 3 G.
         let allowed = ON_SURFACE * self.material.initial_yield_stress() / (3.0 * shear_modulus);
         for &element in elements {
             let before = self.committed_points(element);
