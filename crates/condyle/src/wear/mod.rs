@@ -20,6 +20,7 @@ law::wear_laws! {
     contact_area,
     unified,
     directional,
+    power_law,
 }
 
 /// A metre in millimetres.

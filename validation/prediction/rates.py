@@ -1,0 +1,62 @@
+"""Rates of knees by the law `power-law` on a grid of its constants, mg a million cycles, each law moving the surface itself.
+
+Usage: rates.py CONDYLE RUNS OUT. Writes OUT as JSON: by knee and condition a row per exponent of pressure, with the columns of
+the saturating form (its saturations, then no cross-shear) and of powers.
+"""
+
+import json
+import os
+import sys
+from concurrent.futures import ThreadPoolExecutor
+from pathlib import Path
+
+from model import EXPONENTS, KNEES, POWERS, SATURATIONS
+
+sys.path.append(str(Path(__file__).parents[1] / "published"))
+from knees import KNEES as CASES, Runs
+
+# A saturation far above any cross-shear leaves a plain power.
+UNSATURATED = 1000.0
+
+
+def constants():
+    """Those of cross-shear: exponent, saturation and part on a line."""
+    saturating = [(1.0, saturation, 0.0) for saturation in SATURATIONS] + [(0.0, UNSATURATED, 1.0)]
+    return {"saturating": saturating, "power": [(power, UNSATURATED, 0.0) for power in POWERS]}
+
+
+def main():
+    condyle, folder, out = sys.argv[1:]
+    jobs = [
+        (knee, condition, form, exponent, each)
+        for knee in KNEES
+        for condition in ("stable", "unstable")
+        for form, own in constants().items()
+        for exponent in EXPONENTS
+        for each in own
+    ]
+
+    def rate(number):
+        knee, condition, _, exponent, (power, saturation, line) = jobs[number]
+        case, changes = CASES[knee][condition]
+        own = [
+            "wear.law=power-law",
+            f"wear.pressure_exponent={exponent}",
+            f"wear.cross_shear_exponent={power}",
+            f"wear.cross_shear_saturation={saturation}",
+            f"wear.line_factor_ratio={line}",
+        ]
+        place = Path(folder) / str(number)
+        place.mkdir()
+        return Runs(condyle, place).summary(case, [*changes, *own])["wear_laws"][0]["mass_loss_mg_per_million_cycles"]
+
+    with ThreadPoolExecutor(os.cpu_count()) as pool:
+        found = list(pool.map(rate, range(len(jobs))))
+    rates = {}
+    for (knee, condition, form, exponent, _), each in zip(jobs, found, strict=True):
+        rows = rates.setdefault(form, {}).setdefault(f"{knee} {condition}", {})
+        rows.setdefault(f"{exponent:g}", []).append(each)
+    Path(out).write_text(json.dumps(rates, indent=1) + "\n", encoding="utf-8")
+
+
+main()
