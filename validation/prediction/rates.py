@@ -10,7 +10,7 @@ import sys
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
-from model import EXPONENTS, KNEES, POWERS, SATURATIONS
+from model import CIRCLE_FACTOR, EXPONENTS, KNEES, POWERS, SATURATIONS
 
 sys.path.append(str(Path(__file__).parents[1] / "published"))
 from knees import KNEES as CASES, Runs
@@ -41,6 +41,7 @@ def main():
         case, changes = CASES[knee][condition]
         own = [
             "wear.law=power-law",
+            f"wear.circle_factor_mm3_per_nm={CIRCLE_FACTOR}",
             f"wear.pressure_exponent={exponent}",
             f"wear.cross_shear_exponent={power}",
             f"wear.cross_shear_saturation={saturation}",
