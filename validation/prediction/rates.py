@@ -6,6 +6,7 @@ the saturating form (its saturations, then no cross-shear) and of powers.
 
 import json
 import os
+import shutil
 import sys
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
@@ -49,7 +50,10 @@ def main():
         ]
         place = Path(folder) / str(number)
         place.mkdir()
-        return Runs(condyle, place).summary(case, [*changes, *own])["wear_laws"][0]["mass_loss_mg_per_million_cycles"]
+        summary = Runs(condyle, place).summary(case, [*changes, *own])
+        # Some hundred results folders would fill 10 GB.
+        shutil.rmtree(place)
+        return summary["wear_laws"][0]["mass_loss_mg_per_million_cycles"]
 
     with ThreadPoolExecutor(os.cpu_count()) as pool:
         found = list(pool.map(rate, range(len(jobs))))
