@@ -116,6 +116,10 @@ class Summary:
     """Time of the solver. In s."""
     plausibility: list[dict[str, Any]]
     """Reasons to doubt the numbers, the worst first, each with ``message`` and ``advice``."""
+    notes: list[dict[str, Any]]
+    """Remarks on the physics that leave the numbers sound, each with ``message`` and its effect in ``advice``."""
+    prediction: dict[str, Any]
+    """What laboratories would weigh: medians and 90 % intervals of mass and depth, and the sources of their width."""
     error: dict[str, Any] | None
     """Estimated discretisation errors by their parts; null if the case does not ask for them."""
     wear_laws: list[dict[str, Any]]

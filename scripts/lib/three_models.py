@@ -113,7 +113,7 @@ def pictures(out, folder):
         figure.tight_layout()
         figure.savefig(out / name, metadata={"Date": None})
 
-    names = [name for name in ("stanmore-force", "dm-knee") if (folder / name).exists()]
+    names = [name for name in ("knight-2007", "dm-knee") if (folder / name).exists()]
     figure, all_axes = plt.subplots(2, len(names), figsize=(4.6 * len(names), 5.2), sharex=True, squeeze=False)
     for column, name in zip(all_axes.T, names):
         for model in MODELS:

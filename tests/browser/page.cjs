@@ -149,7 +149,7 @@ async function dropped(page) {
   const files = ["femur.stl", "insert.stl"].map((name) => path.join(bodies, name));
   await drop(page, [{ name: "femur.stl", text: "solid x\nnonsense" }, { name: "insert.stl", text: "solid x\nnonsense" }]);
   await page.waitForSelector("#failure:not([hidden])");
-  assert.match(await page.locator("#failure").innerText(), /femur\.stl:2: "nonsense" is not a word of STL/);
+  assert.match(await page.locator("#failure").innerText(), /femur\.stl:2: "nonsense" is not a keyword of STL/);
   await page.getByLabel("Choose two meshes").setInputFiles(files);
   await page.waitForFunction(() => /shape = "mesh"/.test(document.getElementById("case-text").value));
   const drafted = await page.locator("#case-text").inputValue();

@@ -38,7 +38,7 @@ def found(folder):
 
 def without_doubts(folder):
     summary = json.loads((folder / "summary.json").read_text())
-    return {**summary, "plausibility": []}
+    return {**summary, "plausibility": [], "notes": []}
 
 
 def change(folder, **numbers):

@@ -12,7 +12,7 @@ from pathlib import Path
 import emcee
 import numpy as np
 
-from model import KNEES, Fit, Power, Saturating, row_is_ratio, tests
+from model import DEGREES_OF_FREEDOM, KNEES, Fit, Power, Saturating, log_laboratory, row_is_ratio, tests
 
 sys.path.append(str(Path(__file__).parents[1] / "published"))
 from tables import head, line, number
@@ -36,7 +36,8 @@ def predictive(fit, samples, row, log_sd, rng):
     """Logarithms of what a new laboratory would measure."""
     log_factor, exponent, log_tau, *constants = samples.T
     logs = fit.form.log_predictions(log_factor, exponent, constants)[row["test"]]
-    laboratory = 0.0 if row_is_ratio(fit.rows, row["laboratory"]) else np.exp(log_tau) * rng.normal(size=len(logs))
+    is_ratio = row_is_ratio(fit.rows, row["laboratory"])
+    laboratory = 0.0 if is_ratio else np.exp(log_tau) * rng.standard_t(DEGREES_OF_FREEDOM, len(logs))
     return logs, logs + laboratory + log_sd * rng.normal(size=len(logs))
 
 
@@ -64,9 +65,10 @@ def left_out(form, rows, geometry_log_sd):
 def log_density(fit, samples, row, log_sd):
     log_factor, exponent, log_tau, *constants = samples.T
     logs = fit.form.log_predictions(log_factor, exponent, constants)[row["test"]]
-    own = 0.0 if row_is_ratio(fit.rows, row["laboratory"]) else np.exp(2 * log_tau)
-    variance = own + log_sd**2
-    return -0.5 * ((row["log_value"] - logs) ** 2 / variance + np.log(2 * np.pi * variance))
+    residual = row["log_value"] - logs
+    if row_is_ratio(fit.rows, row["laboratory"]):
+        return -0.5 * ((residual / log_sd) ** 2 + np.log(2 * np.pi * log_sd**2))
+    return log_laboratory(residual, log_sd, np.exp(log_tau))
 
 
 def table_of_tests(rows, found):
@@ -91,7 +93,7 @@ def table_of_coverage(rows, found):
 
 
 def table_of_constants(fit, samples):
-    names = ["wear factor on the circle, 1e-6 mm3/(N m)", "exponent of pressure", "deviation between laboratories, log"]
+    names = ["wear factor on the circle, 1e-6 mm3/(N m)", "exponent of pressure", "scale of the laboratories, log"]
     values = [1.63 * np.exp(samples[:, 0]), samples[:, 1], np.exp(samples[:, 2])]
     for name, each in zip(fit.form.names, samples.T[3:], strict=True):
         is_log = name.startswith("log_")
@@ -109,7 +111,7 @@ def draws(samples):
     rng = np.random.default_rng(SEED)
     text = "circle_factor_mm3_per_nm,pressure_exponent,cross_shear_saturation,line_factor_ratio,laboratory_factor\n"
     for log_factor, exponent, log_tau, log_saturation, part in chosen:
-        laboratory = math.exp(math.exp(log_tau) * rng.normal())
+        laboratory = math.exp(math.exp(log_tau) * rng.standard_t(DEGREES_OF_FREEDOM))
         each = [1.63e-6 * math.exp(log_factor), exponent, math.exp(log_saturation), part, laboratory]
         text += ",".join(f"{value:.5g}" for value in each) + "\n"
     return text

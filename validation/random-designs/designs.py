@@ -172,7 +172,7 @@ def _curve(points, scale):
 
 
 def _march(draw, case):
-    case["wear"] = {"wear_factor_mm3_per_nm": round(2.64e-7 * draw.factor(8), 12)}
+    case["wear"] = {"law": "archard", "wear_factor_mm3_per_nm": round(2.64e-7 * draw.factor(8), 12)}
     case["march"] = {"cycles": draw.choice([1_000_000, 5_000_000, 5_000_000, 20_000_000])}
     if draw.random() < 0.2:
         case["march"]["update"] = "auto"

@@ -59,7 +59,7 @@ def judge(folder):
 
 def silent(findings, summary):
     """The findings of which the summary says nothing."""
-    said = {warning["check"] for warning in summary["plausibility"]}
+    said = {warning["check"] for warning in [*summary["plausibility"], *summary["notes"]]}
     return [finding for finding in findings if not said.intersection(finding.told_by)]
 
 

@@ -106,7 +106,7 @@ def _hold_against_refined(ended, condyle, case, folder):
     if code != 0:
         return
     finer = json.loads((folder / "results" / "summary.json").read_text())
-    said = {warning["check"] for warning in ended.summary["plausibility"]}
+    said = {warning["check"] for warning in [*ended.summary["plausibility"], *ended.summary["notes"]]}
     for key, check, found in (
         ("mass_loss_mg", "error_of_mass", "refined_mass_percent"),
         ("max_depth_mm", "error_of_depth", "refined_depth_percent"),

@@ -115,7 +115,7 @@ fn of_a_knee() -> Vec<Row> {
 }
 
 fn knee() -> condyle_case::case::Case {
-    let default = include_str!("../../cases/stanmore-force.toml");
+    let default = include_str!("../../cases/knight-2007.toml");
     let above = default.split("[march]").next().unwrap_or_default();
     let cycles = CYCLES as u64;
     let text = format!("{above}[march]\ncycles = {cycles}\nupdates = 1\n");

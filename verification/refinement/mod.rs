@@ -12,7 +12,7 @@ pub(crate) const CASE: Case = Case {
     rows,
 };
 
-const DEFAULT_CASE: &str = include_str!("../../cases/stanmore-force.toml");
+const DEFAULT_CASE: &str = include_str!("../../cases/knight-2007.toml");
 
 /// Accepted error of the mass loss, and of the deepest wear.
 const MASS: f64 = 0.005;

@@ -37,7 +37,7 @@ pub(crate) struct Solved {
 
 impl DefaultCase {
     pub(crate) fn new() -> Self {
-        let text = include_str!("../../cases/stanmore-force.toml");
+        let text = include_str!("../../cases/knight-2007.toml");
         let (march, law) = started(&case_in(text, Path::new("")));
         Self { march, law }
     }

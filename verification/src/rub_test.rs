@@ -51,6 +51,7 @@ impl Rub {
                 wear_factor_mm3_per_nm: WEAR_FACTOR_MM3_PER_NM,
             }),
             comparison_laws: Vec::new(),
+            law_family: false,
             creep: None,
             density_mg_per_mm3: 0.93,
             time,

@@ -6,7 +6,7 @@ use condyle_case::cache::Cache;
 use condyle_lab::{Outcome, RunOptions};
 use condyle_results::{
     CreepSummary, ErrorEstimate, ErrorParts, Part, Summary,
-    catalogue::{self, MASS_LOSS_MG, MAX_DEPTH_MM, Prominence, Scalar, WEAR_OVER_CONVENTIONAL},
+    catalogue::{self, MASS_LOSS_MG, Prominence, Scalar, WEAR_OVER_CONVENTIONAL},
 };
 
 use crate::{
@@ -64,6 +64,9 @@ fn print_summary(summary: &Summary, out: &Path, json: bool) -> Done {
         lines.line(format!("doubtful: {}", doubt.message));
         lines.line(format!("          {}", doubt.advice));
     }
+    if let Some(prediction) = &summary.prediction {
+        run_tables::add_prediction(prediction, summary, &mut lines);
+    }
     let wear_over_conventional = summary.get(&WEAR_OVER_CONVENTIONAL);
     run_tables::add_laws(&summary.wear_laws, wear_over_conventional, &mut lines);
     run_tables::add_activities(&summary.activities, &mut lines);
@@ -72,6 +75,10 @@ fn print_summary(summary: &Summary, out: &Path, json: bool) -> Done {
     let width = labels.max().unwrap_or_default().max(26) + 2;
     for (label, value) in rows {
         lines.line(format!("{label:<width$}{value}"));
+    }
+    for note in &summary.notes {
+        lines.line(format!("note: {}", note.message));
+        lines.line(format!("      {}", note.advice));
     }
     for (part, why) in summary.error.iter().flat_map(|error| &error.not_estimated) {
         let part = part.replace('_', " ");
@@ -113,8 +120,11 @@ fn rows(summary: &Summary) -> Vec<SummaryLine> {
         let rest = scalar.label.strip_prefix(*label).unwrap_or(scalar.label);
         *line += &format!(", {words} {}", rest.trim_start());
     }
+    if let (Some(error), Some((_, time))) = (&summary.error, rows.last_mut()) {
+        *time += &format!(", error estimate {:.3} s", error.wall_s);
+    }
     let creep = summary.creep.iter().flat_map(rows_of_creep);
-    let error = summary.error.iter().flat_map(rows_of_error);
+    let error = summary.error.iter().map(row_of_error);
     rows.extend(creep.chain(error));
     rows
 }
@@ -165,15 +175,10 @@ fn rows_of_creep(creep: &CreepSummary) -> Vec<SummaryLine> {
     rows
 }
 
-/// Returns the parts of the discretisation error, with the sign of the change that finer values would make.
-fn rows_of_error(error: &ErrorEstimate) -> [SummaryLine; 3] {
-    let [mass, depth] =
-        [&MASS_LOSS_MG, &MAX_DEPTH_MM].map(|scalar| in_parts(error.of(scalar).percent));
-    [
-        ("error of mass, by parts", mass),
-        ("error of depth, by parts", depth),
-        ("time, error estimate", format!("{:.3} s", error.wall_s)),
-    ]
+/// Returns the parts of the error of the mass, with the sign of the change that finer values would make.
+fn row_of_error(error: &ErrorEstimate) -> SummaryLine {
+    let mass = error.of(&MASS_LOSS_MG).percent;
+    ("error of mass, by parts", in_parts(mass))
 }
 
 fn in_parts(error: &ErrorParts) -> String {

@@ -1,8 +1,53 @@
-//! Tables that are printed before the numbers of a run: wear by every law, and each of several activities.
+//! What is printed before the numbers of a run: the prediction, wear by every law, and each of several activities.
 
-use condyle_results::{ActivitySummary, LawWear};
+use condyle_results::{
+    ActivitySummary, Interval, LawWear, Prediction, Summary,
+    catalogue::{MASS_LOSS_MG, MAX_DEPTH_MM},
+};
 
 use crate::output::Lines;
+
+/// Adds what laboratories would find, and the sources of the width of the interval.
+pub fn add_prediction(prediction: &Prediction, summary: &Summary, lines: &mut Lines) {
+    let words = |value: f64, Interval { low, high, .. }: Interval, unit: &str| {
+        let [value, low, high] = [value, low, high].map(two_digits);
+        format!("{value} {unit}   (90 % of laboratories: {low} to {high} {unit})")
+    };
+    let (mass, depth) = (prediction.mass_loss_mg, prediction.max_depth_mm);
+    let [own_mass, own_depth] = [&MASS_LOSS_MG, &MAX_DEPTH_MM].map(|number| summary[number]);
+    let measured = prediction.measured.as_deref();
+    let measured = measured.map_or_else(String::new, |measured| format!("; {measured}"));
+    if prediction.is_of_run {
+        lines.line(format_args!(
+            "mass loss    {}{measured}",
+            words(own_mass, mass, "mg")
+        ));
+        lines.line(format_args!(
+            "max depth    {}",
+            words(own_depth, depth, "mm")
+        ));
+    } else {
+        let (own_mass, own_depth) = (two_digits(own_mass), two_digits(own_depth));
+        let mass_words = words(mass.median, mass, "mg");
+        lines.line(format_args!("mass loss    {own_mass} mg by the law of this case; by the calibrated law {mass_words}{measured}"));
+        let depth_words = words(depth.median, depth, "mm");
+        lines.line(format_args!("max depth    {own_depth} mm by the law of this case; by the calibrated law {depth_words}"));
+    }
+    let sources = prediction.sources.iter();
+    let sources = sources.map(|source| format!("{} x {:.2}", source.source, source.factor));
+    lines.line(format_args!(
+        "interval by  {}",
+        sources.collect::<Vec<_>>().join(", ")
+    ));
+}
+
+/// Returns a number with two significant digits: an interval of a factor has no more.
+fn two_digits(value: f64) -> String {
+    let magnitude = value.abs().max(f64::MIN_POSITIVE).log10().floor();
+    let decimals = (1.0 - magnitude).clamp(0.0, 6.0) as usize;
+    let step = 10_f64.powf(magnitude - 1.0);
+    format!("{:.decimals$}", (value / step).round() * step)
+}
 
 /// Adds the table if there is more than one law, then the factor of a cross-linked insert.
 pub fn add_laws(laws: &[LawWear], wear_over_conventional: Option<f64>, lines: &mut Lines) {

@@ -66,7 +66,7 @@ pub(crate) struct Stiffness {
 }
 
 impl Stiffness {
-    /// Returns the stiffness of the nodes with the modes in balance, condensed out.
+    /// Returns the nodal stiffness with the incompatible modes condensed out.
     pub(crate) fn condensed(&self) -> NodalStiffness {
         // With z = L^-1 coupling, coupling^T modal^-1 coupling is z^T z.
         let lower = self.modal.l_dirty();

@@ -185,6 +185,7 @@ impl<'a> Again<'a> {
         WearTest {
             schedule: Schedule::fixed(1.0, 1),
             comparison_laws: Vec::new(),
+            law_family: false,
             // A cycle solved again compares wear; comparison laws and creep would only take time.
             creep: None,
             ..self.march.test().clone()
@@ -302,6 +303,7 @@ impl<'a> Again<'a> {
         let mut march = self.started(WearTest {
             schedule: Schedule::fixed(last.cycles, state.updates.len() / 2),
             comparison_laws: Vec::new(),
+            law_family: false,
             ..self.march.test().clone()
         })?;
         while !march.is_done() {

@@ -16,7 +16,7 @@ fn case(name: &str) -> Case {
 }
 
 fn default_case() -> Case {
-    case("stanmore-force.toml")
+    case("knight-2007.toml")
 }
 
 fn auto_case() -> Case {
@@ -340,7 +340,7 @@ fn about_as_large(found: f64, truth: f64) -> bool {
 fn own_intervals_are_as_deep_as_forty_updates_under_force() {
     // Six intervals are so long that the bottom is uneven; that the deepest node is right is luck.
     let no_less = |found: f64, truth: f64| found.abs() + NOISE_PERCENT >= truth.abs();
-    assert_as_deep_as_forty_updates("stanmore-force.toml", 8.0, no_less);
+    assert_as_deep_as_forty_updates("knight-2007.toml", 8.0, no_less);
 }
 
 #[test]

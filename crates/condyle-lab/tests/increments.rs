@@ -43,7 +43,7 @@ fn apart_mm(coarse: &Cycle, fine: &Cycle) -> f64 {
 fn verify_halved_increments_are_nearer_to_the_truth() {
     let case = Path::new(concat!(
         env!("CARGO_MANIFEST_DIR"),
-        "/../../cases/stanmore-force.toml"
+        "/../../cases/knight-2007.toml"
     ));
     let test = Case::read(case).unwrap().build(1).unwrap().test;
     let march = March::start(test).unwrap();

@@ -29,7 +29,7 @@ const PREDICTION: f64 = 5.0;
 
 fn default_case() -> March {
     let cases = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../cases");
-    let case = Case::read(&cases.join("stanmore-force.toml")).expect("a shipped case is good");
+    let case = Case::read(&cases.join("knight-2007.toml")).expect("a shipped case is good");
     let test = case.build(1).expect("a shipped case builds").test;
     March::start(test).expect("a shipped case settles")
 }

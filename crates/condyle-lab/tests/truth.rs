@@ -16,7 +16,7 @@ use condyle::{
 };
 use condyle_case::case::Case;
 
-/// How far a result may be from the exact one, as a fraction.
+/// Largest relative error of a result.
 const TOLERANCE: f64 = 1e-3;
 /// How much tighter the exact run's tolerances are.
 const TIGHTER: f64 = 10.0;
@@ -230,7 +230,7 @@ fn assert_small_steps_are_exact(name: &str) {
 
 #[test]
 fn samples_extrapolated_along_the_gait_of_the_default_case_keep_the_force() {
-    assert_small_steps_are_exact("stanmore-force.toml");
+    assert_small_steps_are_exact("knight-2007.toml");
 }
 
 #[test]
@@ -240,7 +240,7 @@ fn samples_extrapolated_along_the_gait_of_a_real_implant_keep_the_force() {
 
 #[test]
 fn the_default_case_is_within_a_thousandth_of_itself_without_shortcuts() {
-    assert_exact("stanmore-force.toml");
+    assert_exact("knight-2007.toml");
 }
 
 #[test]
@@ -275,7 +275,7 @@ fn assert_the_same_when_resumed(name: &str) {
 
 #[test]
 fn the_default_case_resumed_at_every_update_is_the_same_to_the_bit() {
-    assert_the_same_when_resumed("stanmore-force.toml");
+    assert_the_same_when_resumed("knight-2007.toml");
 }
 
 #[test]

@@ -5,7 +5,7 @@ use serde::{Deserialize, Serialize};
 use thiserror::Error;
 
 /// First bytes of a checkpoint; the last of them is the version of the format.
-const MAGIC: &[u8; 20] = b"condyle checkpoint \x0c";
+const MAGIC: &[u8; 20] = b"condyle checkpoint \x0d";
 const HASH_LENGTH: usize = 32;
 
 /// A march in progress, with the hash of its inputs.
@@ -23,12 +23,10 @@ pub struct Checkpoint {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Error)]
 pub enum CheckpointError {
     /// Not a checkpoint, or one of another version.
-    #[error(
-        "it was not written by this version of condyle; run the case again with another folder"
-    )]
+    #[error("it was not written by this version of condyle; run the case again in another folder")]
     Foreign,
     /// Its bytes are damaged.
-    #[error("the file is damaged; run the case again with another folder")]
+    #[error("the file is damaged; run the case again in another folder")]
     Damaged,
 }
 

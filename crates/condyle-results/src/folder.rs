@@ -211,7 +211,7 @@ impl ResultsFolder {
             let (version, own) = (checkpoint.version, env!("CARGO_PKG_VERSION"));
             let problem = format!(
                 "the run in this folder was started by condyle {version}, and this is {own}; resume it with that version, or \
-                 run the case again with another folder"
+                 run the case again in another folder"
             );
             return Err(unusable(path, problem));
         }

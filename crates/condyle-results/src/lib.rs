@@ -14,6 +14,7 @@ mod files;
 mod folder;
 mod insert_fields;
 mod parts;
+mod prediction;
 mod side;
 #[cfg(feature = "file-system")]
 mod slip_paths;
@@ -51,6 +52,7 @@ pub use parts::{
     ActivitySummary, CreepSummary, LawWear, NeutralPose, Penetration, ScanLine, joint_range,
     kinematics_file,
 };
+pub use prediction::{CALIBRATED_LAW, Interval, MAX_FACTOR, Prediction, Source};
 pub use side::Side;
 pub use summary::{PlausibilityWarning, Summary};
 pub use tables::{WEAR_COLUMNS, WearColumn, femur_pose_csv, kinematics_csv, wear_csv};

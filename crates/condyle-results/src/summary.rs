@@ -12,6 +12,7 @@ use super::{
     catalogue::{self, FinishedRun, PARTS, RunFacts, Scalar},
     error_estimate::ErrorEstimate,
     parts::{ActivitySummary, CreepSummary, LawWear, NeutralPose},
+    prediction::Prediction,
 };
 
 /// The results of a run in one table: `summary[&MASS_LOSS_MG]` is a number of the catalogue.
@@ -23,6 +24,10 @@ pub struct Summary {
     scalars: BTreeMap<&'static str, f64>,
     /// Reasons to doubt the numbers, the worst first.
     pub plausibility: Vec<PlausibilityWarning>,
+    /// Remarks on the physics of the run that leave its numbers sound, each with its effect on them.
+    pub notes: Vec<PlausibilityWarning>,
+    /// The results that laboratories would find; none unless the march summed the family of calibrated laws.
+    pub prediction: Option<Prediction>,
     /// Estimated discretisation errors; none if the case does not request them.
     pub error: Option<ErrorEstimate>,
     /// Wear by every law for the same histories, that of the run first; only that one moved the surface.
@@ -93,6 +98,8 @@ impl Summary {
     fn write_part<M: SerializeMap>(&self, key: &'static str, map: &mut M) -> Result<(), M::Error> {
         match key {
             "plausibility" => map.serialize_entry(key, &self.plausibility),
+            "notes" => map.serialize_entry(key, &self.notes),
+            "prediction" if self.prediction.is_some() => map.serialize_entry(key, &self.prediction),
             "error" => map.serialize_entry(key, &self.error),
             "wear_laws" => map.serialize_entry(key, &self.wear_laws),
             "activities" if !self.activities.is_empty() => {
@@ -149,6 +156,8 @@ impl<'de> Deserialize<'de> for Summary {
         Ok(Self {
             scalars: values.collect(),
             plausibility: part(&mut entries, "plausibility"),
+            notes: part(&mut entries, "notes"),
+            prediction: part(&mut entries, "prediction"),
             error: part(&mut entries, "error"),
             wear_laws: part(&mut entries, "wear_laws"),
             activities: part(&mut entries, "activities"),

@@ -144,6 +144,7 @@ fn ball_on_disc() -> Result<WearTest, Box<dyn Error>> {
             wear_factor_mm3_per_nm: WEAR_FACTOR_MM3_PER_NM,
         }),
         comparison_laws: Vec::new(),
+        law_family: false,
         creep: None,
         density_mg_per_mm3: 0.93,
         time: TimeSettings {

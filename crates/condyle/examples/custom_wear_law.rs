@@ -73,6 +73,8 @@ fn ball_on_plate(wear: Arc<dyn WearLaw>) -> Result<WearTest, Box<dyn Error>> {
     let pressure = PressureLaw::Linear {
         modulus_mpa: 2142.0,
     };
+    let archard = WEAR_LAWS.iter().find(|kind| kind.word == "archard");
+    let archard = archard.expect("it is built in").with_defaults();
     Ok(WearTest {
         femur: Arc::new(FemoralSurface::sphere(24.0)),
         flexion_axis_mm: (0.0, 0.0),
@@ -81,7 +83,8 @@ fn ball_on_plate(wear: Arc<dyn WearLaw>) -> Result<WearTest, Box<dyn Error>> {
         contact: Arc::new(Foundation::new(pressure, 0.07, 1.0)),
         activities: vec![Activity::only("rub", machine)],
         wear,
-        comparison_laws: vec![WEAR_LAWS[0].with_defaults()],
+        comparison_laws: vec![archard],
+        law_family: false,
         creep: None,
         density_mg_per_mm3: 0.93,
         time: TimeSettings {

@@ -36,6 +36,7 @@ fn main() -> Result<(), Box<dyn Error>> {
             wear_factor_mm3_per_nm: 2.64e-7,
         }),
         comparison_laws: Vec::new(),
+        law_family: false,
         creep: None,
         density_mg_per_mm3: 0.93,
         time: TimeSettings {

@@ -40,6 +40,7 @@
 //!     activities: vec![Activity::only("walking", machine)],
 //!     wear: Arc::new(Archard { wear_factor_mm3_per_nm: 2.64e-7 }),
 //!     comparison_laws: Vec::new(),
+//!     law_family: false,
 //!     creep: None,
 //!     density_mg_per_mm3: 0.93,
 //!     time: TimeSettings { increments: 40, ..TimeSettings::default() },

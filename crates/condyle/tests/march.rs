@@ -15,7 +15,7 @@ use condyle::{
         knee::{self, KNEE},
     },
     spatial::RelativeMotion,
-    wear::{Archard, NamedLaw, WEAR_LAWS},
+    wear::{Archard, FamilyConstants, NamedLaw, WEAR_LAWS},
 };
 
 /// A contact that counts the steps it has accepted, and keeps the count as its history.
@@ -129,6 +129,7 @@ fn test() -> WearTest {
             wear_factor_mm3_per_nm: 2.64e-7,
         }),
         comparison_laws: Vec::new(),
+        law_family: false,
         creep: None,
         density_mg_per_mm3: 0.93,
         time: TimeSettings {
@@ -247,23 +248,41 @@ fn laws_beside_move_no_surface_and_the_same_law_wears_the_same() {
     let alone = marched(test());
     let together = marched(WearTest {
         comparison_laws: every_law(),
+        law_family: true,
         ..test()
     });
     assert!(alone.mesh_nodes == together.mesh_nodes && alone.updates == together.updates);
     let laws = &together.comparison_laws;
     assert_eq!(laws.len(), WEAR_LAWS.len());
     let volume_mm3 = alone.updates[3].volume_loss_mm3;
-    let ratio = laws[0].volume_mm3 / volume_mm3;
-    assert!(
-        laws[0].word == "archard" && (ratio - 1.0).abs() < 1e-4,
-        "{ratio}"
-    );
-    let ratio = laws[0].max_depth_mm() / alone.updates[3].max_depth_mm;
-    assert!((ratio - 1.0).abs() < 0.05, "{ratio}");
-    assert_eq!(laws[0].outside_mm3, None);
-    // A ball that rubs along a line: nothing goes across.
     let of = |word: &str| laws.iter().find(|law| law.word == word).expect("is there");
+    let archard = of("archard");
+    let ratio = archard.volume_mm3 / volume_mm3;
+    assert!((ratio - 1.0).abs() < 1e-4, "{ratio}");
+    let ratio = archard.max_depth_mm() / alone.updates[3].max_depth_mm;
+    assert!((ratio - 1.0).abs() < 0.05, "{ratio}");
+    assert_eq!(archard.outside_mm3, None);
+    // A ball that rubs along a line: nothing goes across.
     assert!(of("unified").volume_mm3 < 1e-3 * volume_mm3);
+    // The family has the law with the default constants; its intervals are added by another rule.
+    let law = FamilyConstants {
+        circle_factor_mm3_per_nm: 1.63e-6,
+        reference_pressure_mpa: 1.1,
+        pressure_exponent: 0.5,
+        cross_shear_saturation: 0.03,
+        line_factor_ratio: 0.03,
+    };
+    let family = together.law_family.as_ref().expect("was asked for");
+    let (family_mm3, family_mm) = family.volumes_and_depths(&[law])[0];
+    let power = of("power-law");
+    let ratios = [
+        family_mm3 / power.volume_mm3,
+        family_mm / power.max_depth_mm(),
+    ];
+    assert!(
+        ratios.iter().all(|ratio| (ratio - 1.0).abs() < 0.03),
+        "{ratios:?}"
+    );
     let kang = of("kang");
     assert!(kang.outside_mm3.expect("is known") > 0.9 * kang.volume_mm3);
 }
@@ -272,6 +291,7 @@ fn laws_beside_move_no_surface_and_the_same_law_wears_the_same() {
 fn laws_beside_go_on_from_a_state_as_if_never_stopped() {
     let test = WearTest {
         comparison_laws: every_law(),
+        law_family: true,
         ..test()
     };
     let mut whole = March::start(test.clone()).unwrap();

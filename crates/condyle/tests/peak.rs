@@ -64,7 +64,7 @@ fn mean_and_peak(
     [means.fold(0.0, f64::max), evaluated.peak_pressure_mpa]
 }
 
-/// The ball over a layer, `deep_mm` into it, away from a node in the middle.
+/// Peak pressure under a ball `deep_mm` deep, offset by [x, z] from a node.
 fn under_ball(law: &PressureLaw, insert: &Insert, deep_mm: f64, [x, z]: [f64; 2]) -> f64 {
     let place = Vec3::new(x, RADIUS_MM - deep_mm, z);
     mean_and_peak(law, &FemoralSurface::sphere(RADIUS_MM), insert, place, 0.0)[1]

@@ -4,9 +4,24 @@ import { element } from "../dom";
 import { inDigits } from "../digits";
 import { HEADLINES, type Headline, type Numbers } from "./catalogue";
 
+interface Interval {
+  low: number;
+  median: number;
+  high: number;
+}
+
+// What laboratories would find: `is_of_run` if by the law of the run.
+interface Prediction {
+  is_of_run: boolean;
+  mass_loss_mg: Interval;
+  max_depth_mm: Interval;
+}
+
 export interface Summary extends Numbers {
   error: ({ wall_s: number } & Record<string, { total: number } | number>) | null;
   plausibility: { message: string; advice: string }[];
+  notes: { message: string; advice: string }[];
+  prediction?: Prediction;
   warnings: string[];
 }
 
@@ -34,6 +49,12 @@ export function tiles(summary: Summary): HTMLElement[] {
     const { key, label, unit } = headline;
     const shown = inDigits(shownValue(summary, headline));
     const value = element("dd", { "data-number": key }, shown, element("span", {}, ` ${printed(unit)}`));
+    const interval = key === "mass_loss_mg" || key === "max_depth_mm" ? summary.prediction?.[key] : undefined;
+    if (interval !== undefined) {
+      const [low, median, high] = [interval.low, interval.median, interval.high].map((end) => Number(end.toPrecision(2)));
+      const by = summary.prediction?.is_of_run ? "" : `calibrated law: ${median}; `;
+      value.append(element("small", { "data-interval": key }, `${by}90 % of laboratories: ${low} to ${high} ${unit}`));
+    }
     const error = errorOf(summary, key);
     if (error !== undefined) value.append(element("small", {}, `± ${Number(error.toPrecision(2))} ${printed(unit)} by discretisation`));
     return element("div", {}, element("dt", {}, capital(label)), value);
@@ -44,6 +65,11 @@ export function tiles(summary: Summary): HTMLElement[] {
 export function doubts({ plausibility, warnings }: Summary): HTMLElement[] {
   const doubtful = plausibility.map(({ message, advice }) => element("li", {}, element("strong", {}, message), ` ${advice}`));
   return [...doubtful, ...warnings.map((warning) => element("li", {}, warning))];
+}
+
+// Remarks on the physics that leave the numbers sound.
+export function notes(summary: Summary): HTMLElement[] {
+  return summary.notes.map(({ message, advice }) => element("p", { class: "note" }, `${capital(message)}. ${advice}`));
 }
 
 // Two runs and the difference of the second from the first.

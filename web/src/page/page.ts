@@ -12,7 +12,7 @@ import genericCase from "../../../cases/stanmore-force.toml";
 import { take, takeDropped, type Bodies } from "./dropped";
 import { Editor } from "./editor";
 import { Laboratory } from "./laboratory";
-import { comparison, doubts, tiles } from "./numbers";
+import { comparison, doubts, notes, tiles } from "./numbers";
 import style from "./page.css";
 import type { Failure, Message } from "./program";
 import { CaseSchema } from "./schema";
@@ -130,6 +130,7 @@ class Page {
     this.shown.show(found);
     byId("tiles").replaceChildren(...tiles(summary));
     byId("doubts").replaceChildren(...doubts(summary));
+    byId("notes").replaceChildren(...notes(summary));
     byId("doubtful").hidden = byId("doubts").childElementCount === 0;
     const solved = summary.wall_s + (summary.error?.wall_s ?? 0);
     this.say(`${inDigits(summary.cycles / 1e6)} million cycles, solved in ${inDigits(solved)} s on this machine`);

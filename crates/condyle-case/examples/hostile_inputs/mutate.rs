@@ -38,7 +38,7 @@ const NUMBERS: &[&str] = &[
     "3,5",
 ];
 
-/// Words with a meaning to some reader.
+/// Keywords of the formats, inserted at random places.
 const WORDS: &[&str] = &[
     "facet",
     "endsolid",

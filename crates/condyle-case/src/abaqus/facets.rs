@@ -12,7 +12,7 @@ use crate::case::in_four;
 const NEAR_MM: f64 = 0.1;
 /// Edge of the cells by which triangles near such nodes are found, mm.
 const CELL_MM: f64 = 1.0;
-/// Edges are halved until they are this short, mm: on a radius of 20 mm such a facet then lies 0.1 micrometres below the
+/// Longest edge of a facet, mm; longer edges are halved. On a radius of 20 mm, facets lie 0.1 micrometres below the
 /// surface on average.
 const LONGEST_EDGE_MM: f64 = 0.25;
 const MAX_HALVINGS: usize = 3;

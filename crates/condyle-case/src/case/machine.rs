@@ -37,7 +37,7 @@ choice! {
 settings! {
     /// The simulator's own keys.
     MachineSettings {
-        /// The simulator to start from: it determines which freedoms are free and which are moved.
+        /// The simulator to start from: it determines which freedoms are loaded and which are prescribed.
         preset: Preset = Preset::StanmoreForce;
         /// Gait cycles a second.
         frequency_hz: f64 = 1.1, in within(0.001, 100.0);

@@ -1,9 +1,12 @@
-//! Keys under the names that they had in the previous version: they are still read, with a note of the new name.
+//! Files of the previous version: keys under their names then, and its default wear law, are still read, with a note.
 
-use toml::de::DeTable;
+use toml::{
+    Spanned,
+    de::{DeTable, DeValue},
+};
 
 use super::build::BuildWarning;
-use crate::config::rename;
+use crate::config::{rename, set_value, value_at};
 
 /// Keys of `[contact]` that are in a table of its model.
 const MOVED: &[(&str, &[&str])] = &[
@@ -55,5 +58,22 @@ pub(super) fn rename_keys(document: &mut DeTable<'_>) -> Vec<BuildWarning> {
         let next = "the next version does not read the old name";
         BuildWarning::new(format!("`{old}` is called `{new}`; {next}"))
     };
-    moved.map(note).collect()
+    let mut notes: Vec<_> = moved.map(note).collect();
+    notes.extend(name_archard(document));
+    notes
+}
+
+/// Names the law of a file that only gives the factor of Archard's law, the default of the previous version.
+fn name_archard(document: &mut DeTable<'_>) -> Option<BuildWarning> {
+    let factor = value_at(document, "wear.wear_factor_mm3_per_nm")?.span();
+    if value_at(document, "wear.law").is_some() {
+        return None;
+    }
+    let archard = Spanned::new(factor.clone(), DeValue::String("archard".into()));
+    set_value(document, "wear.law", factor, archard);
+    Some(BuildWarning::new(
+        "`wear.law` is not given and taken to be \"archard\", since `wear_factor_mm3_per_nm` is; write law = \"archard\": the \
+         next version does not"
+            .to_owned(),
+    ))
 }

@@ -211,7 +211,7 @@ pub(crate) fn read_document<T>(
     })
 }
 
-/// As [`read_document`], of `text` that begins the shown `source`, from the document itself.
+/// Like [`read_document`], for a parsed document whose `text` begins the displayed `source`.
 pub(crate) fn read_part<'a, T>(
     source: &Source,
     text: &'a str,

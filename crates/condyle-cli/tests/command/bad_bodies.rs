@@ -189,7 +189,7 @@ fn a_femur_that_slides_off_is_physics() {
 #[test]
 fn an_insert_worn_through_is_physics_and_what_was_computed_is_kept() {
     let text = SMALL.replace("updates = 3", "updates = 4\ncycles = 300_000_000");
-    let bench = Bench::with_case(&text);
+    let bench = Bench::with_case(&format!("{text}[wear]\nlaw = \"archard\"\n"));
     let said = bench.say(&["run", "case.toml", "--out", "out"]);
     said.assert_refused(
         3,

@@ -96,7 +96,7 @@ fn missing_case_file() {
 fn knots_with_a_gap_or_a_nan() {
     let knots =
         |points: &str, more: &str| format!("[machine.flexion]\n{more}knots_deg = [\n{points}]\n");
-    let words = ["gap from 20 % to 90 %", "add points between"];
+    let words = ["gap from 20 % to 90 %", "add points, at most"];
     let samples = "[0, 0], [10, 1], [20, 2],\n[90, 1], [100, 0],\n";
     let text = knots(samples, "interpolation = \"spline\"\n");
     assert_refused(&text, "case.toml:4:", &words);
@@ -116,7 +116,7 @@ fn csv_with_a_gap_or_a_nan() {
         .map(row)
         .collect();
     bench.write("wave.csv", &format!("percent,axial_force_n\n{with_gap}"));
-    let words = ["gap from 25 % to 60 %", "add points between"];
+    let words = ["gap from 25 % to 60 %", "add points, at most"];
     assert_bench_refused(&bench, "wave.csv:7:1", &words);
     let rows: String = (0..=100).step_by(5).map(row).collect();
     let with_nan = rows.replace("10,500", "10,NaN");

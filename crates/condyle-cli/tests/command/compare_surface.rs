@@ -314,7 +314,7 @@ fn bad_scans_are_refused_with_their_place() {
     refuses(
         "file = \"bad.stl\"",
         &[
-            "bad.stl:3: \"inner\" is not a word of STL",
+            "bad.stl:3: \"inner\" is not a keyword of STL",
             "export the scan again",
         ],
     );

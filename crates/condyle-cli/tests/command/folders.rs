@@ -138,7 +138,7 @@ fn a_damaged_checkpoint_is_refused_with_advice() {
             2,
             &[
                 "checkpoint cannot be used",
-                "run the case again with another folder",
+                "run the case again in another folder",
             ],
         );
         assert_eq!(fs::read(&file).unwrap(), damaged);

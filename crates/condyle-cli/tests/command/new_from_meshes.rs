@@ -1,4 +1,4 @@
-//! `condyle new` with two meshes, and what is told of axes and units that are wrong.
+//! `condyle new` with two meshes, and its messages about wrong axes and units.
 
 use std::fs;
 

@@ -165,7 +165,8 @@ fn explicit_steps_that_need_much_more_inertia_are_told() {
 fn steps_of_the_march_too_long_for_their_own_estimate_are_told() {
     for (updates, check) in [(1, "single_update"), (3, "updates_too_few"), (12, "")] {
         let updates = format!("updates = {updates}");
-        let bench = Bench::with_case(&SMALL.replace("updates = 3", &updates));
+        let text = SMALL.replace("updates = 3", &updates);
+        let bench = Bench::with_case(&format!("{text}[wear]\nlaw = \"archard\"\n"));
         bench.run_into("out");
         let found = checks(&bench, "out");
         let of_updates = found.iter().filter(|found| found.contains("update"));
@@ -183,25 +184,89 @@ fn steps_of_the_march_too_long_for_their_own_estimate_are_told() {
 }
 
 #[test]
-fn pressure_beyond_yield_is_told_with_area_and_time() {
+fn yield_is_noted_with_area_and_time_and_is_no_doubt() {
     let bench = Bench::with_case(SMALL);
-    bench.run_into("out");
-    let warnings = bench.summary("out").plausibility;
-    let warning = warnings
-        .iter()
-        .find(|warning| warning.check == "pressure_beyond_yield");
-    let warning = warning.expect("35 MPa are beyond 22.4 MPa");
-    assert_eq!(
-        warning.value,
-        bench.summary("out")[&catalogue::PEAK_PRESSURE_MPA]
-    );
-    assert!(
-        warning.message.contains("mm2 are pressed harder"),
-        "{warning:?}"
-    );
-    for cycle in ["in the first cycle", "in the last cycle"] {
-        assert!(warning.message.contains(cycle), "{warning:?}");
+    let said = bench.run_into("out");
+    let summary = bench.summary("out");
+    let mut notes = summary.notes.iter();
+    let note = notes.find(|note| note.check == "pressure_beyond_yield");
+    let note = note.expect("30 MPa are beyond 22.4 MPa");
+    assert_eq!(note.value, summary[&catalogue::PEAK_PRESSURE_MPA]);
+    for words in [
+        "mm2 exceed this pressure",
+        "in the first cycle",
+        "in the last cycle",
+    ] {
+        assert!(note.message.contains(words), "{note:?}");
     }
+    assert!(!checks(&bench, "out").contains(&note.check));
+    assert!(said.out.contains(&format!("note: {}", note.message)));
+    let page = fs::read_to_string(bench.path("out/report.html")).unwrap();
+    assert!(page.contains("polyethylene yields below the surface"));
+}
+
+#[test]
+fn the_first_line_is_what_laboratories_would_find() {
+    let bench = Bench::with_case(SMALL);
+    let said = bench.run_into("out");
+    let summary = bench.summary("out");
+    let prediction = summary.prediction.as_ref().expect("every run predicts");
+    let (mass, found) = (summary[&catalogue::MASS_LOSS_MG], prediction.mass_loss_mg);
+    assert!(
+        prediction.is_of_run && found.low < mass && mass < found.high,
+        "{found:?}"
+    );
+    assert!((found.median / mass).ln().abs() < 0.3, "{mass} {found:?}");
+    let depth = prediction.max_depth_mm;
+    assert!(depth.low < summary[&catalogue::MAX_DEPTH_MM] && depth.high > depth.median);
+    let sources = &prediction.sources;
+    assert!(sources.iter().all(|source| source.factor >= 1.0));
+    assert!(
+        sources.is_sorted_by(|a, b| a.factor >= b.factor),
+        "{sources:?}"
+    );
+    let first = said
+        .out
+        .lines()
+        .find(|line| !line.starts_with("doubtful") && !line.starts_with(' '));
+    let first = first.unwrap();
+    assert!(first.starts_with("mass loss    "), "{first}");
+    for words in [
+        " mg   (90 % of laboratories: ",
+        "knee simulators have weighed",
+    ] {
+        assert!(first.contains(words), "{first}");
+    }
+    let page = fs::read_to_string(bench.path("out/report.html")).unwrap();
+    assert!(page.contains("90 % of laboratories: "));
+}
+
+#[test]
+fn with_another_law_the_prediction_is_named_as_that_of_the_calibrated_law() {
+    let bench = Bench::with_case(SMALL);
+    bench.run_into("calibrated");
+    let set = [
+        "--set",
+        "wear.law=archard",
+        "--set",
+        "wear.wear_factor_mm3_per_nm=1.6e-7",
+    ];
+    let said = bench.say(&[&["run", "case.toml", "--out", "out"][..], &set].concat());
+    let (own, calibrated) = (bench.summary("out"), bench.summary("calibrated"));
+    let [own, calibrated] = [own, calibrated].map(|summary| summary.prediction.unwrap());
+    assert!(!own.is_of_run);
+    // The surface wears by another law, as fast: the same laboratories are predicted.
+    let ratio = own.mass_loss_mg.median / calibrated.mass_loss_mg.median;
+    assert!((ratio - 1.0).abs() < 0.15, "{ratio}");
+    assert!(said.out.contains("by the calibrated law"), "{}", said.out);
+    // The case is the same: in some draws either run wears less.
+    let said = bench.say(&["diff", "calibrated", "out"]);
+    assert!(
+        said.out
+            .contains("% of laboratories, by the calibrated law"),
+        "{}",
+        said.out
+    );
 }
 
 /// Nothing of what the checks look at is lost with the process that computed it.

@@ -51,8 +51,9 @@ fn the_same_seed_gives_the_same_numbers_on_any_number_of_threads() {
 fn verify_the_mass_scatters_with_the_wear_factor_and_the_depth_with_it() {
     // Of displacement control nothing but friction, load, placement and wear factor reaches the mass.
     let text = "[machine]\npreset = \"stanmore-displacement\"\n[machine.axial_force]\nwaveform = \"paper-like\"\n";
-    let text =
-        format!("{text}[insert]\nedge_mm = 3.0\n[march]\nupdates = 2\n[time]\nincrements = 40\n");
+    let text = format!(
+        "{text}[insert]\nedge_mm = 3.0\n[march]\nupdates = 2\n[time]\nincrements = 40\n[wear]\nlaw = \"archard\"\n"
+    );
     let one = found(&text, &["--runs", "60"]);
     let inputs = one["inputs"].as_array().unwrap();
     let of_mass = |name: &str| {

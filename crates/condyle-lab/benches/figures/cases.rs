@@ -9,7 +9,7 @@ use condyle::evolve::{March, MarchState, WearTest};
 use condyle_case::case::{Assignment, Case};
 
 /// The generic implant: no file is needed.
-pub const GENERIC: &str = "stanmore-force";
+pub const GENERIC: &str = "knight-2007";
 /// A real implant, whose meshes may not be there.
 pub const REAL: &str = "dm-knee";
 

@@ -37,7 +37,7 @@ pub fn print(condyle: Option<&Path>) {
     println!("| --- | ---: | ---: | --- |");
     let generic = cases::read(GENERIC).expect("a shipped case is read");
     let generic_s = least_s(ROUNDS, || solved(&generic));
-    row("`stanmore-force`, solver only", 0.10, generic_s, "s");
+    row("`knight-2007`, solver only", 0.10, generic_s, "s");
     if let Some(condyle) = condyle {
         let whole_s = least_s(ROUNDS, || run_command(condyle));
         row(
@@ -267,7 +267,7 @@ fn beside_another(generic: &Case) -> f64 {
 struct Evaluations(Vec<(Duration, bool)>);
 
 impl Evaluations {
-    /// Of an update's cycle.
+    /// Returns the evaluations of the cycle of an update.
     fn of(updates: &Updates, update: usize) -> Self {
         let (asked, gait) = (updates.asked(update), updates.gait(update));
         let mut least = vec![Duration::MAX; asked.len()];

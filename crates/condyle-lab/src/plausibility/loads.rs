@@ -103,7 +103,7 @@ fn load(waveform: &Waveform, row: &CycleRow) -> f64 {
     waveform.at(row.percent / 100.0).0
 }
 
-/// Returns the part of a load that contact and springs leave, N or N mm: for the axial force the part that the
+/// Returns the difference between a load and the force of contact and springs, N or N mm: for the axial force the part that the
 /// contact does not carry, for other loads the part that inertia and damping take, M a + C v.
 fn missing(
     machine: &Machine,
@@ -207,7 +207,7 @@ fn range(finished: &Finished<'_>, (joint, most): MostMotion) -> Option<Plausibil
         unit => unit,
     };
     let message = format!(
-        "{} moves by {range:.1} {unit} in the {cycle} cycle; knees stay below {most:.0}",
+        "{} moves by {range:.1} {unit} in the {cycle} cycle; the limit is {most:.0}",
         description.symbol
     );
     let advice = "See the loads, the springs and their free play, and whether the femur is held by the dishes at all.";
@@ -224,7 +224,7 @@ pub(crate) fn lift_off(finished: &Finished<'_>) -> Option<PlausibilityWarning> {
     let (percent, cycle) = most.filter(|(percent, _)| *percent > MAX_LIFTED_PERCENT)?;
     let message = format!(
         "for {percent:.0} % of the {cycle} cycle one side carries nothing while the joint is loaded; up to \
-            {MAX_LIFTED_PERCENT:.0} % would be sound"
+            {MAX_LIFTED_PERCENT:.0} % is acceptable"
     );
     let advice = "See vv_axis_medial_mm, which splits the load between the sides, start_mm, and whether both bodies are of \
                     the same side.";

@@ -10,7 +10,7 @@ pub(crate) mod loads;
 
 use condyle::evolve::March;
 use condyle_results::{
-    PlausibilityWarning, Summary,
+    MAX_FACTOR, PlausibilityWarning, Summary,
     catalogue::{
         ADDED_INERTIA, CYCLES_NOT_REPEATING, MASS_LOSS_MG, MAX_DEPTH_MM, Scalar,
         VOLUME_LOSS_MESH_MM3, VOLUME_LOSS_MM3, WORST_QUALITY,
@@ -31,10 +31,9 @@ const PLACE: [Check; 4] = [
 ];
 
 /// Load on the polyethylene, and quality of the solution.
-const REST: [Check; 11] = [
-    bodies::pressure_beyond_yield,
+const REST: [Check; 10] = [
     bodies::insert_rocks,
-    bodies::thin_polyethylene,
+    interval_too_wide,
     mesh_quality,
     counts_of_volume,
     single_update,
@@ -45,8 +44,14 @@ const REST: [Check; 11] = [
     cycles_not_repeating,
 ];
 
-/// Reasons to doubt a finished march, the worst first.
-pub(crate) fn warnings(march: &March, summary: &Summary) -> Vec<PlausibilityWarning> {
+/// Remarks on the physics of a sound run: most knees have them.
+const NOTES: [Check; 2] = [bodies::pressure_beyond_yield, bodies::thin_polyethylene];
+
+/// Reasons to doubt a finished march, the worst first, and the remarks that leave its numbers sound.
+pub(crate) fn warnings(
+    march: &March,
+    summary: &Summary,
+) -> (Vec<PlausibilityWarning>, Vec<PlausibilityWarning>) {
     let finished = Finished::new(march, summary);
     let one = |check: &Check| check(&finished);
     let mut warnings = Vec::new();
@@ -56,7 +61,7 @@ pub(crate) fn warnings(march: &March, summary: &Summary) -> Vec<PlausibilityWarn
     warnings.extend(loads::ranges(&finished));
     warnings.extend(loads::lift_off(&finished));
     warnings.extend(REST.iter().filter_map(one));
-    warnings
+    (warnings, NOTES.iter().filter_map(one).collect())
 }
 
 /// Largest difference between the two values of the worn volume, %.
@@ -91,7 +96,7 @@ pub(crate) fn counts_of_volume(finished: &Finished<'_>) -> Option<PlausibilityWa
 pub(crate) fn mesh_quality(finished: &Finished<'_>) -> Option<PlausibilityWarning> {
     let quality = finished.summary[&WORST_QUALITY];
     let message = format!(
-        "the worst element is nearly flat: its scaled Jacobian is {quality:.3}, and {MIN_QUALITY} would be sound"
+        "the worst element is nearly flat: its scaled Jacobian is {quality:.3}, and at least {MIN_QUALITY} is acceptable"
     );
     let advice = "Fewer layers or a larger edge_mm at the outline; where the wear itself folds them, more updates or fewer \
                  cycles.";
@@ -120,6 +125,25 @@ fn large_error(
     let advice = "The parts of the error say what to refine: increments, updates, edge_mm or slip tolerance.";
     (percent > MAX_ERROR_PERCENT)
         .then(|| warning(check, (percent, MAX_ERROR_PERCENT, "%"), message, advice))
+}
+
+/// Warns of a predicted interval that is too wide for decisions.
+pub(crate) fn interval_too_wide(finished: &Finished<'_>) -> Option<PlausibilityWarning> {
+    let prediction = finished.summary.prediction.as_ref()?;
+    let factor = prediction.factor();
+    (prediction.is_of_run && factor > MAX_FACTOR).then(|| PlausibilityWarning {
+        check: "interval_too_wide".to_owned(),
+        value: factor,
+        limit: MAX_FACTOR,
+        unit: String::new(),
+        message: format!(
+            "laboratories would find the mass within a factor of {factor:.1} either way only; up to {MAX_FACTOR:.0} would be \
+             useful"
+        ),
+        advice: "The largest of the sources of the interval says why: the law is far from the tests that it was fitted to, \
+                 or the run is discretised too coarsely."
+            .to_owned(),
+    })
 }
 
 /// Warns of a single update that wears the scar of the first cycle for the whole test, so deep that the pressure
@@ -164,8 +188,8 @@ pub(crate) fn added_inertia(finished: &Finished<'_>) -> Option<PlausibilityWarni
 
 pub(crate) fn cycles_not_repeating(finished: &Finished<'_>) -> Option<PlausibilityWarning> {
     let count = finished.summary[&CYCLES_NOT_REPEATING];
-    let message = format!("in {count} updates no cycle repeated itself within the tolerance");
-    let advice = "The motion goes on changing from cycle to cycle: more cycles an update, or a machine with more \
+    let message = format!("in {count} updates no cycle repeated within the tolerance");
+    let advice = "The motion still changes from cycle to cycle: more cycles an update, or a machine with more \
                  damping or stiffer springs.";
     (count > 0.0).then(|| warning("cycles_not_repeating", (count, 0.0, ""), message, advice))
 }

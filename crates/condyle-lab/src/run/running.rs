@@ -2,12 +2,19 @@
 
 use std::{ops::ControlFlow, path::Path, time::Duration};
 
-use condyle::{evolve::March, geometry::TriangleMesh, wear::NamedLaw};
+use condyle::{
+    evolve::March,
+    geometry::TriangleMesh,
+    wear::{FamilyConstants, NamedLaw},
+};
 use condyle_case::{
     cache::Cache,
     case::{BuildWarning, Case, FEMUR_TRIANGLES, PressureLawChoice, SharedBodies},
 };
-use condyle_results::{Checkpoint, LawWear, NeutralPose, Summary, catalogue::RunFacts};
+use condyle_results::{
+    CALIBRATED_LAW, Checkpoint, ErrorEstimate, LawWear, NeutralPose, Prediction, Summary,
+    catalogue::RunFacts,
+};
 
 use crate::run::{
     Clock, Listener, Outcome, Reached, RunEvent,
@@ -158,8 +165,11 @@ impl<'a> Run<'a> {
                 error.wall_s = clock.spent.as_secs_f64();
                 error
             });
+            // The error of the discretisation widens the interval.
+            summary.prediction = self.prediction(summary.error.as_ref());
         }
-        summary.plausibility = crate::plausibility::warnings(&self.march, &summary);
+        (summary.plausibility, summary.notes) =
+            crate::plausibility::warnings(&self.march, &summary);
         ControlFlow::Continue(summary)
     }
 
@@ -176,7 +186,38 @@ impl<'a> Run<'a> {
         summary.warnings = self.warnings.iter().map(ToString::to_string).collect();
         summary.neutral_pose = Some(NeutralPose::of(&self.march, self.case.heading.side));
         summary.wear_laws = self.wear_laws();
+        summary.prediction = self.prediction(None);
         summary
+    }
+
+    /// Returns the results that laboratories would find for this run.
+    fn prediction(&self, error: Option<&ErrorEstimate>) -> Option<Prediction> {
+        let wear = &self.case.wear;
+        let own = |name| wear.constant(name).ok();
+        let is_calibrated = self.context.wear_law.is_none()
+            && wear.kind().word == CALIBRATED_LAW
+            && own("cross_shear_exponent") == Some(1.0);
+        let constants = is_calibrated.then(|| {
+            Some(FamilyConstants {
+                circle_factor_mm3_per_nm: own("circle_factor_mm3_per_nm")?,
+                reference_pressure_mpa: own("reference_pressure_mpa")?,
+                pressure_exponent: own("pressure_exponent")?,
+                cross_shear_saturation: own("cross_shear_saturation")?,
+                line_factor_ratio: own("line_factor_ratio")?,
+            })
+        });
+        let is_of_run = is_calibrated && wear.constants() == wear.kind().defaults();
+        Prediction::new(
+            &self.march,
+            error,
+            constants.flatten().filter(FamilyConstants::is_interpolated),
+            is_of_run,
+            self.case
+                .material
+                .cross_linking
+                .wear_over_conventional()
+                .unwrap_or(1.0),
+        )
     }
 
     fn wear_laws(&self) -> Vec<LawWear> {

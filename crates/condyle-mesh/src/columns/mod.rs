@@ -55,13 +55,13 @@ pub enum ColumnError {
     NoColumns { edge_mm: f64 },
     /// Places inside the outline where no column may stand.
     #[error(
-        "inside the insert's outline no hexahedra can stand on {}; fill it in the mesh",
+        "no column of hexahedra fits at {}; fill it in the mesh",
         listed_holes(holes)
     )]
     Holes { holes: Vec<Hole> },
     /// A place inside the outline whose vertical line does not meet the surface.
     #[error(
-        "the insert has a hole at x {x_mm:.2}, z {z_mm:.2} mm, where no column of hexahedra can stand; repair the mesh"
+        "the insert has a hole at x {x_mm:.2}, z {z_mm:.2} mm, where no column of hexahedra fits; repair the mesh"
     )]
     NoColumn { x_mm: f64, z_mm: f64 },
     /// A part of the insert in which no cell of the grid fits.

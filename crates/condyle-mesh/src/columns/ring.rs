@@ -9,7 +9,7 @@ use super::{
     outline::{Loop, turn},
 };
 
-/// Places this many rings inside the outline are moved; those further in stay on the grid.
+/// Number of rings of nodes next to the outline that are moved; all others stay on the grid.
 const MOVED_RINGS: usize = 3;
 /// Number of rounds of smoothing; after about ten there is no visible motion.
 const ROUNDS: usize = 40;

@@ -159,7 +159,7 @@ fn plain(name: &str) -> String {
 fn label(at: At, field: &str) -> Result<u64, MeshFileError> {
     plain(field).parse().map_err(|_| {
         at.error(format!(
-            "{field:?} is neither a number nor a set given before"
+            "{field:?} is neither a number nor the name of a previously defined set"
         ))
     })
 }
@@ -293,8 +293,9 @@ impl Model<'_> {
                     let face = sides
                         .iter()
                         .position(|name| name.eq_ignore_ascii_case(side));
-                    let face =
-                        face.ok_or_else(|| at.error(format!("{side:?} is not a face S1 to S6")))?;
+                    let face = face.ok_or_else(|| {
+                        at.error(format!("{side:?} is not one of the faces S1 to S6"))
+                    })?;
                     hexes.iter().map(|hex| hex.quads()[face]).collect()
                 }
                 // Without a face, a surface is all faces of its elements that lie on the outside.
@@ -441,7 +442,7 @@ mod tests {
         assert!(reported(" both, 8", " boht, 8").contains("\"boht\" is neither"));
         assert!(reported(" 7, 8, 1", " 8, 7, 1").contains("GENERATE takes"));
         assert!(reported(" 7, 8, 1", " 7, 8, 0").contains("GENERATE takes"));
-        assert!(reported("Solid, S2", "Solid, S7").contains("\"S7\" is not a face"));
+        assert!(reported("Solid, S2", "Solid, S7").contains("\"S7\" is not one of the faces"));
         assert!(reported(" last, S4", " 9, S4").contains("element 9 of this surface"));
         let inside = reported(" last, S4", " last, S6");
         assert!(

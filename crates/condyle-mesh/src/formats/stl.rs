@@ -63,7 +63,7 @@ fn parse_text(path: &Path, content: &str) -> Result<TriangleMesh, MeshFileError>
                 )));
             }
             "" | "solid" | "outer" | "endloop" | "endsolid" => {}
-            word => return Err(at.error(format!("{word:?} is not a word of STL"))),
+            word => return Err(at.error(format!("{word:?} is not a keyword of STL"))),
         }
     }
     draft.finish()
@@ -161,7 +161,7 @@ mod tests {
         );
         assert_eq!(
             reported("outer", "inner"),
-            "a.stl:3: \"inner\" is not a word of STL"
+            "a.stl:3: \"inner\" is not a keyword of STL"
         );
         assert!(reported(" 1e0 0", " 1").starts_with("a.stl:5: a point needs three"));
         assert!(reported("vertex 1 0 0", "").starts_with("a.stl:8: a facet ends here with 2"));

@@ -247,7 +247,7 @@ impl<'a> ArrayReader<'a> {
                 let data = data.ok_or_else(|| at.error(outside))?;
                 self.binary_values(at, kind, data, self.appended_is_raw)?
             }
-            _ => return Err(at.error("an array's format is none of ascii, binary, appended")),
+            _ => return Err(at.error("unknown array format; use ascii, binary or appended")),
         };
         let components = node.attribute("NumberOfComponents");
         Ok(DataArray {

@@ -142,7 +142,7 @@ impl View {
         self.origin_mm[axis] + (cell as f64 + 0.5) * self.cell_mm
     }
 
-    /// Returns whether a place is not hidden, by the lowest reach of the lines around it, so that a slope hides nothing.
+    /// Returns whether a place is visible. The lowest reach of the lines around it counts, so that a slope hides nothing.
     fn shows(&self, at_mm: &Vec3) -> bool {
         let around = |axis: usize| {
             let place = (at_mm.dot(&self.axes[axis]) - self.origin_mm[axis]) / self.cell_mm;

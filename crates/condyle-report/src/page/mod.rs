@@ -68,6 +68,8 @@ fn page_of(results: &Results, scene: Option<&Scene>) -> String {
             "lede": sentences::lede(results, &facts),
             "unfinished": sentences::unfinished(results),
             "doubts": sentences::doubts(results),
+            "notes": sentences::notes(results),
+            "interval": sentences::interval(results),
             "warnings": sentences::warnings(results),
             "rate": sentences::rate(results),
             "tiles": numbers::tiles(results),

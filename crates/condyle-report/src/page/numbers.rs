@@ -1,7 +1,7 @@
 //! The numbers of summary.json, as the catalogue names and describes them.
 
 use condyle_results::{
-    Summary,
+    Interval, Summary,
     catalogue::{self, Scalar, Section},
 };
 use serde::Serialize;
@@ -33,10 +33,21 @@ pub(super) fn tiles(results: &Results) -> Vec<Value> {
     };
     let tile = |number: &'static Scalar| {
         let error = summary.total_error(number);
+        let prediction = summary.prediction.as_ref();
+        let interval = prediction.and_then(|prediction| {
+            let Interval { low, median, high } = prediction.interval(number)?;
+            let [low, median, high] = [low, median, high].map(|value| significant(value, 2));
+            Some(if prediction.is_of_run {
+                format!("90 % of laboratories: {low} to {high}")
+            } else {
+                format!("calibrated law: {median}; 90 % of laboratories: {low} to {high}")
+            })
+        });
         Some(json!({
             "label": label_of(number),
             "value": shown(number, summary.get(number)?, 3),
             "unit": unit_of(number),
+            "interval": interval,
             "error": error.map(|error| significant(error, 2)),
         }))
     };

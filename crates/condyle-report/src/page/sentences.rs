@@ -1,7 +1,10 @@
 //! The sentences of the page that depend on the results.
 
-use condyle_results::catalogue::{
-    CYCLES, INCREMENTS, MASS_LOSS_MG, Scalar, UPDATES, VOLUME_LOSS_MESH_MM3, VOLUME_LOSS_MM3,
+use condyle_results::{
+    PlausibilityWarning,
+    catalogue::{
+        CYCLES, INCREMENTS, MASS_LOSS_MG, Scalar, UPDATES, VOLUME_LOSS_MESH_MM3, VOLUME_LOSS_MM3,
+    },
 };
 use serde_json::{Value, json};
 
@@ -73,14 +76,38 @@ pub(super) fn unfinished(results: &Results) -> Option<&'static str> {
 pub(super) fn doubts(results: &Results) -> Vec<Value> {
     let summary = results.summary.iter();
     let warnings = summary.flat_map(|summary| &summary.plausibility);
-    let doubtful = warnings.map(|warning| {
-        let message = ended(&first_letter_large(&warning.message));
-        json!({ "message": message, "advice": with_powers(&warning.advice) })
-    });
+    let doubtful = warnings.map(finding);
     let advice = "The stated discretisation error does not include it.";
     let unknown = not_estimated(results).into_iter();
     let unknown = unknown.map(|message| json!({ "message": message, "advice": advice }));
     doubtful.chain(unknown).collect()
+}
+
+fn finding(found: &PlausibilityWarning) -> Value {
+    let message = ended(&first_letter_large(&found.message));
+    json!({ "message": message, "advice": with_powers(&found.advice) })
+}
+
+/// Returns the remarks on the physics that leave the numbers sound.
+pub(super) fn notes(results: &Results) -> Vec<Value> {
+    let notes = results.summary.iter().flat_map(|summary| &summary.notes);
+    notes.map(finding).collect()
+}
+
+/// Returns the origin of the interval of the mass, in two sentences.
+pub(super) fn interval(results: &Results) -> Option<String> {
+    let prediction = results.summary.as_ref()?.prediction.as_ref()?;
+    let sources = prediction.sources.iter();
+    let sources =
+        sources.map(|source| format!("{} × {}", source.source, significant(source.factor, 3)));
+    let sources = sources.collect::<Vec<_>>().join(", ");
+    let measured = prediction.measured.iter();
+    let measured: String = measured
+        .map(|measured| format!(" {}.", first_letter_large(measured)))
+        .collect();
+    Some(format!(
+        "The interval of the mass is due to these factors, either way: {sources}.{measured}"
+    ))
 }
 
 /// Warnings and corrections from reading the case and its meshes.

@@ -118,9 +118,25 @@ impl Differences {
     }
 }
 
+/// Returns the part of laboratories in which the second run wears less, by the calibrated law; none unless both runs
+/// predict it.
+fn ranking(first: &Run, second: &Run) -> Option<String> {
+    let prediction = |run: &Run| run.results.summary.clone()?.prediction;
+    let percent = 100.0 * prediction(second)?.part_below(&prediction(first)?)?;
+    let (one, two) = (&first.name, &second.name);
+    Some(format!(
+        "{two} wears less than {one} in {percent:.0} % of laboratories, by the calibrated law."
+    ))
+}
+
 fn notes(first: &Run, second: &Run) -> Vec<String> {
-    let mut notes = Vec::new();
+    let mut notes: Vec<String> = ranking(first, second).into_iter().collect();
     for Run { name, results, .. } in [first, second] {
+        let doubts = results
+            .summary
+            .iter()
+            .flat_map(|summary| &summary.plausibility);
+        notes.extend(doubts.map(|doubt| format!("{name}: doubtful: {}.", doubt.message)));
         let left_out = results.left_out.iter();
         notes.extend(left_out.map(|why| format!("{name}: left out: {why}")));
         let files = [

@@ -109,7 +109,7 @@ fn plastic(run: &FinishedRun<'_>) -> Option<PlasticRecord> {
     records(run).next_back()?.1.plastic
 }
 
-/// The largest value of all updates; none of a bonded backside.
+/// Returns the largest value of all updates; `None` for a bonded backside.
 fn backside(run: &FinishedRun<'_>, value: fn(&BacksideAtRest) -> f64) -> Option<f64> {
     let rests = records(run).filter_map(|(_, record)| record.backside);
     rests.map(|rest| value(&rest)).reduce(f64::max)

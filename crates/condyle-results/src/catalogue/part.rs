@@ -49,6 +49,10 @@ macro_rules! parts {
 parts! {
     plausibility: Objects, true, before Some(&CYCLES),
         "Reasons to doubt the numbers, the worst first, each with `message` and `advice`.";
+    notes: Objects, true, before Some(&CYCLES),
+        "Remarks on the physics that leave the numbers sound, each with `message` and its effect in `advice`.";
+    prediction: Object, false, before Some(&CYCLES),
+        "What laboratories would weigh: medians and 90 % intervals of mass and depth, and the sources of their width.";
     error: ObjectOrNull, true, before Some(&WEAR_OVER_CONVENTIONAL),
         "Estimated discretisation errors by their parts; null if the case does not ask for them.";
     wear_laws: Objects, true, before Some(&WEAR_OVER_CONVENTIONAL),

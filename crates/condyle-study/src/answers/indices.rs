@@ -23,7 +23,7 @@ pub(crate) struct Indices {
     pub first: f64,
     /// The 95 % interval, by bootstrap.
     pub first_interval: [f64; 2],
-    /// By the input alone and by its interactions.
+    /// Total index: the input with its interactions.
     pub total: f64,
     pub total_interval: [f64; 2],
     /// Bases with all tests done.

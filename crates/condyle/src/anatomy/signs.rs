@@ -1,4 +1,4 @@
-//! Signs of the top, the front and the right of a femoral component and of an insert, and of the side of a femoral component.
+//! Shape criteria for the superior, anterior and right directions of both bodies, and for the side of a femur.
 
 use super::views::{Orientation, Picture, Views, beyond, mean, median, part};
 use crate::{Vec3, geometry::TriangleMesh};

@@ -4,8 +4,9 @@
 use std::ops::ControlFlow;
 
 use super::{
-    Activity, CreepRecord, CreepState, DepthField, DepthFields, MarchError, MarchState, NodeFields,
-    PlacementError, Progress, Snapshot, SolvedCycle, UnderSurfaceRecord, UpdateRecord, WearTest,
+    Activity, CreepRecord, CreepState, DepthField, DepthFields, FamilyWear, MarchError, MarchState,
+    NodeFields, PlacementError, Progress, Snapshot, SolvedCycle, UnderSurfaceRecord, UpdateRecord,
+    WearTest,
     comparison_laws::{ComparisonLaw, outside_mm3, sum, wear_of_each},
     creep::{CreepContact, CreepStep},
     depth::sum_mm,
@@ -111,6 +112,7 @@ impl March {
             let nodes = test.insert.surface_nodes().len();
             let laws = test.comparison_laws.iter();
             state.comparison_laws = laws.map(|law| ComparisonLaw::new(law, nodes)).collect();
+            state.law_family = test.law_family.then(FamilyWear::default);
         }
         let mut insert = Insert::clone(&test.insert);
         insert.restore(state.mesh_nodes.clone(), &state.depths.total_mm());
@@ -439,6 +441,9 @@ impl March {
         let others = self.test.comparison_laws.iter();
         for (law, worn) in others.zip(&mut state.comparison_laws) {
             worn.add(law.law.as_ref(), step.mean, area_mm2, interval);
+        }
+        if let Some(family) = &mut state.law_family {
+            family.add(step.mean, area_mm2, interval);
         }
         let worn = wear_of_each(law, step);
         for (activity, worn) in state.activities.iter_mut().zip(worn) {

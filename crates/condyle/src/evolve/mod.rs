@@ -8,7 +8,7 @@
 //! | `solved_cycles` | the solution of the cycles of an update |
 //! | `rates` | the wear per cycle, the rate at which wear changes it, and a step of the march |
 //! | `next_step`, `step_rules` | the interval of a step, the wear over it, and the error that its length causes |
-//! | `comparison_laws` | the wear by other laws, and by each activity |
+//! | `comparison_laws`, `law_family` | the wear by other laws, by all laws of powers, and by each activity |
 //! | `depth` | the depth of the surface by cause |
 //! | `creep` | the depth by creep, and the load that causes it |
 //! | `records`, `state` | the results of an update, and the state from which a march resumes |
@@ -17,6 +17,7 @@ mod comparison_laws;
 mod creep;
 mod depth;
 mod error;
+mod law_family;
 mod march;
 mod next_step;
 mod placement;
@@ -31,6 +32,7 @@ pub use comparison_laws::{ActivityWear, ComparisonLaw};
 pub use creep::CreepState;
 pub use depth::{DepthField, DepthFields};
 pub use error::{MarchError, PlacementError};
+pub use law_family::FamilyWear;
 pub use march::March;
 pub use rates::{StepRecord, mean_over_volume, weight_of_depth};
 pub use records::{

@@ -4,7 +4,7 @@ use serde::{Deserialize, Serialize};
 
 use super::{
     AccumulatedError, ActivityWear, ComparisonLaw, CreepState, CycleRecord, DepthField,
-    DepthFields, NodeFields, StepRecord, UpdateRecord,
+    DepthFields, FamilyWear, NodeFields, StepRecord, UpdateRecord,
 };
 use crate::{
     Vec3,
@@ -113,6 +113,8 @@ pub struct MarchState {
     pub outside_mm3: Option<f64>,
     /// The wear by the comparison laws.
     pub comparison_laws: Vec<ComparisonLaw>,
+    /// The wear by every law of powers; none unless the test asks for it.
+    pub law_family: Option<FamilyWear>,
     /// The history of the contact.
     pub contact: ContactState,
     /// Stress below the surface at the increment of the last update with the highest pressure, if the insert is a

@@ -1,4 +1,4 @@
-//! A whole wear test, as the solver sees it.
+//! The definition of a wear test.
 
 use std::sync::Arc;
 
@@ -32,6 +32,8 @@ pub struct WearTest {
     pub wear: Arc<dyn WearLaw>,
     /// Laws that are evaluated for comparison only.
     pub comparison_laws: Vec<NamedLaw>,
+    /// Whether the wear by every law of powers is summed too, for the uncertainty of the law.
+    pub law_family: bool,
     /// The law of creep, if the insert creeps.
     pub creep: Option<LeePienkowski>,
     /// Density of the insert, mg/mm3.

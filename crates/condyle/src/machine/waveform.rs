@@ -277,7 +277,7 @@ pub enum WaveformError {
     OutsideCycle { index: usize, percent: f64 },
     /// A place not after the one before.
     #[error(
-        "point {index} of the waveform, at {percent} %, does not come after {before} %; sort the points and keep one for each place"
+        "point {index} of the waveform, at {percent} %, is not after the previous point at {before} %; sort the points and keep one per percentage"
     )]
     NotIncreasing {
         index: usize,
@@ -286,7 +286,7 @@ pub enum WaveformError {
     },
     /// Samples too far apart.
     #[error(
-        "the waveform has a gap from {from} % to {to} % of the cycle; add points between, at most {limit} % apart"
+        "the waveform has a gap from {from} % to {to} % of the cycle; add points, at most {limit} % apart"
     )]
     Gap { from: f64, to: f64, limit: f64 },
     /// Different values at the two ends.
@@ -371,7 +371,9 @@ mod tests {
         assert!(spline(&[]).contains("at least one"));
         assert!(spline(&[(0.0, f64::NAN)]).contains("point 0"));
         assert!(spline(&[(0.0, 1.0), (120.0, 1.0)]).contains("120 %"));
-        assert!(spline(&[(5.0, 1.0), (5.0, 2.0)]).contains("does not come after 5 %"));
+        assert!(
+            spline(&[(5.0, 1.0), (5.0, 2.0)]).contains("is not after the previous point at 5 %")
+        );
         assert!(spline(&[(0.0, 1.0), (40.0, 1.0), (100.0, 1.0)]).contains("gap from 0 % to 40 %"));
         assert!(spline(&[(0.0, 1.0), (100.0, 2.0)]).contains("jumps at the end of the cycle"));
     }

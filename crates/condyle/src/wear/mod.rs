@@ -6,6 +6,7 @@
 mod cross_linked;
 mod law;
 mod mean_cycle;
+mod power_law_family;
 #[cfg(test)]
 mod tests;
 
@@ -13,14 +14,16 @@ pub use archard::Archard;
 pub use cross_linked::CrossLinked;
 pub use law::{NamedLaw, NodeWear, WearLaw, WearLawKind};
 pub use mean_cycle::{MeanCycle, SharedCycle};
+pub use power_law_family::FamilyConstants;
+pub(crate) use power_law_family::{COLUMNS, family_columns, weighted};
 
 law::wear_laws! {
+    power_law,
     archard,
     kang,
     contact_area,
     unified,
     directional,
-    power_law,
 }
 
 /// A metre in millimetres.

@@ -15,7 +15,12 @@ pub(super) const KIND: WearLawKind = WearLawKind {
         cycle's cross-shear ratio CS: f on a line, growing with the power b of CS below c, about 1 above.",
     known: Known::Chosen,
     parameters: &[
-        CIRCLE_FACTOR,
+        Parameter {
+            default: 1.57e-6,
+            source: "choice",
+            known: Known::Chosen,
+            ..CIRCLE_FACTOR
+        },
         Parameter {
             name: "reference_pressure_mpa",
             about: "Pressure p0 at which the wear factor on a circle applies.",
@@ -29,7 +34,7 @@ pub(super) const KIND: WearLawKind = WearLawKind {
             name: "pressure_exponent",
             about: "Power m by which the wear factor falls with pressure: 0 is Archard's law, at 1 the depth does not \
                 depend on pressure.",
-            default: 0.5,
+            default: 0.43,
             least: 0.0,
             most: 1.0,
             ..FITTED
@@ -53,7 +58,7 @@ pub(super) const KIND: WearLawKind = WearLawKind {
         Parameter {
             name: "line_factor_ratio",
             about: "Part f of the wear at saturated cross-shear that remains on a line.",
-            default: 0.03,
+            default: 0.026,
             least: 0.0,
             most: 1.0,
             ..FITTED
@@ -76,7 +81,8 @@ pub(super) const KIND: WearLawKind = WearLawKind {
     },
 };
 
-/// The values that its fitted constants share.
+/// The values that its fitted constants share: defaults are rounded medians of the posterior that the book documents
+/// under "One law for pins, hips and knees".
 const FITTED: Parameter = Parameter {
     name: "",
     about: "",

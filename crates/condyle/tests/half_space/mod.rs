@@ -10,7 +10,7 @@ const EVEN_ELEMENTS: usize = 7;
 /// How much larger than the one before each of the others is.
 const GROWTH: f64 = 1.8;
 
-/// A block with so many elements from its middle to each side and down, of `edge_mm` near the middle.
+/// A block with `elements` elements of `edge_mm` from its middle to each side and to its base.
 pub fn half_space(edge_mm: f64, elements: usize) -> Insert {
     let half_mm = elements as f64 * edge_mm;
     let meshing = Meshing {

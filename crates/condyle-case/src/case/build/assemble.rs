@@ -72,6 +72,7 @@ impl Case {
             activities,
             wear: as_linked(self.wear.law()).law,
             comparison_laws: comparison_laws.collect(),
+            law_family: true,
             creep: self.creep.law(),
             density_mg_per_mm3: self.material.density_mg_per_mm3,
             time: self.time_settings(),

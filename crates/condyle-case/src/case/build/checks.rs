@@ -139,7 +139,7 @@ pub(super) fn off_centre(
         let side = if middle.z < 0.0 { "medial" } else { "lateral" };
         let remark = format!(
             "the dishes have their middle {:.1} mm {front} and {:.1} mm {side} of the origin, where the machine's axes are; \
-             up to {MAX_ALONG_MM} mm in front or behind and {MAX_ACROSS_MM} mm to a side would be sound; write \
+             up to {MAX_ALONG_MM} mm in front or behind and {MAX_ACROSS_MM} mm to a side are acceptable; write \
              origin = \"centre\" in [insert], or move the file's origin",
             middle.x.abs(),
             middle.z.abs()

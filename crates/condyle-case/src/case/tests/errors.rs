@@ -520,7 +520,7 @@ fn waveform_with_a_gap_a_nan_or_a_step_is_refused_at_its_point() {
     );
     assert_shows(
         &wave("knots_deg = [[5.0, 1.0], [5.0, 2.0]]"),
-        &["does not come after 5 %"],
+        &["is not after the previous point at 5 %"],
     );
 }
 

@@ -61,5 +61,5 @@ fn verify_every_law_of_the_test_is_multiplied_by_the_factor() {
         depths(HIGH),
         conventional.iter().map(times).collect::<Vec<_>>()
     );
-    assert_eq!(conventional.len(), 5);
+    assert_eq!(conventional.len(), 6);
 }

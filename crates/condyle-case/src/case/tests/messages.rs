@@ -57,7 +57,11 @@ fn another_word_for_a_key_leads_to_the_key() {
         ("[material]\nE = 463\n", "youngs_modulus_mpa"),
         ("[material]\nE_gpa = 0.463\n", "youngs_modulus_mpa"),
         ("[material]\nnu = 0.46\n", "poissons_ratio"),
-        ("[wear]\nk = 1e-7\n", "wear_factor_mm3_per_nm"),
+        ("[wear]\nk = 1e-7\n", "circle_factor_mm3_per_nm"),
+        (
+            "[wear]\nlaw = \"archard\"\nk = 1e-7\n",
+            "wear_factor_mm3_per_nm",
+        ),
         ("[machine.springs]\nk_n_per_mm = 7\n", "posterior_n_per_mm"),
         (
             "[femur]\nshape = \"mesh\"\nfile = \"a.stl\"\nunit = \"m\"\n",

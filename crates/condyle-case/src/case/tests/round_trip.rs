@@ -30,6 +30,7 @@ fn assert_round_trip(case: &Case) {
 #[test]
 fn generic_cases_round_trip() {
     assert_round_trip(&shipped("stanmore-force.toml"));
+    assert_round_trip(&shipped("knight-2007.toml"));
     assert_round_trip(&shipped("stanmore-displacement.toml"));
     assert_round_trip(&shipped("gait-and-stairs.toml"));
     assert_round_trip(&shipped("daily-life.toml"));
@@ -64,18 +65,24 @@ fn every_choice_round_trips() {
 }
 
 #[test]
-fn force_case_is_the_default_but_for_its_title_and_axial_force() {
-    let (mut case, default) = (shipped("stanmore-force.toml"), parsed("").unwrap());
+fn force_case_is_the_default_and_that_of_the_paper_differs_in_load_and_law() {
+    let default = parsed("").unwrap();
+    let [force, mut paper] = ["stanmore-force.toml", "knight-2007.toml"].map(|name| {
+        let mut case = shipped(name);
+        case.heading = default.heading.clone();
+        case
+    });
+    assert_eq!(force, default);
     let peak = |case: &Case| {
-        case.machine
-            .waveforms
-            .get(&knee::AXIAL_FORCE)
-            .map(|w| w.at(0.13).0)
+        let waveform = case.machine.waveforms.get(&knee::AXIAL_FORCE);
+        waveform.map(|waveform| waveform.at(0.13).0)
     };
-    assert_eq!((peak(&case), peak(&default)), (Some(3200.0), Some(2600.3)));
-    case.heading = default.heading.clone();
-    case.machine.waveforms = default.machine.waveforms.clone();
-    assert_eq!(case, default);
+    assert_eq!((peak(&paper), peak(&default)), (Some(3200.0), Some(2600.3)));
+    let words = (paper.wear.kind().word, default.wear.kind().word);
+    assert_eq!(words, ("archard", "power-law"));
+    paper.machine.waveforms = default.machine.waveforms.clone();
+    paper.wear = default.wear.clone();
+    assert_eq!(paper, default);
 }
 
 #[test]

@@ -57,8 +57,8 @@ const THRESHOLD: WearLawKind = WearLawKind {
     },
 };
 
-/// The kinds of law to choose from, including the new one.
-const LAWS: WearLaws = &[WEAR_LAWS[0], &THRESHOLD];
+/// Archard's law and the new one.
+const LAWS: WearLaws = &[WEAR_LAWS[1], &THRESHOLD];
 
 fn read(text: &str) -> Result<Case, String> {
     let reader = CaseReader {
@@ -77,7 +77,7 @@ fn a_law_with_two_constants_is_read_with_its_defaults() {
     assert_eq!(wear.kind().word, "threshold");
     assert_eq!(wear.constant("factor_mm3_per_nm"), Ok(3e-7));
     assert_eq!(wear.constant("from_n_per_mm"), Ok(40.0));
-    assert_eq!(read("").unwrap().wear, Wear::new(WEAR_LAWS[0]));
+    assert_eq!(read("").unwrap().wear, Wear::new(WEAR_LAWS[1]));
 }
 
 #[test]
@@ -180,7 +180,7 @@ fn constants_quoted_from_memory_are_called_approximate() {
 
 #[test]
 fn a_constant_that_is_unknown_or_out_of_range_is_refused() {
-    let archard = || Wear::new(WEAR_LAWS[0]);
+    let archard = || Wear::new(WEAR_LAWS[1]);
     let missing = archard().constant("from_n_per_mm").unwrap_err();
     assert_eq!(
         missing.to_string(),

@@ -312,7 +312,7 @@ pub(crate) struct Free {
 }
 
 enum Parameters {
-    /// The amount of wear, whatever the cycle.
+    /// The amount of wear: one factor on the wear of every cycle.
     Level,
     /// These constants, by their places among all.
     Constants(Vec<usize>),

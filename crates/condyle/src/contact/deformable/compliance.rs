@@ -305,7 +305,7 @@ pub(crate) struct UnitLoads {
     forces: Vec<(u32, Vec3)>,
     tiles: Vec<Vec<u32>>,
     solved: Mutex<Vec<Option<Arc<HalfSolved>>>>,
-    /// Results of another run that were not needed yet.
+    /// Cached results of an earlier run that this run has not used yet.
     known: Mutex<KnownCompliance>,
 }
 

@@ -104,7 +104,7 @@ pub struct Deformable {
     /// The model of friction: with or without elastic deflection along the surface.
     pub friction_model: FrictionModel,
     backside: Backside,
-    /// Compliances of inserts, the one that was used last at the end; clones of a law share them.
+    /// Compliances in order of last use, shared by clones of the law.
     kept: Arc<Mutex<Vec<Arc<ElasticSurface>>>>,
 }
 

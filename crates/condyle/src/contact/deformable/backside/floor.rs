@@ -150,8 +150,8 @@ impl Grid {
         around
     }
 
-    /// Removes the points outside: nodes around these follow the nearest cell whose corners all lie within. If there is no
-    /// such cell, all points stay.
+    /// Removes the outside points; nodes near them follow the nearest cell with all corners inside. Keeps all points if there
+    /// is none.
     pub fn led_from_within(&self, around: Vec<Around>, share_mm2: &[f64]) -> Vec<Around> {
         let is_within: Vec<bool> = around
             .iter()

@@ -1,0 +1,322 @@
+//! The prediction of a laboratory's result: the uncertainty of the wear law and of laboratories, evaluated on a run.
+//!
+//! `posterior.csv` has draws of the constants of the law `power-law` and of a laboratory's own factor, from the fit to
+//! measured pins, hips and knees that the book documents. Every draw is evaluated on the run's own histories.
+
+use std::sync::LazyLock;
+
+use condyle::{evolve::March, machine::knee::KNEE, wear::FamilyConstants};
+use serde::{Deserialize, Serialize};
+
+use super::{
+    catalogue::{MASS_LOSS_MG, MAX_DEPTH_MM, Scalar},
+    error_estimate::ErrorEstimate,
+};
+
+/// Word of the law that is calibrated.
+pub const CALIBRATED_LAW: &str = "power-law";
+/// Deviation of the logarithm of the mass due to the scatter of a simulator's inputs: that of the default knee, by
+/// `condyle uncertainty`, as the book states it.
+const INPUTS_LOG_SD: f64 = 0.08;
+/// The wear of conventional inserts in force-controlled knee simulators [haider-garvin2008]; [reinders2014] found 8.0 +/- 0.9.
+const MEASURED_KNEES: &str = "knee simulators have weighed 8.1 +/- 2.6 mg/Mc";
+/// 90 % of a normal distribution are within this many deviations.
+const DEVIATIONS_OF_90_PERCENT: f64 = 1.645;
+/// Pressure that the factors of the draws refer to, MPa.
+const REFERENCE_PRESSURE_MPA: f64 = 1.1;
+/// Factor either way beyond which an interval is too wide to decide anything.
+pub const MAX_FACTOR: f64 = 3.0;
+
+/// Comparisons take every fifth draw: a probability to 1 %, in a fifth of the lines of `summary.json`.
+const COMPARED: usize = 5;
+
+/// A draw of the posterior.
+#[derive(Clone, Copy, Debug)]
+struct Draw {
+    law: FamilyConstants,
+    /// Wear in a laboratory over that by the law.
+    laboratory: f64,
+}
+
+static DRAWS: LazyLock<Vec<Draw>> = LazyLock::new(|| {
+    let rows = include_str!("posterior.csv").lines();
+    let rows = rows.filter(|row| row.starts_with(|first: char| first.is_ascii_digit()));
+    let draw = |row: &str| {
+        let values: Vec<f64> = row
+            .split(',')
+            .map(|value| value.parse().expect("is a number"))
+            .collect();
+        let &[
+            circle_factor_mm3_per_nm,
+            pressure_exponent,
+            cross_shear_saturation,
+            line_factor_ratio,
+            laboratory,
+        ] = values.as_slice()
+        else {
+            panic!("posterior.csv has five columns: {row}");
+        };
+        Draw {
+            law: FamilyConstants {
+                circle_factor_mm3_per_nm,
+                reference_pressure_mpa: REFERENCE_PRESSURE_MPA,
+                pressure_exponent,
+                cross_shear_saturation,
+                line_factor_ratio,
+            },
+            laboratory,
+        }
+    };
+    rows.map(draw).collect()
+});
+
+/// The median and the interval that contains the result of 90 % of laboratories.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Interval {
+    /// 5 % of laboratories find less.
+    pub low: f64,
+    /// Half of them find less.
+    pub median: f64,
+    /// 5 % find more.
+    pub high: f64,
+}
+
+/// A reason why laboratories find something else than the median.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Source {
+    /// `law`, `laboratory`, `inputs` or `discretisation`.
+    pub source: String,
+    /// 90 % of laboratories are within this factor, either way, by this reason alone.
+    pub factor: f64,
+}
+
+/// The results that laboratories would find for the test of a run.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Prediction {
+    /// True if the run's law is the calibrated one with its default constants, so that the interval is that of the run.
+    pub is_of_run: bool,
+    /// Mass worn, mg.
+    pub mass_loss_mg: Interval,
+    /// Deepest wear, mm.
+    pub max_depth_mm: Interval,
+    /// Rates that laboratories have weighed on joints of this kind, in words; none if none are known.
+    #[serde(skip_serializing_if = "Option::is_none", default)]
+    pub measured: Option<String>,
+    /// Contributions to the interval of the mass, the largest first.
+    pub sources: Vec<Source>,
+    /// Mass by the law of every fifth draw of `posterior.csv`, without the laboratory's own factor, mg: in a comparison of
+    /// two designs that factor cancels.
+    pub mass_loss_mg_by_draw: Vec<f64>,
+}
+
+impl Prediction {
+    /// Returns the prediction for a finished march: `constants` are those of its law if that is of the calibrated family, and
+    /// `times` its wear over that of conventional polyethylene. None unless the march summed the family.
+    pub fn new(
+        march: &March,
+        error: Option<&ErrorEstimate>,
+        constants: Option<FamilyConstants>,
+        is_of_run: bool,
+        times: f64,
+    ) -> Option<Self> {
+        let (masses, depths) = by_draw(march, constants, times)?;
+        let laboratories: Vec<f64> = DRAWS.iter().map(|draw| draw.laboratory).collect();
+        let error_percent = |scalar: &Scalar| {
+            error
+                .and_then(|error| error.get(scalar))
+                .map_or(0.0, |error| error.percent.total)
+        };
+        let mut sources = vec![
+            Source::new("law", half_width(&masses)),
+            Source::new("laboratory", half_width(&laboratories)),
+            Source::new("inputs", DEVIATIONS_OF_90_PERCENT * INPUTS_LOG_SD),
+        ];
+        if error.is_some() {
+            let error_log = (0.01 * error_percent(&MASS_LOSS_MG)).ln_1p();
+            sources.push(Source::new("discretisation", error_log));
+        }
+        sources.sort_by(|a, b| b.factor.total_cmp(&a.factor));
+        let interval = |values: &[f64], scalar| {
+            let both: Vec<f64> = values
+                .iter()
+                .zip(&laboratories)
+                .map(|(a, b)| a * b)
+                .collect();
+            Interval::of(&both, (0.01 * error_percent(scalar)).ln_1p())
+        };
+        Some(Self {
+            is_of_run,
+            measured: (*march.test().machine().mechanism == KNEE)
+                .then(|| MEASURED_KNEES.to_owned()),
+            mass_loss_mg: interval(&masses, &MASS_LOSS_MG),
+            max_depth_mm: interval(&depths, &MAX_DEPTH_MM),
+            sources,
+            mass_loss_mg_by_draw: masses
+                .iter()
+                .step_by(COMPARED)
+                .map(|mass| rounded(*mass))
+                .collect(),
+        })
+    }
+
+    /// Returns the interval of a number; none unless it is predicted.
+    pub fn interval(&self, scalar: &Scalar) -> Option<Interval> {
+        let intervals = [
+            (&MASS_LOSS_MG, self.mass_loss_mg),
+            (&MAX_DEPTH_MM, self.max_depth_mm),
+        ];
+        let found = intervals
+            .into_iter()
+            .find(|(predicted, _)| *predicted == scalar);
+        found.map(|(_, interval)| interval)
+    }
+
+    /// Returns the part of laboratories in which this design wears less than another, 0 to 1: the same draws of the law for
+    /// both, with the laboratory's factor cancelled. None if the draws differ in number.
+    pub fn part_below(&self, other: &Self) -> Option<f64> {
+        let pairs = self
+            .mass_loss_mg_by_draw
+            .iter()
+            .zip(&other.mass_loss_mg_by_draw);
+        let below = pairs.filter(|(own, other)| own < other).count();
+        let count = self.mass_loss_mg_by_draw.len();
+        (count == other.mass_loss_mg_by_draw.len() && count > 0)
+            .then(|| below as f64 / count as f64)
+    }
+
+    /// Returns the factor of the interval of the mass, the geometric mean of both ways.
+    pub fn factor(&self) -> f64 {
+        (self.mass_loss_mg.high / self.mass_loss_mg.low).sqrt()
+    }
+}
+
+/// Returns mass and deepest wear by the law of every draw, without the laboratory's factor.
+fn by_draw(
+    march: &March,
+    constants: Option<FamilyConstants>,
+    times: f64,
+) -> Option<(Vec<f64>, Vec<f64>)> {
+    let reference = constants.unwrap_or(DRAWS[0].law);
+    let laws: Vec<_> = std::iter::once(reference)
+        .chain(DRAWS.iter().map(|draw| draw.law))
+        .collect();
+    let worn = march.state().law_family.as_ref()?.volumes_and_depths(&laws);
+    let (&(reference_mm3, reference_mm), worn) = worn.split_first()?;
+    if reference_mm3 <= 0.0 {
+        return None;
+    }
+    // The run's own law follows the change of its surface within an interval; the sum of the family does not.
+    let last = march.state().updates.last()?;
+    let (of_mass, of_depth) = match constants {
+        Some(_) => (
+            last.mass_loss_mg / reference_mm3,
+            last.max_depth_mm / reference_mm,
+        ),
+        None => (march.test().density_mg_per_mm3 * times, times),
+    };
+    let worn = worn.iter();
+    Some(
+        worn.map(|(volume_mm3, depth_mm)| (of_mass * volume_mm3, of_depth * depth_mm))
+            .unzip(),
+    )
+}
+
+impl Source {
+    fn new(source: &str, half_width_log: f64) -> Self {
+        Self {
+            source: source.to_owned(),
+            factor: half_width_log.exp(),
+        }
+    }
+}
+
+impl Interval {
+    /// Returns the interval of these values of laboratories, widened by the scatter of inputs and a discretisation error,
+    /// which are independent of them: half-widths in the logarithm add as squares.
+    fn of(values: &[f64], discretisation_log: f64) -> Self {
+        let [low, median, high] = quantiles(values);
+        let own = (DEVIATIONS_OF_90_PERCENT * INPUTS_LOG_SD).hypot(discretisation_log);
+        let widened = |end: f64| (end / median).ln().hypot(own).exp();
+        Self {
+            low: median / widened(low),
+            median,
+            high: median * widened(high),
+        }
+    }
+}
+
+/// Returns the 5 %, 50 % and 95 % quantiles.
+fn quantiles(values: &[f64]) -> [f64; 3] {
+    let mut sorted = values.to_vec();
+    sorted.sort_by(f64::total_cmp);
+    [0.05, 0.5, 0.95].map(|part| {
+        let place = part * (sorted.len() - 1) as f64;
+        let below = place.floor() as usize;
+        let above = (below + 1).min(sorted.len() - 1);
+        sorted[below] + (place - below as f64) * (sorted[above] - sorted[below])
+    })
+}
+
+/// Returns half the width of the 90 % interval of the logarithm.
+fn half_width(values: &[f64]) -> f64 {
+    let [low, _, high] = quantiles(values);
+    0.5 * (high / low).ln()
+}
+
+/// Rounds to four digits: more would fill `summary.json` with noise.
+fn rounded(value: f64) -> f64 {
+    format!("{value:.3e}").parse().unwrap_or(value)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn verify_an_interval_adds_independent_scatter_as_squares() {
+        // Evenly spaced logarithms from -1 to 1: 90 % are within 0.9.
+        let values: Vec<f64> = (0..=200)
+            .map(|i| (0.01 * f64::from(i) - 1.0).exp())
+            .collect();
+        let narrow = Interval::of(&values, 0.0);
+        let expected = (0.9_f64.powi(2) + (1.645 * INPUTS_LOG_SD).powi(2)).sqrt();
+        assert!((narrow.median - 1.0).abs() < 1e-12);
+        assert!((narrow.high.ln() - expected).abs() < 1e-3, "{narrow:?}");
+        assert!((narrow.low.ln() + expected).abs() < 1e-3, "{narrow:?}");
+        assert!(Interval::of(&values, 0.5).high > narrow.high);
+    }
+
+    #[test]
+    fn verify_the_laboratory_cancels_between_designs() {
+        let prediction = |masses: &[f64]| Prediction {
+            is_of_run: true,
+            mass_loss_mg: Interval::of(masses, 0.0),
+            max_depth_mm: Interval::of(masses, 0.0),
+            measured: None,
+            sources: Vec::new(),
+            mass_loss_mg_by_draw: masses.to_vec(),
+        };
+        let (one, two) = (
+            prediction(&[1.0, 2.0, 4.0, 8.0]),
+            prediction(&[1.1, 2.1, 4.1, 7.0]),
+        );
+        assert_eq!(one.part_below(&two), Some(0.75));
+        assert_eq!(two.part_below(&one), Some(0.25));
+        assert_eq!(one.part_below(&prediction(&[1.0])), None);
+    }
+
+    #[test]
+    fn the_posterior_has_500_plausible_draws() {
+        assert_eq!(DRAWS.len(), 500);
+        for draw in DRAWS.iter() {
+            let law = draw.law;
+            assert!((0.0..=1.0).contains(&law.pressure_exponent), "{law:?}");
+            assert!(
+                (0.002..=0.5).contains(&law.cross_shear_saturation),
+                "{law:?}"
+            );
+            assert!((0.0..=1.0).contains(&law.line_factor_ratio), "{law:?}");
+            assert!(draw.laboratory > 0.0 && law.circle_factor_mm3_per_nm > 0.0);
+        }
+    }
+}
