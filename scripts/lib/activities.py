@@ -41,8 +41,8 @@ def adding_up(runs):
     print(
         "**Does the wear of activities add up independently?** `gait-and-stairs` with each law moving the surface, in mg a million cycles: "
         "each activity in a test of its own, their sum by shares, and both in one test. The last column is what each would have "
-        "worn with a principal direction of its own on the surfaces of the common test, against what both wore there: "
-        "what the directions alone make.\n"
+        "worn with a principal direction of its own on the surfaces of the common test, compared with the wear of both there: "
+        "the effect of the directions alone.\n"
     )
     print_head(["law", "gait alone", "stairs alone", "sum by shares", "both in one test", "of the sum", "directions alone"])
     for law in LAWS:

@@ -62,7 +62,7 @@ def main() -> None:
     a_test = one / given.tests
     rows = [
         ("tests", f"{given.tests}"),
-        ("march of one run alone, as `condyle run` says it", f"{1000 * alone:.0f} ms"),
+        ("march of one run alone, as `condyle run` reports it", f"{1000 * alone:.0f} ms"),
         ("a test of the study on one worker", f"{1000 * a_test:.0f} ms, {100 * (a_test / alone - 1):+.1f} %"),
         ("throughput of two workers over that of one", f"{one / two:.2f}"),
         (f"{WHOLE:,} tests on two workers, with their answers", f"{whole / 60:.1f} minutes"),

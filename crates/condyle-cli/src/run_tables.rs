@@ -2,7 +2,7 @@
 
 use condyle_results::{
     ActivitySummary, Interval, LawWear, Prediction, Summary,
-    catalogue::{MASS_LOSS_MG, MAX_DEPTH_MM},
+    catalogue::{CYCLES, MASS_LOSS_MG, MAX_DEPTH_MM},
 };
 
 use crate::output::Lines;
@@ -16,12 +16,11 @@ pub fn add_prediction(prediction: &Prediction, summary: &Summary, lines: &mut Li
     let (mass, depth) = (prediction.mass_loss_mg, prediction.max_depth_mm);
     let [own_mass, own_depth] = [&MASS_LOSS_MG, &MAX_DEPTH_MM].map(|number| summary[number]);
     let measured = prediction.measured.as_deref();
-    let measured = measured.map_or_else(String::new, |measured| format!("; {measured}"));
+    let measured = measured.map_or_else(String::new, |measured| format!(", {measured}"));
     if prediction.is_of_run {
-        lines.line(format_args!(
-            "mass loss    {}{measured}",
-            words(own_mass, mass, "mg")
-        ));
+        let rate = two_digits(own_mass / summary[&CYCLES] * 1e6);
+        let mass = words(own_mass, mass, "mg");
+        lines.line(format_args!("mass loss    {mass}; {rate} mg/Mc{measured}"));
         lines.line(format_args!(
             "max depth    {}",
             words(own_depth, depth, "mm")

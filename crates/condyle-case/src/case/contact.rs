@@ -73,7 +73,7 @@ settings_of! {
     ContactSettings {
         /// Coulomb coefficient of friction.
         friction: f64 = 0.07, in within(0.0, 2.0);
-        /// Sliding speed at which friction is nearly full: smaller is truer and slower.
+        /// Sliding speed at which friction is nearly full: smaller values are more accurate and slower.
         slip_tolerance_mm_per_s: f64 = 0.3, in within(1e-6, 1000.0);
         /// Search for the nodes that may touch; the results are the same, brute force is the slow reference.
         search: Search = Search::Coherent;

@@ -121,7 +121,7 @@ fn print_real(real: &Case, generic: &Case) {
     let under_2600_n = Updates::of(real, SECOND + 1, |test| press(test, AXIAL_FORCE_N));
     let evaluations = Evaluations::of(&under_2600_n, SECOND);
     row(
-        "one contact evaluation of it at 2600 N, as the march asks",
+        "one contact evaluation of it at 2600 N, with the accuracy of the march",
         15.0,
         evaluations.median_us(),
         "us",
@@ -140,7 +140,7 @@ fn print_real(real: &Case, generic: &Case) {
     );
     let in_gait = Updates::of(real, LAST + 1, |_| ());
     row(
-        "one under the gait's own force, as the march asks",
+        "one under the gait's own force, with the accuracy of the march",
         15.0,
         Evaluations::of(&in_gait, SECOND).median_us(),
         "us",
@@ -197,7 +197,7 @@ fn print_work(name: &str, case: &Case) {
 /// Columns of the table of work.
 const WORK: &str = "\
 | case | cycles solved | Newton iterations a cycle | contact evaluations a cycle | articulating nodes | \
-of them press, mean | instructions an evaluation | time of one, mean |
+pressing nodes, mean | instructions an evaluation | time of one, mean |
 | --- | ---: | ---: | ---: | ---: | ---: | ---: | ---: |";
 
 /// Nodes that press, averaged over the evaluations of a cycle.

@@ -50,7 +50,7 @@ pub(super) const KIND: WearLawKind = WearLawKind {
         },
         Parameter {
             name: "most_pressure_mpa",
-            about: "Where the wear factor stops to fall: higher pressures have the factor of this one.",
+            about: "Pressure at which the wear factor stops falling: higher pressures have the factor of this one.",
             default: 10.0,
             least: 0.0,
             most: 1000.0,
