@@ -9,8 +9,8 @@ use condyle_case::case::Assignment;
 use condyle_case::study::Study;
 use condyle_results::catalogue;
 use condyle_study::{
-    Plan, Shard, Store, StudyError, StudyEvent, StudyOptions, TestBench, TestResult, merge,
-    run_study, write_answers,
+    Plan, Shard, Store, StudyError, StudyEvent, StudyOptions, TestBench, TestOutputs, TestResult,
+    merge, run_study, write_answers,
 };
 use pyo3::prelude::*;
 
@@ -22,7 +22,7 @@ use crate::listener::Callback;
 #[derive(FromPyObject, IntoPyObject)]
 pub enum Found {
     Reason(String),
-    Outputs(Vec<f64>),
+    Outputs(Vec<f64>, String),
 }
 
 /// A checked study, and the bodies and caches that its tests share.
@@ -115,7 +115,12 @@ impl RawStudy {
             py.check_signals()?;
             let test = self.plan.row(row, None).map_err(errors::of_study)?;
             let found = py.detach(|| self.bench.run(&self.plan, &test));
-            Ok((row, found.map_or_else(Found::Reason, Found::Outputs)))
+            Ok((
+                row,
+                found.map_or_else(Found::Reason, |outputs| {
+                    Found::Outputs(outputs.values, outputs.doubts)
+                }),
+            ))
         });
         found.collect()
     }
@@ -168,10 +173,10 @@ impl RawHeldStudy {
     fn keep(&self, study: &RawStudy, found: Vec<(u64, Found)>) -> PyResult<()> {
         let tested = |(row, found): (u64, Found)| {
             let found: TestResult = match found {
-                Found::Outputs(outputs) if outputs.len() == catalogue::outputs().count() => {
-                    Ok(outputs)
+                Found::Outputs(values, doubts) if values.len() == catalogue::outputs().count() => {
+                    Ok(TestOutputs { values, doubts })
                 }
-                Found::Outputs(_) => {
+                Found::Outputs(..) => {
                     return Err(errors::bad_input(
                         "a worker returned another number of outputs than a test has",
                     ));

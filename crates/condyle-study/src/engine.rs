@@ -22,7 +22,7 @@ use condyle_results::{Summary, catalogue};
 
 use crate::{
     error::StudyError,
-    plan::{Plan, Shard, Test, TestResult},
+    plan::{Plan, Shard, Test, TestOutputs, TestResult},
     search::search,
     store::{DATABASE, Store},
 };
@@ -280,7 +280,12 @@ impl TestBench {
             let words = problem.map_or_else(|| error.to_string(), ToString::to_string);
             words.lines().next().unwrap_or_default().trim().to_owned()
         })?;
-        Ok(catalogue::outputs().map(|output| summary[output]).collect())
+        let doubts = summary.plausibility.iter();
+        let doubts: Vec<&str> = doubts.map(|doubt| doubt.check.as_str()).collect();
+        Ok(TestOutputs {
+            values: catalogue::outputs().map(|output| summary[output]).collect(),
+            doubts: doubts.join(" "),
+        })
     }
 
     pub(crate) fn summary(&self, case: &Case) -> Result<Summary, RunError> {

@@ -26,7 +26,7 @@ pub use crate::{
     engine::{Listener, Progress, StudyEvent, StudyOptions, TestBench, merge, run_study},
     error::StudyError,
     page::write_answers,
-    plan::{Plan, Shard, Test, TestResult},
+    plan::{Plan, Shard, Test, TestOutputs, TestResult},
     sensitivity::{Sensitivity, sensitivity},
     store::Store,
     uncertainty::{Uncertainty, uncertainty},

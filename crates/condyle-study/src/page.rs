@@ -43,15 +43,11 @@ pub fn write_answers(plan: &Plan, folder: &Path) -> Result<Answers, StudyError> 
         some => format!("{some} of them failed"),
     };
     let title = Some(answers.title.as_str()).filter(|title| !title.is_empty());
-    let lede = format!("{kept} tests of a {design} design; {end}.");
+    let doubts = answers.doubts().unwrap_or_default();
+    let lede = format!("{kept} tests of a {design} design; {end}. {doubts}");
+    let lede = lede.trim_end();
     let (tables, pictures) = (answers.tables(), pictures(&answers));
-    write_study_page(
-        folder,
-        title.unwrap_or("A study"),
-        &lede,
-        &tables,
-        &pictures,
-    )?;
+    write_study_page(folder, title.unwrap_or("A study"), lede, &tables, &pictures)?;
     Ok(answers)
 }
 

@@ -41,8 +41,17 @@ pub struct Test {
     pub values: Vec<Option<Level>>,
 }
 
-/// The outputs of a test in the order of [`catalogue::outputs`], or the reason why it failed.
-pub type TestResult = Result<Vec<f64>, String>;
+/// The outputs of a test that was done.
+#[derive(Clone, Debug, PartialEq)]
+pub struct TestOutputs {
+    /// Values in the order of [`catalogue::outputs`].
+    pub values: Vec<f64>,
+    /// Names of the plausibility checks that the test does not pass, separated by spaces; empty for a sound one.
+    pub doubts: String,
+}
+
+/// The outputs of a test, or the reason why it failed.
+pub type TestResult = Result<TestOutputs, String>;
 
 impl Plan {
     /// Reads the study at `path` and checks that its tests can be chosen.

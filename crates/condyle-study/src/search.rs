@@ -94,12 +94,12 @@ fn worth(plan: &Plan, keys: &OptimiseKeys, found: &TestResult) -> (f64, f64) {
     let beyond = |bound: &Bound| {
         // A limit of 0 is no scale; the smallest one avoids a division by zero.
         let scale = bound.most.or(bound.least).unwrap_or(1.0).abs().max(1e-300);
-        bound.excess(output_value(outputs, bound.output)) / scale
+        bound.excess(output_value(&outputs.values, bound.output)) / scale
     };
     let bounds = &plan.study().answers.bounds;
     (
         bounds.iter().map(beyond).sum(),
-        output_value(outputs, minimised),
+        output_value(&outputs.values, minimised),
     )
 }
 

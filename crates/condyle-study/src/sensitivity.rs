@@ -153,7 +153,7 @@ impl Changed {
         as_given: &Results,
     ) -> Self {
         let (found, not_run) = match found {
-            Ok(values) => (Some(results(&values)), None),
+            Ok(outputs) => (Some(results(&outputs.values)), None),
             Err(reason) => (None, Some(reason)),
         };
         let above_percent = found.as_ref().map(|found| {
@@ -216,6 +216,7 @@ impl Sensitivity {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::plan::TestOutputs;
 
     fn values(mass_loss_mg: f64) -> Vec<f64> {
         let value = |key: &str| match key {
@@ -232,7 +233,11 @@ mod tests {
     fn the_table_shows_changes_and_lists_those_without_effect_or_result() {
         let as_given = results(&values(80.0));
         let changed = |assumption, ran: Result<f64, &str>| {
-            let found = ran.map(values).map_err(str::to_owned);
+            let outputs = |mass_loss_mg| TestOutputs {
+                values: values(mass_loss_mg),
+                doubts: String::new(),
+            };
+            let found = ran.map(outputs).map_err(str::to_owned);
             Changed::new(assumption, "x 2".to_owned(), &[], found, &as_given)
         };
         let study = Sensitivity {

@@ -16,7 +16,7 @@ use rusqlite::{
 
 use crate::{
     error::StudyError,
-    plan::{Plan, Shard, Test, TestResult},
+    plan::{Plan, Shard, Test, TestOutputs, TestResult},
 };
 
 /// Name of the file in the study's folder.
@@ -231,7 +231,14 @@ impl Store {
             let values = (0..outputs.len()).map(|place| cells.get(place));
             let values: rusqlite::Result<Option<Vec<f64>>> = values.collect();
             let reason: Option<String> = cells.get(outputs.len())?;
-            Ok(values?.ok_or_else(|| reason.unwrap_or_default()))
+            let reason = reason.unwrap_or_default();
+            Ok(match values? {
+                Some(values) => Ok(TestOutputs {
+                    values,
+                    doubts: reason,
+                }),
+                None => Err(reason),
+            })
         })
     }
 
@@ -280,14 +287,16 @@ impl Store {
         self.checked(|one| Ok(one.query_row("SELECT count(*) FROM tests", [], count)? as u64))
     }
 
-    /// Returns the reasons of failed tests with their counts, the most frequent first.
-    pub(crate) fn reasons(&self) -> Result<Vec<(String, u64)>, StudyError> {
-        let query = "SELECT coalesce(reason, ''), count(*) AS many FROM tests WHERE status = 'failed' \
-                     GROUP BY reason ORDER BY many DESC, reason";
+    /// Returns the reasons of tests of a status, `failed` or doubtful ones that are `done`, with their counts, the most
+    /// frequent first.
+    pub(crate) fn reasons(&self, status: &str) -> Result<Vec<(String, u64)>, StudyError> {
+        let query = "SELECT coalesce(reason, ''), count(*) AS many FROM tests WHERE status = ?1 \
+                     AND (status = 'failed' OR reason IS NOT NULL) GROUP BY reason ORDER BY many DESC, reason";
         self.checked(|connection| {
             let mut statement = connection.prepare(query)?;
-            let reasons =
-                statement.query_map([], |row| Ok((row.get(0)?, row.get::<_, i64>(1)? as u64)))?;
+            let reasons = statement.query_map([status], |row| {
+                Ok((row.get(0)?, row.get::<_, i64>(1)? as u64))
+            })?;
             reasons.collect()
         })
     }
@@ -431,7 +440,8 @@ fn cells(plan: &Plan, test: &Test, result: &TestResult) -> Vec<Value> {
     let design = plan.study().alternatives.get(test.alternative);
     cells.extend(design.map(|design| text(&design.name)));
     cells.extend(match result {
-        Ok(_) => [text("done"), Value::Null],
+        Ok(outputs) if outputs.doubts.is_empty() => [text("done"), Value::Null],
+        Ok(outputs) => [text("done"), text(&outputs.doubts)],
         Err(reason) => [text("failed"), text(reason)],
     });
     let inputs = plan.study().inputs.iter().zip(&test.values);
@@ -446,7 +456,7 @@ fn cells(plan: &Plan, test: &Test, result: &TestResult) -> Vec<Value> {
     }));
     let (_, outputs) = plan.columns();
     cells.extend((0..outputs.len()).map(|place| {
-        let value = result.as_ref().ok().map(|values| values[place]);
+        let value = result.as_ref().ok().map(|outputs| outputs.values[place]);
         value
             .filter(|value| value.is_finite())
             .map_or(Value::Null, Value::Real)

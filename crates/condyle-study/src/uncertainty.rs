@@ -103,6 +103,8 @@ impl Scatter {
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Uncertainty {
     runs: usize,
+    /// The number of runs that do not pass a plausibility check.
+    doubtful: usize,
     /// The reasons of those that failed.
     not_run: Vec<String>,
     seed: u64,
@@ -222,7 +224,7 @@ impl Uncertainty {
         };
         let column = |output: &Scalar| -> Vec<f64> {
             done()
-                .map(|(_, values)| output_value(values, output))
+                .map(|(_, outputs)| output_value(&outputs.values, output))
                 .collect()
         };
         let share = |(place, scatter): (usize, &Scatter)| {
@@ -248,6 +250,9 @@ impl Uncertainty {
         };
         Self {
             runs: done().count(),
+            doubtful: done()
+                .filter(|(_, outputs)| !outputs.doubts.is_empty())
+                .count(),
             not_run: found
                 .iter()
                 .filter_map(|found| found.clone().err())
@@ -320,6 +325,12 @@ impl Uncertainty {
             "{} runs, seed {}: standard deviations are known to {known:.0} %.\n",
             self.runs, self.seed
         );
+        if self.doubtful > 0 {
+            text += &format!(
+                "{} of them are doubtful: run one with `condyle run` to see why.\n",
+                self.doubtful
+            );
+        }
         if let Some(reason) = self.not_run.first() {
             let count = self.not_run.len();
             text += &format!(

@@ -6,7 +6,7 @@ use std::fs;
 use crate::bench::{Bench, SMALL};
 
 /// A femur that rides over the rim of a flat dish; found among random designs.
-const ON_THE_RIM: &str = "\
+pub const ON_THE_RIM: &str = "\
 [femur]
 distal_radius_mm = 59.288
 posterior_radius_mm = 34.773

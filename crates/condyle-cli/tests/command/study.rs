@@ -5,7 +5,7 @@ use std::fs;
 
 use serde_json::Value;
 
-use crate::bench::Bench;
+use crate::{bench::Bench, plausibility::ON_THE_RIM};
 
 const TINY: &str = "\
 [insert]
@@ -141,6 +141,34 @@ fn tests_that_fail_are_rows_with_their_reasons() {
     );
     assert!(rows[1].contains("memory"), "{table}");
     assert_eq!(answers(&bench)["failed"][0]["tests"], 1);
+}
+
+#[test]
+fn doubts_travel_with_the_tests() {
+    let study = "case = \"case.toml\"\n[design]\nkind = \"rows\"\nfile = \"rows.csv\"\n";
+    let bench = Bench::with_case(ON_THE_RIM);
+    bench.write("study.toml", study);
+    bench.write("rows.csv", "contact.friction\n0.2\n0.25\n");
+    let said = bench.say(&["study", "study.toml", "--out", "out"]);
+    assert!(
+        said.out
+            .contains("2 of 2 tests are doubtful, most often by wear_at_rim"),
+        "{}",
+        said.out
+    );
+    let table = fs::read_to_string(bench.path("out/table.csv")).unwrap();
+    assert!(
+        table
+            .lines()
+            .skip(1)
+            .all(|row| row.contains(",done,wear_at_rim")),
+        "{table}"
+    );
+    assert_eq!(answers(&bench)["doubtful"][0]["tests"], 2);
+    let page = fs::read_to_string(bench.path("out/study.html")).unwrap();
+    assert!(page.contains("2 of 2 tests are doubtful"));
+    let said = bench.say(&["uncertainty", "case.toml", "--runs", "3"]);
+    assert!(said.out.contains("3 of them are doubtful"), "{}", said.out);
 }
 
 #[test]

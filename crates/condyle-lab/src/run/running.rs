@@ -169,7 +169,7 @@ impl<'a> Run<'a> {
             summary.prediction = self.prediction(summary.error.as_ref());
         }
         (summary.plausibility, summary.notes) =
-            crate::plausibility::warnings(&self.march, &summary);
+            crate::plausibility::warnings(&self.march, &summary, false);
         ControlFlow::Continue(summary)
     }
 
@@ -237,7 +237,9 @@ impl<'a> Run<'a> {
 /// Returns the summary of one of many runs that share bodies, without a hash of its inputs and without an error
 /// estimate.
 pub fn batch_run(case: &Case, cache: &Cache, bodies: &SharedBodies) -> Result<Summary, RunError> {
-    march_watched(case, cache, bodies, &mut |_| ()).map(|(_, summary)| summary)
+    let (march, mut summary) = march_watched(case, cache, bodies, &mut |_| ())?;
+    (summary.plausibility, summary.notes) = crate::plausibility::warnings(&march, &summary, true);
+    Ok(summary)
 }
 
 /// Returns the finished march of such a run, and its summary; `watch` receives the march before the first update and

@@ -27,7 +27,9 @@ pub struct Answers {
     pub(crate) design: &'static str,
     tests: u64,
     pub(crate) kept: u64,
-    pub(crate) failed: Vec<FailedTests>,
+    pub(crate) failed: Vec<TestsByReason>,
+    /// Sets of plausibility checks that tests do not pass.
+    pub(crate) doubtful: Vec<TestsByReason>,
     pub(crate) spreads: Vec<Spread>,
     pub(crate) effects: Vec<Effect>,
     pub(crate) elementary: Vec<Elementary>,
@@ -38,7 +40,7 @@ pub struct Answers {
 }
 
 #[derive(Clone, Debug, Serialize)]
-pub(crate) struct FailedTests {
+pub(crate) struct TestsByReason {
     reason: String,
     pub(crate) tests: u64,
 }
@@ -47,15 +49,19 @@ impl Answers {
     pub(crate) fn read(plan: &Plan, store: &Store) -> Result<Self, StudyError> {
         let study = plan.study();
         let data = Data::read(plan, store)?;
-        let failed = store.reasons()?.into_iter();
+        let counted = |status| -> Result<Vec<TestsByReason>, StudyError> {
+            let reasons = store.reasons(status)?.into_iter();
+            Ok(reasons
+                .map(|(reason, tests)| TestsByReason { reason, tests })
+                .collect())
+        };
         Ok(Self {
             title: study.title.clone(),
             design: study.design.word(),
             tests: plan.tests(),
             kept: store.count()?,
-            failed: failed
-                .map(|(reason, tests)| FailedTests { reason, tests })
-                .collect(),
+            failed: counted("failed")?,
+            doubtful: counted("done")?,
             spreads: data
                 .outputs
                 .iter()
@@ -92,6 +98,16 @@ impl Answers {
         largest_first(own.filter(|one| Some(one.output) == first), |one| one.total)
     }
 
+    /// Returns the number of doubtful tests and their most frequent doubts in a sentence; none if all are sound.
+    pub(crate) fn doubts(&self) -> Option<String> {
+        let most = &self.doubtful.first()?.reason;
+        let tests: u64 = self.doubtful.iter().map(|one| one.tests).sum();
+        let kept = self.kept;
+        Some(format!(
+            "{tests} of {kept} tests are doubtful, most often by {most}: see the column reason of table.csv.\n"
+        ))
+    }
+
     pub(crate) fn failed_tests(&self) -> u64 {
         self.failed.iter().map(|failed| failed.tests).sum()
     }
@@ -107,6 +123,7 @@ impl Answers {
                 format!("{failed} of {kept} tests failed, {own} of them because of: {reason}\n");
             parts.insert(1, failed);
         }
+        parts.extend(self.doubts());
         if let Some(best) = &self.best {
             let (generations, step) = (best.generations, percent(best.step));
             let end = format!("after {generations} generations its steps are {step} of the ranges");
