@@ -43,7 +43,7 @@ class StudyResult:
 
     @property
     def table(self) -> Mapping[str, NDArray[Any]]:
-        """The columns: ``row``, ``status``, ``reason`` (of a failed or doubtful test), and every input and output, with one value per test.
+        """The columns: ``row``, ``status``, ``reason`` of failure or doubt, and every input and output, with one value per test.
 
         Numbers are float64, NaN where a test failed; ``row`` is int64, and words are objects.
         """
