@@ -61,6 +61,8 @@ coronal_radius_mm = {:?}
 spacing_mm = {:?}
 [contact]
 slip_tolerance_mm_per_s = {:?}
+[wear]
+law = \"archard\"
 ",
         38.0 * factor,
         22.0 * factor,

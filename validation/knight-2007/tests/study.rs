@@ -12,6 +12,8 @@ layers = 1
 cycles = 400_000
 [time]
 increments = 20
+[wear]
+law = \"archard\"
 ";
 
 const DISPLACEMENT: &str = "\
