@@ -11,7 +11,6 @@ from pathlib import Path
 
 import emcee
 import numpy as np
-
 from model import DEGREES_OF_FREEDOM, KNEES, Fit, Power, Saturating, log_laboratory, row_is_ratio, tests
 
 sys.path.append(str(Path(__file__).parents[1] / "published"))
@@ -162,7 +161,9 @@ def main():
         if form_of is Saturating:
             draws_path.write_text(draws(samples), encoding="utf-8")
             picture_path.write_text(picture(rows, found), encoding="utf-8")
-            page += table_of_constants(fit, samples) + "\n" + table_of_tests(rows, found) + "\n" + table_of_coverage(rows, found)
+            page += (
+                table_of_constants(fit, samples) + "\n" + table_of_tests(rows, found) + "\n" + table_of_coverage(rows, found)
+            )
     page += "\n" + head(["form", "log predictive density, each laboratory left out", "deviation between knees, log"])
     page += "".join(line(each) for each in evidence)
     page_path.write_text(page, encoding="utf-8")

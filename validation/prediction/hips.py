@@ -92,7 +92,9 @@ class Hip:
         e = approach_mm(force_n, radius_mm)
         self.pressure = STIFFNESS_MPA_PER_MM * np.maximum(e[:, None] * (load @ points.T) - CLEARANCE_MM, 0.0)
         step = head[1:] @ np.swapaxes(head[:-1], 1, 2)
-        spin = np.stack([step[:, 2, 1] - step[:, 1, 2], step[:, 0, 2] - step[:, 2, 0], step[:, 1, 0] - step[:, 0, 1]], axis=1) / 2
+        spin = (
+            np.stack([step[:, 2, 1] - step[:, 1, 2], step[:, 0, 2] - step[:, 2, 0], step[:, 1, 0] - step[:, 0, 1]], axis=1) / 2
+        )
         slip = radius_mm * np.cross(spin[:, None, :], points[None])
         # Two directions in the surface at every point.
         east = np.cross([0.0, 1.0, 0.0], points)

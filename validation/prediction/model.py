@@ -10,9 +10,8 @@ import math
 from pathlib import Path
 
 import numpy as np
-from scipy.interpolate import CubicSpline, RectBivariateSpline
-
 from hips import Hip
+from scipy.interpolate import CubicSpline, RectBivariateSpline
 
 CIRCLE_FACTOR = 1.63e-6
 REFERENCE_MPA = 1.1
@@ -106,8 +105,8 @@ class Form:
 class Saturating(Form):
     """g = f + (1 - f) CS / (CS + c), over g(0.5)."""
 
-    names = ["log_saturation", "line_factor_ratio"]
-    start = [math.log(0.03), 0.03]
+    names = ("log_saturation", "line_factor_ratio")
+    start = (math.log(0.03), 0.03)
 
     @staticmethod
     def log_prior(log_saturation, line):
@@ -147,8 +146,8 @@ class Saturating(Form):
 class Power(Form):
     """g = (CS / 0.5)^b."""
 
-    names = ["cross_shear_exponent"]
-    start = [0.3]
+    names = ("cross_shear_exponent",)
+    start = (0.3,)
 
     @staticmethod
     def log_prior(power):
@@ -187,7 +186,9 @@ class Fit:
         inside = (exponent > 0) & (exponent < 1)
         clipped = np.clip(exponent, 0, 1)
         # Literature: -0.84 and -0.65 (Barbour 1997, Vassiliou and Unsworth 2004, quoted from memory).
-        prior = -0.5 * ((exponent - 0.65) / 0.2) ** 2 - 0.5 * ((log_tau - math.log(0.4)) / 0.5) ** 2 - 0.5 * (log_factor / 0.5) ** 2
+        prior = (
+            -0.5 * ((exponent - 0.65) / 0.2) ** 2 - 0.5 * ((log_tau - math.log(0.4)) / 0.5) ** 2 - 0.5 * (log_factor / 0.5) ** 2
+        )
         prior = np.where(inside, prior + self.form.log_prior(*constants), -np.inf)
         with np.errstate(invalid="ignore", divide="ignore", over="ignore"):
             logs = self.form.log_predictions(log_factor, clipped, constants)

@@ -14,7 +14,8 @@ from pathlib import Path
 from model import CIRCLE_FACTOR, EXPONENTS, KNEES, POWERS, SATURATIONS
 
 sys.path.append(str(Path(__file__).parents[1] / "published"))
-from knees import KNEES as CASES, Runs
+from knees import KNEES as CASES
+from knees import Runs
 
 # A saturation far above any cross-shear leaves a plain power.
 UNSATURATED = 1000.0
