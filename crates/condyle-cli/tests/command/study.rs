@@ -134,7 +134,7 @@ fn tests_that_fail_are_rows_with_their_reasons() {
     );
     let table = table(&bench, &[]);
     let rows: Vec<&str> = table.lines().skip(1).collect();
-    assert!(rows[0].starts_with("0,done,,4,2,"), "{table}");
+    assert!(rows[0].starts_with("0,done,single_update,4,2,"), "{table}");
     assert!(
         rows[1].starts_with("1,failed,") && rows[1].ends_with(",,,,"),
         "{table}"
@@ -164,7 +164,10 @@ fn doubts_travel_with_the_tests() {
             .all(|row| row.contains(",done,wear_at_rim")),
         "{table}"
     );
-    assert_eq!(answers(&bench)["doubtful"][0]["tests"], 2);
+    let answers = answers(&bench);
+    let doubtful = answers["doubtful"].as_array().unwrap().iter();
+    let tests: u64 = doubtful.map(|one| one["tests"].as_u64().unwrap()).sum();
+    assert_eq!(tests, 2);
     let page = fs::read_to_string(bench.path("out/study.html")).unwrap();
     assert!(page.contains("2 of 2 tests are doubtful"));
     let said = bench.say(&["uncertainty", "case.toml", "--runs", "3"]);
