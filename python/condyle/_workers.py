@@ -38,7 +38,7 @@ class _Task(NamedTuple):
     tries: int
 
 
-def run_rows(source: Source, rows: list[int]) -> list[tuple[int, list[float] | str]]:
+def run_rows(source: Source, rows: list[int]) -> list[tuple[int, tuple[list[float], str] | str]]:
     """Runs the tests of ``rows``; called in the worker."""
     return _study_of(source).run_rows(rows)
 
@@ -106,7 +106,7 @@ def _run_all(
             future.cancel()
 
 
-def _found(future: Future[Any], task: _Task) -> list[tuple[int, list[float] | str]] | None:
+def _found(future: Future[Any], task: _Task) -> list[tuple[int, tuple[list[float], str] | str]] | None:
     """The results of a task; ``None`` if its worker died and the task is to be repeated."""
     from concurrent.futures import BrokenExecutor
 

@@ -20,7 +20,7 @@ class NodeCycle(NamedTuple):
     >>> def archard(cycle: condyle.NodeCycle) -> float:
     ...     return 2.64e-7 * cycle.pressure_slip_mpa_mm / 1000.0
     >>> case = condyle.Case.from_dict({"march": {"updates": 1}, "accuracy": {"estimate": False}})
-    >>> own = condyle.run(case.replace({"wear.wear_factor_mm3_per_nm": 2.64e-7}), wear_law=archard)
+    >>> own = condyle.run(case, wear_law=archard)
     >>> own.wear_laws[0]["law"]
     'python'
     """

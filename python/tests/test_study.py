@@ -234,7 +234,7 @@ def made_up(
         places[row] = [(float(changes[key]) - low) / (high - low) for key, (low, high) in ranges.items()]
     found = function(places)
     held = study._raw.hold(os.fspath(out))
-    held.keep(study._raw, [(row, [float(value)] + [0.0] * 9) for row, value in enumerate(found)])
+    held.keep(study._raw, [(row, ([float(value)] + [0.0] * 9, "")) for row, value in enumerate(found)])
     held.close()
     return places, found, study.answered(out).answers
 

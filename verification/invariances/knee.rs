@@ -169,6 +169,8 @@ updates = 2
 [time]
 increments = 100
 force_tolerance_n = 1e-7
+[wear]
+law = \"archard\"
 ";
 
 /// What a knee has worn.

@@ -61,8 +61,6 @@ coronal_radius_mm = {:?}
 spacing_mm = {:?}
 [contact]
 slip_tolerance_mm_per_s = {:?}
-[wear]
-law = \"archard\"
 ",
         38.0 * factor,
         22.0 * factor,
