@@ -1,4 +1,4 @@
-//! What is printed before the numbers of a run: the prediction, wear by every law, and each of several activities.
+//! Lines printed before the numbers of a run: the prediction, wear by every law, and each of several activities.
 
 use condyle_results::{
     ActivitySummary, Interval, LawWear, Prediction, Summary,

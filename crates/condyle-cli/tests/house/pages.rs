@@ -116,12 +116,13 @@ fn rust_of_the_book_is_compiled() {
     }
 }
 
-/// A key of references.bib: small letters, a year, perhaps a letter.
+/// A key of references.bib: small letters, a year, perhaps a letter; not the name of a case, such as knight-2007.
 fn is_key(word: &str) -> bool {
     let year = word.trim_start_matches(|c: char| c.is_ascii_lowercase() || c == '-');
     let digits: String = year.chars().take_while(char::is_ascii_digit).collect();
     let letter = &year[digits.len()..];
     year.len() < word.len()
+        && !word.ends_with(&format!("-{year}"))
         && digits.len() == 4
         && letter.len() <= 1
         && letter.chars().all(|c| c.is_ascii_lowercase())

@@ -13,7 +13,7 @@ pub struct Hole {
     pub z_mm: f64,
     /// Area seen from above, mm2.
     pub area_mm2: f64,
-    /// Whether the hole goes through the insert; otherwise the surface is a wall, or the insert is too thin.
+    /// True if the hole goes through the insert; otherwise the surface is a wall, or the insert is too thin.
     pub goes_through: bool,
     /// The line around it, places (x, z), mm.
     pub outline_mm: Vec<[f64; 2]>,

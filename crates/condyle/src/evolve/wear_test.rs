@@ -32,7 +32,7 @@ pub struct WearTest {
     pub wear: Arc<dyn WearLaw>,
     /// Laws that are evaluated for comparison only.
     pub comparison_laws: Vec<NamedLaw>,
-    /// Whether the wear by every law of powers is summed too, for the uncertainty of the law.
+    /// True if the wear by every law of powers is summed too, for the uncertainty of the law.
     pub law_family: bool,
     /// The law of creep, if the insert creeps.
     pub creep: Option<LeePienkowski>,
