@@ -165,9 +165,9 @@ impl<'a> Run<'a> {
                 error.wall_s = clock.spent.as_secs_f64();
                 error
             });
-            // The error of the discretisation widens the interval.
-            summary.prediction = self.prediction(summary.error.as_ref());
         }
+        // After the error of the discretisation, which widens the interval.
+        summary.prediction = self.prediction(summary.error.as_ref());
         (summary.plausibility, summary.notes) =
             crate::plausibility::warnings(&self.march, &summary, false);
         ControlFlow::Continue(summary)
@@ -186,7 +186,6 @@ impl<'a> Run<'a> {
         summary.warnings = self.warnings.iter().map(ToString::to_string).collect();
         summary.neutral_pose = Some(NeutralPose::of(&self.march, self.case.heading.side));
         summary.wear_laws = self.wear_laws();
-        summary.prediction = self.prediction(None);
         summary
     }
 
@@ -265,7 +264,8 @@ pub(crate) fn march_watched(
         Ok(())
     };
     let _ = run.march_on(&mut keep, ignore)?;
-    let summary = run.summary_without_error();
+    let mut summary = run.summary_without_error();
+    summary.prediction = run.prediction(None);
     Ok((run.march, summary))
 }
 
