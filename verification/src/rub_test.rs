@@ -44,6 +44,7 @@ impl Rub {
             femur: Arc::new(self.femur),
             flexion_axis_mm: (0.0, 0.0),
             start_mm: (0.0, 0.0),
+            start_height_mm: None,
             insert: Arc::new(self.insert),
             contact: Arc::new(self.contact),
             activities: vec![Activity::only("rub", machine(drives, Vec::new()))],

@@ -39,16 +39,16 @@ type Row = (&'static str, String);
 
 fn rows(preview: &Preview) -> Vec<Row> {
     let (at_rest, expected) = (&preview.at_rest, &preview.expected);
-    let flexed = format!(
-        "flexion {:.1} deg, VV {:.2} deg",
-        at_rest.flexion_deg, at_rest.vv_deg
-    );
+    let flexed = at_rest.flexion_deg.zip(at_rest.vv_deg);
+    let flexed = flexed.map(|(flexion, vv)| format!(", flexion {flexion:.1} deg, VV {vv:.2} deg"));
+    let load_n = at_rest.axial_force_n;
+    let load = match at_rest.medial_load_share {
+        Some(share) => format!("{:.0} % of {load_n:.0} N medial", 100.0 * share),
+        None => format!("{load_n:.0} N"),
+    };
     let pressed = format!(
-        "{:.0} mm2, up to {:.1} MPa, {:.0} % of {:.0} N medial",
-        at_rest.contact_area_mm2,
-        at_rest.peak_pressure_mpa,
-        100.0 * at_rest.medial_load_share,
-        at_rest.axial_force_n
+        "{:.0} mm2, up to {:.1} MPa, {load}",
+        at_rest.contact_area_mm2, at_rest.peak_pressure_mpa
     );
     let duration = match expected.time_s {
         seconds if seconds < 100.0 => format!("{seconds:.1} s"),
@@ -58,12 +58,11 @@ fn rows(preview: &Preview) -> Vec<Row> {
         "about {duration} and {:.0} MB of {:.0} MB",
         expected.memory_mb, expected.memory_allowed_mb
     );
-    let axis = from_origin(at_rest.flexion_axis_mm);
+    let settled = from_origin(at_rest.flexion_axis_mm) + &flexed.unwrap_or_default();
     let mut rows = rows_of_body("femur", &preview.femur);
     rows.extend(rows_of_insert(&preview.insert));
     rows.extend([
-        ("settled", flexed),
-        ("  flexion axis from origin", axis),
+        ("settled, from the origin", settled),
         ("  contact", pressed),
         ("a run needs", needs),
     ]);

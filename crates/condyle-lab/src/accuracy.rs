@@ -32,7 +32,7 @@ use condyle_results::{
     ErrorEstimate, Part, QuantityErrors, Summary,
     catalogue::{
         AP_RANGE_MM, IE_RANGE_DEG, MASS_LOSS_MG, MAX_DEPTH_MM, PEAK_CONTACT_AREA_CYCLE,
-        PEAK_CONTACT_AREA_MM2, PEAK_PRESSURE_CYCLE, PEAK_PRESSURE_MPA,
+        PEAK_CONTACT_AREA_MM2, PEAK_PRESSURE_CYCLE, PEAK_PRESSURE_MPA, Scalar,
     },
     joint_range,
 };
@@ -88,14 +88,16 @@ impl PartEstimate {
         let of_peak = |cycle: f64, first, later| if cycle > 0.0 { later } else { first };
         let pressure = of_peak(summary[&PEAK_PRESSURE_CYCLE], pressure, later_pressure);
         let area = of_peak(summary[&PEAK_CONTACT_AREA_CYCLE], area, later_area);
-        vec![
+        let errors: QuantityErrors = vec![
             (&MASS_LOSS_MG, mass),
             (&MAX_DEPTH_MM, depth),
             (&PEAK_PRESSURE_MPA, pressure),
             (&PEAK_CONTACT_AREA_MM2, area),
             (&AP_RANGE_MM, ap),
             (&IE_RANGE_DEG, ie),
-        ]
+        ];
+        let is_result = |(scalar, _): &(&Scalar, _)| summary.get(scalar).is_some();
+        errors.into_iter().filter(is_result).collect()
     }
 }
 

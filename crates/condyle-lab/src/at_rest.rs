@@ -17,14 +17,17 @@ use serde::Serialize;
 pub struct AtRest {
     /// The middle of the flexion axis: anterior, superior and lateral of the insert's origin, mm.
     pub flexion_axis_mm: [f64; 3],
-    /// Flexion at the start of the cycle, degrees.
-    pub flexion_deg: f64,
-    /// Varus of the insert, degrees.
-    pub vv_deg: f64,
+    /// Flexion at the start of the cycle, degrees; only of a knee.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub flexion_deg: Option<f64>,
+    /// Varus of the insert, degrees; only of a knee.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub vv_deg: Option<f64>,
     /// Load that the contact carries, N.
     pub axial_force_n: f64,
-    /// Part of it on the medial side.
-    pub medial_load_share: f64,
+    /// Part of it on the medial side; only of a knee.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub medial_load_share: Option<f64>,
     /// Area in contact, mm2.
     pub contact_area_mm2: f64,
     /// Highest pressure, MPa.
@@ -69,13 +72,16 @@ impl AtRest {
         let femur = march.femur();
         let is_near = |place: &&Vec3| femur.gap_mm(&motion.pose.to_femur(place)) < NEAR_MM;
         let (x, y) = test.flexion_axis_mm;
-        let in_files = |joint: JointIndex| KNEE.joint(joint).kind().in_files(joint.of(&positions));
+        let is_knee = *test.machine().mechanism == KNEE;
+        let in_files = |joint: JointIndex| {
+            is_knee.then(|| KNEE.joint(joint).kind().in_files(joint.of(&positions)))
+        };
         Self {
             flexion_axis_mm: motion.pose.to_insert(&Vec3::new(x, y, 0.0)).into(),
             flexion_deg: in_files(FLEXION),
             vv_deg: in_files(VV),
             axial_force_n,
-            medial_load_share: medial_n / axial_force_n,
+            medial_load_share: is_knee.then(|| medial_n / axial_force_n),
             contact_area_mm2: sum(|node| node.covered_mm2),
             peak_pressure_mpa: result.peak_pressure_mpa,
             pose: motion.pose,

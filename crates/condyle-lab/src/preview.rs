@@ -10,7 +10,7 @@ use condyle::{
     contact::{ContactMemory, ContactModel},
     evolve::March,
     geometry::{Dishes, TriangleMesh, bounds},
-    machine::knee::{IE, VV},
+    machine::knee::{IE, KNEE, VV},
     spatial::{Pose, RelativeMotion},
 };
 use condyle_case::{
@@ -121,7 +121,7 @@ impl Preview {
             femur: &femur,
             insert: &insert,
             contact: &contact,
-            axes: Some(axes(march, at_rest, side)),
+            axes: (*march.test().machine().mechanism == KNEE).then(|| axes(march, at_rest, side)),
             caption: &format!(
                 "Red: in contact at rest under {:.0} N, {:.0} mm2, up to {:.1} MPa.",
                 at_rest.axial_force_n, at_rest.contact_area_mm2, at_rest.peak_pressure_mpa

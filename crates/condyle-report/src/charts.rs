@@ -3,37 +3,38 @@
 //! Every chart is declared here once, as a [`Panel`]. Page and pictures draw it as SVG; the scene carries it to the page's
 //! program, which draws it with a cursor and zoom.
 
-use std::sync::LazyLock;
+use std::{borrow::Cow, sync::LazyLock};
 
-use condyle_results::{CycleQuantity, JointKind, KNEE};
+use condyle_results::{CycleQuantity, JointKind, KNEE, split_unit};
 
 use crate::figure::{Axis, Curve, MEASURED, Panel};
-use crate::number::{cycles_in_words, printed_unit, significant};
+use crate::number::{cycles_in_words, first_letter_large, printed_unit, significant};
 use crate::results::{Results, Table};
 
 const CYCLE_SIZE: (f64, f64) = (340.0, 206.0);
 const TEST_SIZE: (f64, f64) = (480.0, 232.0);
 
 /// A column of kinematics.csv as it is plotted.
+#[derive(Clone)]
 pub(crate) struct Channel {
-    pub(crate) column: &'static str,
-    pub(crate) title: &'static str,
+    pub(crate) column: Cow<'static, str>,
+    pub(crate) title: Cow<'static, str>,
     pub(crate) unit: &'static str,
     positive: &'static str,
     from_zero: bool,
     pub(crate) min_span: f64,
 }
 
-/// The columns of kinematics.csv, in their order.
-pub(crate) static CHANNELS: LazyLock<Vec<Channel>> =
+/// The columns of kinematics.csv of a knee, in their order.
+static CHANNELS: LazyLock<Vec<Channel>> =
     LazyLock::new(|| KNEE.columns.iter().copied().map(Channel::of).collect());
 
 impl Channel {
     fn of(quantity: CycleQuantity) -> Self {
         let column = KNEE.column(quantity);
         let from_zero = |title, unit, min_span| Self {
-            column,
-            title,
+            column: Cow::Borrowed(column),
+            title: Cow::Borrowed(title),
             unit,
             positive: "",
             from_zero: true,
@@ -62,15 +63,37 @@ impl Channel {
         }
     }
 
-    pub(crate) fn find(column: &str) -> Option<&'static Self> {
-        CHANNELS.iter().find(|channel| channel.column == column)
+    /// Returns the column called `column`: one of a knee, or of another machine a joint whose name and unit it is.
+    pub(crate) fn find(column: &str) -> Option<Self> {
+        let known = CHANNELS.iter().find(|channel| channel.column == column);
+        known.cloned().or_else(|| {
+            let (name, unit) = split_unit(column);
+            let (unit, min_span) = match unit {
+                Some("deg") => ("degrees", 1.0),
+                Some("mm") => ("mm", 0.1),
+                _ => return None,
+            };
+            Some(Self {
+                column: Cow::Owned(column.to_owned()),
+                title: Cow::Owned(first_letter_large(&name.replace('_', " "))),
+                unit,
+                positive: "",
+                from_zero: false,
+                min_span,
+            })
+        })
+    }
+
+    /// Returns the columns of a table of a cycle, in their order.
+    pub(crate) fn all_of(table: &Table) -> impl Iterator<Item = Self> + '_ {
+        table.names().iter().filter_map(|name| Self::find(name))
     }
 
     pub(crate) fn panel(&self, curves: Vec<Curve>) -> Panel {
         Panel {
             id: format!("k-{}", self.column),
             group: "cycle".to_owned(),
-            title: self.title.to_owned(),
+            title: self.title.clone().into_owned(),
             unit: self.unit.to_owned(),
             positive: self.positive,
             x: Axis::PERCENT,
@@ -169,8 +192,8 @@ pub(crate) fn cycle_of(table: &Table, activity: &str) -> Vec<Panel> {
         ],
         None => vec![("last", "cycle".to_owned())],
     };
-    let panel = |channel: &Channel| {
-        let values = table.column(channel.column)?;
+    let panel = |channel: Channel| {
+        let values = table.column(&channel.column)?;
         let curve = |(cycle, (class, name)): (&Cycle, &(&'static str, String))| {
             let rows = cycle.rows.iter();
             let points = rows.map(|&row| (percent[row], values[row])).collect();
@@ -184,7 +207,7 @@ pub(crate) fn cycle_of(table: &Table, activity: &str) -> Vec<Panel> {
             ..panel
         })
     };
-    CHANNELS.iter().filter_map(panel).collect()
+    Channel::all_of(table).filter_map(panel).collect()
 }
 
 /// The columns of wear.csv that are plotted, with their titles.

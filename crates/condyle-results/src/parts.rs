@@ -283,7 +283,12 @@ pub struct NeutralPose {
 
 impl NeutralPose {
     /// Returns the neutral pose of a march, in a knee of the given side.
-    pub fn of(march: &March, side: Side) -> Self {
+    pub fn of(march: &March, side: Side) -> Option<Self> {
+        let is_knee = *march.test().machine().mechanism == KNEE;
+        is_knee.then(|| Self::of_knee(march, side))
+    }
+
+    fn of_knee(march: &March, side: Side) -> Self {
         let pose = pose_on_side(&march.neutral_pose(), side);
         let settled = &march.state().settled;
         let turned = |joint| KNEE.joint(joint).kind().in_files(joint.of(settled));

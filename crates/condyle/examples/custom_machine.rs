@@ -10,7 +10,7 @@ use std::{error::Error, f64::consts::PI, sync::Arc};
 use condyle::{
     machine::{
         Axis, Channel, ChannelUnit, CycleQuantity, JointDescription, JointIndex, Loading,
-        MovedBody, Region, Settling,
+        MovedBody, Region, Settling, TestedJoint,
     },
     prelude::*,
 };
@@ -75,7 +75,8 @@ const PRESS: JointIndex = JointIndex::ALL[5];
 
 static BALL_ON_DISC: Mechanism = Mechanism {
     joints: JOINTS,
-    in_files: [FORE, ASIDE, PRESS, TURN, TILT, ROLL],
+    tests: TestedJoint::Specimen,
+    in_files: &[FORE, ASIDE, PRESS, TURN, TILT, ROLL],
     channels: &[&LOAD],
     columns: &[
         CycleQuantity::Position(FORE),
@@ -137,6 +138,7 @@ fn ball_on_disc() -> Result<WearTest, Box<dyn Error>> {
         femur: Arc::new(FemoralSurface::sphere(24.0)),
         flexion_axis_mm: (0.0, 0.0),
         start_mm: (0.0, 0.0),
+        start_height_mm: None,
         insert: Arc::new(flat_insert((24.0, 24.0), 9.0, meshing)?),
         contact: Arc::new(Foundation::new(pressure, 0.05, 1.0)),
         activities: vec![Activity::only("orbit", machine)],

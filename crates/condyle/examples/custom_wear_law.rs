@@ -79,6 +79,7 @@ fn ball_on_plate(wear: Arc<dyn WearLaw>) -> Result<WearTest, Box<dyn Error>> {
         femur: Arc::new(FemoralSurface::sphere(24.0)),
         flexion_axis_mm: (0.0, 0.0),
         start_mm: (0.0, 0.0),
+        start_height_mm: None,
         insert: Arc::new(flat_insert((32.0, 24.0), 9.0, meshing)?),
         contact: Arc::new(Foundation::new(pressure, 0.07, 1.0)),
         activities: vec![Activity::only("rub", machine)],

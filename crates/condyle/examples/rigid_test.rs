@@ -29,6 +29,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         femur: Arc::new(FemoralSurface::Generic(femur)),
         flexion_axis_mm: (0.0, 0.0),
         start_mm: (0.0, 0.0),
+        start_height_mm: None,
         insert: Arc::new(insert),
         contact: Arc::new(contact),
         activities: vec![Activity::only("walking", walking()?)],

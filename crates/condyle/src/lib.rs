@@ -35,6 +35,7 @@
 //!     femur: Arc::new(FemoralSurface::Generic(femur)),
 //!     flexion_axis_mm: (0.0, 0.0),
 //!     start_mm: (0.0, 0.0),
+//!     start_height_mm: None,
 //!     insert: Arc::new(insert),
 //!     contact: Arc::new(Foundation::new(PressureLaw::Linear { modulus_mpa }, 0.07, 1.0)),
 //!     activities: vec![Activity::only("walking", machine)],

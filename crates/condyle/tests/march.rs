@@ -122,6 +122,7 @@ fn test() -> WearTest {
         femur: Arc::new(FemoralSurface::sphere(24.0)),
         flexion_axis_mm: (0.0, 0.0),
         start_mm: (0.0, 0.0),
+        start_height_mm: None,
         insert: Arc::new(flat_insert((32.0, 24.0), 9.0, meshing).unwrap()),
         contact: Arc::new(foundation()),
         activities: vec![Activity::only("rub", machine(3.0))],

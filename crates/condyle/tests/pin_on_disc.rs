@@ -9,7 +9,7 @@ use condyle::{
         Axis, Chain, Channel, ChannelUnit, Cycle, CycleError, CycleQuantity, Drive, Integration,
         Interpolation, JointDescription, JointIndex, JointKind, Knot, Loading, Machine,
         MachineState, Mechanism, MovedBody, Region, Settling, Simulator, SolverCounters,
-        TimeSettings, Waveform, settle,
+        TestedJoint, TimeSettings, Waveform, settle,
     },
     spatial::{Mat6, RelativeMotion, Wrench, WrenchByTwist},
 };
@@ -79,8 +79,9 @@ const FORE: JointIndex = JointIndex::ALL[4];
 const ASIDE: JointIndex = JointIndex::ALL[5];
 
 static PIN_ON_DISC: Mechanism = Mechanism {
+    tests: TestedJoint::Specimen,
     joints: JOINTS,
-    in_files: [FORE, ASIDE, TURN, PRESS, TILT, ROLL],
+    in_files: &[FORE, ASIDE, TURN, PRESS, TILT, ROLL],
     channels: &[&LOAD],
     columns: &[
         CycleQuantity::Position(FORE),

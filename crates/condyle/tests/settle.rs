@@ -51,6 +51,7 @@ fn test(edge_mm: f64) -> WearTest {
         femur: Arc::new(FemoralSurface::Generic(GenericFemur::new(femur))),
         flexion_axis_mm: (0.0, 0.0),
         start_mm: (low_point_mm.x, 0.0),
+        start_height_mm: None,
         insert: Arc::new(insert),
         contact: Arc::new(Foundation::new(
             PressureLaw::Linear { modulus_mpa },

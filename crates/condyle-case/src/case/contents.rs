@@ -12,7 +12,7 @@ use super::build::BuildWarning;
 use super::contact::Contact;
 use super::femur::{Femur, FemurShape};
 use super::frame::{Heading, check_axes};
-use super::insert::Insert;
+use super::insert::{Insert, InsertShape};
 use super::machine::Machine;
 use super::material::{Creep, Material};
 use super::renamed::renamed;
@@ -91,6 +91,36 @@ impl Case {
         }
         if let Some(axes) = self.insert.axes() {
             check_axes(axes, side, root.part("insert").value_span("axes"), log);
+        }
+        self.check_cup(&root.part("insert"), log);
+    }
+
+    /// Reports a cup on a machine for knees, without a head, or smaller than its head.
+    fn check_cup(&self, insert: &Section<'_>, log: &mut Log<'_>) {
+        let InsertShape::Cup(cup) = &self.insert.shape else {
+            return;
+        };
+        let mut report = |key: &str, message: String, advice: &str| {
+            log.problem(insert.value_span(key), Fault::new(message, advice));
+        };
+        if self.machine.rig.is_none() {
+            let message = "a cup needs a machine for hips, and this case has a knee simulator";
+            let advice = "write [machine] preset = \"iso-14242-1-like\"";
+            report("shape", message.to_owned(), advice);
+        }
+        let radius_mm = cup.shape.radius_mm;
+        match &self.femur.shape {
+            FemurShape::Sphere(head) if head.radius_mm < radius_mm => {}
+            FemurShape::Sphere(head) => report(
+                "radius_mm",
+                format!("the cup of radius {radius_mm} mm is not larger than its head of {} mm", head.radius_mm),
+                "the radius of the cup is that of the head and the radial clearance, 0.02 to 0.4 mm",
+            ),
+            _ => report(
+                "shape",
+                "a cup needs a head".to_owned(),
+                "write [femur] shape = \"sphere\" with its radius_mm",
+            ),
         }
     }
 

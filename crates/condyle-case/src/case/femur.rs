@@ -22,7 +22,7 @@ settings! {
         start_mm: Option<[f64; 2]> = None, in within(-100.0, 100.0);
     }
 
-    /// One sphere, for verification.
+    /// One sphere, such as the head of a hip.
     SphereFemur {
         /// Radius of the sphere.
         radius_mm: f64 = 24.0, in within(1.0, 500.0);
@@ -77,10 +77,12 @@ variants! {
         Generic(GenericFemur) = "generic",
         /// A triangle mesh.
         Mesh(MeshFemur) = "mesh",
-        /// One sphere, for verification.
+        /// One sphere, such as the head of a hip.
         Sphere(SphereFemur) = "sphere",
         /// One cylinder about the medio-lateral axis, for verification.
         Cylinder(CylinderFemur) = "cylinder",
+        /// A plane that faces down.
+        Plane = "plane",
     }
 }
 
@@ -89,7 +91,10 @@ impl Femur {
     pub fn file(&self) -> Option<&DataFile> {
         match &self.shape {
             FemurShape::Mesh(mesh) => Some(&mesh.file),
-            FemurShape::Generic(_) | FemurShape::Sphere(_) | FemurShape::Cylinder(_) => None,
+            FemurShape::Generic(_)
+            | FemurShape::Sphere(_)
+            | FemurShape::Cylinder(_)
+            | FemurShape::Plane => None,
         }
     }
 
@@ -97,7 +102,10 @@ impl Femur {
     pub(super) fn file_mut(&mut self) -> Option<&mut DataFile> {
         match &mut self.shape {
             FemurShape::Mesh(mesh) => Some(&mut mesh.file),
-            FemurShape::Generic(_) | FemurShape::Sphere(_) | FemurShape::Cylinder(_) => None,
+            FemurShape::Generic(_)
+            | FemurShape::Sphere(_)
+            | FemurShape::Cylinder(_)
+            | FemurShape::Plane => None,
         }
     }
 

@@ -1,6 +1,6 @@
 //! The tibial insert.
 
-use condyle::geometry::{GenericInsertShape, Meshing};
+use condyle::geometry::{CupShape, GenericInsertShape, Meshing};
 
 use super::frame::{Axes, LengthUnit};
 use crate::config::*;
@@ -56,6 +56,28 @@ settings! {
         backside: Option<String> = None;
     }
 
+    /// The hemispherical cup of a hip around the origin, below its head.
+    CupInsert {
+        /// Its dimensions and mounting.
+        [flat] shape: CupShape;
+        /// Edge of a hexahedron along the surface.
+        edge_mm: f64 = 1.0, in within(0.1, 10.0);
+        /// Hexahedra through the thickness.
+        layers: u64 = 6, in within(1.0, 40.0);
+    }
+
+    /// A cylindrical pin with its flat end up.
+    PinInsert {
+        /// Radius of the pin.
+        radius_mm: f64 = 4.5, in within(0.5, 50.0);
+        /// Height of the pin.
+        thickness_mm: f64 = 10.0, in within(1.0, 50.0);
+        /// Edge of a hexahedron along the surface.
+        edge_mm: f64 = 0.5, in within(0.05, 10.0);
+        /// Hexahedra through the height.
+        layers: u64 = 6, in within(1.0, 40.0);
+    }
+
     /// A flat block, for verification.
     FlatInsert {
         /// Thickness.
@@ -80,6 +102,19 @@ settings_of! {
     }
 }
 
+settings_of! {
+    CupShape {
+        /// Inner radius of the cup: that of the head and the radial clearance.
+        radius_mm: f64 = Self::default().radius_mm, in within(5.0, 100.0);
+        /// Thickness of the wall.
+        thickness_mm: f64 = Self::default().thickness_mm, in within(1.0, 50.0);
+        /// Angle between the plane of the opening and the plane across the load, in the frontal plane: on a machine about 10 to 15 degrees less than in a patient.
+        inclination_deg: f64 = Self::default().inclination_deg, in within(0.0, 90.0);
+        /// Rotation of the inclined cup about the load, + turns its pole from medial to anterior.
+        anteversion_deg: f64 = Self::default().anteversion_deg, in within(-90.0, 90.0);
+    }
+}
+
 variants! {
     /// Shape of the tibial insert.
     InsertShape by
@@ -91,6 +126,10 @@ variants! {
         Mesh(MeshInsert) = "mesh",
         /// A mesh of hexahedra.
         Hexahedra(HexahedralInsert) = "hexahedra",
+        /// The cup of a hip.
+        Cup(CupInsert) = "cup",
+        /// A pin.
+        Pin(PinInsert) = "pin",
         /// A flat block, for verification.
         Flat(FlatInsert) = "flat",
     }
@@ -101,7 +140,10 @@ impl Insert {
         match &self.shape {
             InsertShape::Mesh(mesh) => Some(&mesh.axes),
             InsertShape::Hexahedra(mesh) => Some(&mesh.axes),
-            InsertShape::Generic(_) | InsertShape::Flat(_) => None,
+            InsertShape::Generic(_)
+            | InsertShape::Cup(_)
+            | InsertShape::Pin(_)
+            | InsertShape::Flat(_) => None,
         }
     }
 
@@ -110,7 +152,10 @@ impl Insert {
         match &self.shape {
             InsertShape::Mesh(mesh) => Some(&mesh.file),
             InsertShape::Hexahedra(mesh) => Some(&mesh.file),
-            InsertShape::Generic(_) | InsertShape::Flat(_) => None,
+            InsertShape::Generic(_)
+            | InsertShape::Cup(_)
+            | InsertShape::Pin(_)
+            | InsertShape::Flat(_) => None,
         }
     }
 
@@ -119,13 +164,21 @@ impl Insert {
         match &mut self.shape {
             InsertShape::Mesh(mesh) => Some(&mut mesh.file),
             InsertShape::Hexahedra(mesh) => Some(&mut mesh.file),
-            InsertShape::Generic(_) | InsertShape::Flat(_) => None,
+            InsertShape::Generic(_)
+            | InsertShape::Cup(_)
+            | InsertShape::Pin(_)
+            | InsertShape::Flat(_) => None,
         }
     }
 
     fn check(&self, section: &Section<'_>, log: &mut Log<'_>) {
-        if matches!(self.shape, InsertShape::Flat(_)) && self.placement.is_turned() {
-            section.report_idle(&InsertPlacement::keys(), "another shape than \"flat\"", log);
+        let has_placement = matches!(
+            self.shape,
+            InsertShape::Generic(_) | InsertShape::Mesh(_) | InsertShape::Hexahedra(_)
+        );
+        if !has_placement && self.placement.is_turned() {
+            let needs = "shape = \"generic\", \"mesh\" or \"hexahedra\"";
+            section.report_idle(&InsertPlacement::keys(), needs, log);
         }
     }
 }

@@ -39,7 +39,8 @@ impl Case {
         error: &PlacementError,
         warnings: &[BuildWarning],
     ) -> Problems {
-        let is_held = self.machine.freedoms.get(knee::IS).drive == DriveWord::Locked;
+        let is_held = self.machine.rig.is_none()
+            && self.machine.freedoms.get(knee::IS).drive == DriveWord::Locked;
         let location: KeyLocation = match error {
             PlacementError::DeepOverlap { .. } if is_held => {
                 ("machine.freedoms.is", &["locked_at_mm", "drive"])

@@ -3,6 +3,9 @@
 use condyle::machine::knee::{self, KNEE};
 use condyle::machine::{Channel, JointDescription, JointIndex, JointKind, Waveform};
 
+use toml::de::DeTable;
+
+use super::rig::Rig;
 use super::waveform::{self, waveform_items};
 use crate::config::*;
 
@@ -13,6 +16,12 @@ choice! {
         StanmoreForce = "stanmore-force",
         /// AP and IE moved along waveforms.
         StanmoreDisplacement = "stanmore-displacement",
+        /// Hip: three rotations of the head, load fixed to the cup.
+        Iso142421Like = "iso-14242-1-like",
+        /// Hip: head on a block of 23 degrees that orbits.
+        Iso142423Like = "iso-14242-3-like",
+        /// Pin on a disc along a circle.
+        PinOnDisc = "pin-on-disc",
     }
 
     /// Meaning of a stated spring stiffness.
@@ -39,6 +48,8 @@ settings! {
     MachineSettings {
         /// The simulator to start from: it determines which freedoms are loaded and which are prescribed.
         preset: Preset = Preset::StanmoreForce;
+        /// Machine file in place of a preset, relative to the case file; [its keys](machines.md) may also stand here.
+        file: Option<DataFile> = None;
         /// Gait cycles a second.
         frequency_hz: f64 = 1.1, in within(0.001, 100.0);
         /// Added to the flexion waveform: -7 sets the femur 7 degrees towards hyperextension.
@@ -81,6 +92,8 @@ pub struct Machine {
     pub freedoms: Freedoms,
     /// The waveforms that drive the freedoms.
     pub waveforms: Waveforms,
+    /// A machine by joints, in place of the knee simulator that all other fields describe.
+    pub rig: Option<Rig>,
 }
 
 /// The settings of a freedom.
@@ -109,11 +122,22 @@ pub struct Waveforms {
 }
 
 impl Preset {
+    /// Returns the word and the text of the machine file, unless the preset is the knee simulator.
+    fn rig(self) -> Option<(&'static str, &'static str)> {
+        let text = match self {
+            Self::StanmoreForce | Self::StanmoreDisplacement => return None,
+            Self::Iso142421Like => include_str!("../../machines/iso-14242-1-like.toml"),
+            Self::Iso142423Like => include_str!("../../machines/iso-14242-3-like.toml"),
+            Self::PinOnDisc => include_str!("../../machines/pin-on-disc.toml"),
+        };
+        Some((self.word(), text))
+    }
+
     /// Returns the drive of a freedom for which the case gives none.
     fn drive(self, freedom: &str) -> DriveWord {
         let prescribed: &[&str] = match self {
-            Self::StanmoreForce => &["flexion"],
             Self::StanmoreDisplacement => &["ap", "ie", "flexion"],
+            _ => &["flexion"],
         };
         if prescribed.contains(&freedom) {
             DriveWord::Prescribed
@@ -284,7 +308,7 @@ impl Freedoms {
     /// Returns every freedom with its joint, in the order they are written.
     fn in_files(&self) -> impl Iterator<Item = (&'static JointDescription, &Freedom)> {
         joints_in_files()
-            .zip(KNEE.in_files)
+            .zip(KNEE.in_files.iter().copied())
             .map(|(joint, index)| (joint, self.get(index)))
     }
 
@@ -310,7 +334,7 @@ impl Freedoms {
 }
 
 fn joints_in_files() -> impl Iterator<Item = &'static JointDescription> {
-    KNEE.in_files.into_iter().map(|index| KNEE.joint(index))
+    KNEE.in_files.iter().map(|&index| KNEE.joint(index))
 }
 
 impl Waveforms {
@@ -390,7 +414,31 @@ impl Machine {
             springs: springs?,
             freedoms,
             waveforms: waveforms?,
+            rig: None,
         })
+    }
+
+    /// Returns the machine by joints that `section` describes, if it describes one; the outer `None` if it has problems.
+    fn rig_in(section: &Section<'_>, log: &mut Log<'_>) -> Option<Option<Rig>> {
+        let mut discarded = Log::new(&log.source, log.base);
+        let settings = MachineSettings::read(section, &mut discarded);
+        let (preset, file) = settings.map_or((None, None), |settings| {
+            (settings.preset.rig(), settings.file)
+        });
+        let rig = Rig::read_from(section, preset, file.as_ref(), log)?;
+        if rig.is_some() {
+            let own = MachineSettings::keys();
+            let shared = ["preset", "file", "frequency_hz"];
+            let own = own.iter().map(|key| key.name).filter(|key| !shared.contains(key));
+            let channels = KNEE.channels.iter().map(|channel| channel.name);
+            for key in own.chain(["springs", "freedoms"]).chain(channels) {
+                if section.value(key).is_some() {
+                    let needs = "a knee simulator, such as preset = \"stanmore-force\"";
+                    log.problem(section.key_span(key), idle(key, needs));
+                }
+            }
+        }
+        Some(rig)
     }
 }
 
@@ -403,6 +451,12 @@ impl Settings for Machine {
         ));
         items.push(Freedoms::item());
         items.extend(waveform_items(true));
+        let known: Vec<&str> = items.iter().filter_map(Item::name).collect();
+        let of_rig = Rig::items().into_iter();
+        // Those that both have, such as the frequency, are described once; a case needs none of the others.
+        let of_rig = of_rig.filter(|item| !item.name().is_some_and(|name| known.contains(&name)));
+        let optional: Vec<Item> = of_rig.map(Item::optional).collect();
+        items.extend(optional);
         items
     }
 
@@ -413,6 +467,22 @@ impl Settings for Machine {
     /// Reads the machine of a case; if the case has activities, they have the waveforms.
     fn read_in(root: &Section<'_>, name: &'static str, log: &mut Log<'_>) -> Option<Self> {
         let section = root.table(name, log);
+        if let Some(rig) = Self::rig_in(&section, log)? {
+            if root.value("activity").is_some() {
+                let fault = Fault::new(
+                    "a machine by joints has its waveforms in its joints, and no activities",
+                    "remove [[activity]]",
+                );
+                log.problem(root.key_span("activity"), fault);
+            }
+            // Without keys the simulator of knees has its defaults, and no problems.
+            let (none, mut discarded) = (DeTable::new(), Log::new(&log.source, log.base));
+            let unused = Self::read(&Section::root(&none), &mut discarded)?;
+            return Some(Self {
+                rig: Some(rig),
+                ..unused
+            });
+        }
         if root.value("activity").is_none() {
             return Self::read(&section, log);
         }
@@ -432,6 +502,9 @@ impl Settings for Machine {
     }
 
     fn write(&self, out: &mut Writer) {
+        if let Some(rig) = &self.rig {
+            return rig.write(out);
+        }
         self.settings.write(out);
         self.springs.write_in("springs", out);
         self.waveforms.write(out);

@@ -19,6 +19,7 @@ mod material;
 mod pressure_table;
 mod reader;
 mod renamed;
+mod rig;
 mod run_options;
 #[cfg(test)]
 mod tests;
@@ -28,7 +29,7 @@ mod wear;
 // Only some of these items are public; the others are for the files of this module.
 pub use self::{
     activity::*, assignment::*, build::*, contact::*, contents::*, femur::*, frame::*, insert::*,
-    machine::*, material::*, pressure_table::*, reader::*, run_options::*, wear::*,
+    machine::*, material::*, pressure_table::*, reader::*, rig::*, run_options::*, wear::*,
 };
 
 #[cfg(feature = "file-system")]

@@ -123,23 +123,31 @@ pub(super) fn waveform_items(in_book: bool) -> Vec<Item> {
         } else {
             String::new()
         };
-        let mut items = WaveformSource::items();
-        for item in &mut items {
-            if let Item::Key(key) = item
-                && key.name == "waveform"
-            {
-                key.kind = Kind::Word(words_of(channel));
-            }
-        }
-        let knots = knots_key(channel);
-        let one_of = Item::OneOf(vec!["waveform", "file", knots.name]);
-        items.extend([Item::Key(knots), one_of, Item::Needs("column", "file")]);
         Item::Table(TableItem {
             page: Some(page),
-            ..TableItem::new(channel.name, channel.about, items)
+            ..table(&[channel])
         })
     };
     KNEE.channels.iter().enumerate().map(table).collect()
+}
+
+/// Describes the table of a waveform that is one of `channels`, which share a name.
+pub(super) fn table(channels: &[&'static Channel]) -> TableItem {
+    let first = channels[0];
+    let mut items = WaveformSource::items();
+    for item in &mut items {
+        if let Item::Key(key) = item
+            && key.name == "waveform"
+        {
+            key.kind = Kind::Word(words_of(first));
+        }
+    }
+    let knots: Vec<Key> = channels.iter().map(|channel| knots_key(channel)).collect();
+    let mut ways = vec!["waveform", "file"];
+    ways.extend(knots.iter().map(|key| key.name));
+    items.extend(knots.into_iter().map(Item::Key));
+    items.extend([Item::OneOf(ways), Item::Needs("column", "file")]);
+    TableItem::new(first.name, first.about, items)
 }
 
 fn page() -> String {
@@ -226,9 +234,9 @@ pub(super) fn read(
 }
 
 /// Writes the table of a waveform, by the default name or by its points.
-pub(super) fn write(channel: &Channel, waveform: &Waveform, out: &mut Writer) {
+pub(super) fn write(channel: &'static Channel, waveform: &Waveform, out: &mut Writer) {
     out.comment(channel.about);
-    if out.names_waveforms {
+    if out.names_waveforms && words_of(channel).contains(&DEFAULT_WAVEFORM) {
         let name = format!("waveform = {DEFAULT_WAVEFORM:?}");
         out.line(&name, "Or file and column, or knots.");
         return;

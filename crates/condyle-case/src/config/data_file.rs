@@ -64,6 +64,11 @@ impl DataFile {
         self.files.as_ref()
     }
 
+    /// Returns the files that it is read from, shared with it.
+    pub(crate) fn shared_files(&self) -> &Arc<dyn Files> {
+        &self.files
+    }
+
     /// Returns its path, absolute on a disk.
     pub fn path(&self) -> &Path {
         &self.path

@@ -121,6 +121,14 @@ impl Choices {
 }
 
 impl Item {
+    /// Returns the entry as one that may be left out.
+    pub fn optional(mut self) -> Self {
+        if let Self::Key(key) = &mut self {
+            key.silent = WhereSilent::LeftOut;
+        }
+        self
+    }
+
     pub fn name(&self) -> Option<&'static str> {
         match self {
             Self::Key(key) => Some(key.name),

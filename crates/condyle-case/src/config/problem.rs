@@ -160,6 +160,11 @@ impl<'a> Log<'a> {
             .push(Problem::at(&self.source, (span, fault), key));
     }
 
+    /// Adds the problems of a file that this one names.
+    pub(crate) fn extend(&mut self, problems: Problems) {
+        self.problems.extend(problems.problems);
+    }
+
     /// Returns what was read from `source`, a file that this one names, or adds its problems.
     pub(crate) fn noted<T>(&mut self, source: &Source, read: Result<T, Vec<Placed>>) -> Option<T> {
         read.map_err(|all| {

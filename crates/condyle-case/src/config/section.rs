@@ -56,7 +56,7 @@ impl<'a> Section<'a> {
         }
     }
 
-    /// Returns the tables of the list `name` at the top of the file, or reports a value of another type.
+    /// Returns the tables of the list `name` in this one, or reports a value of another type.
     pub(crate) fn list(&self, name: &str, log: &mut Log<'_>) -> Option<Vec<Self>> {
         let Some(value) = self.value(name) else {
             return Some(Vec::new());
@@ -64,7 +64,7 @@ impl<'a> Section<'a> {
         let items = value.get_ref().as_array().map_or(0, |items| items.len());
         let tables = self.tables(name);
         if items == 0 || tables.len() < items {
-            let wanted = format!("tables, each headed [[{name}]]");
+            let wanted = format!("tables, each headed [[{}]]", self.part(name).path);
             let fault = type_fault(name, &wanted, type_name(value.get_ref()));
             log.problem(self.key_span(name), fault);
             return None;
@@ -83,7 +83,7 @@ impl<'a> Section<'a> {
         };
         let table = |item: &'a Spanned<DeValue<'a>>| {
             Some(Self {
-                path: name.to_owned(),
+                path: self.part(name).path,
                 is_of_list: true,
                 table: Some(item.get_ref().as_table()?),
                 span: item.span(),

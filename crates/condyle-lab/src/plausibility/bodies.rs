@@ -1,7 +1,7 @@
 //! Checks of the places where an insert wears and of the pressures that it bears.
 
 use condyle::{
-    machine::{Chain, knee::KNEE},
+    machine::Chain,
     spatial::Pose,
 };
 use condyle_results::{
@@ -213,7 +213,7 @@ fn beyond(finished: &Finished<'_>, cycle: &SolvedCycle<'_>) -> Vec<Beyond> {
         .step_by(every)
         .map(|row| chain.at(&row.positions).pose)
         .collect();
-    let sides = KNEE.regions.iter().enumerate();
+    let sides = machine.mechanism.regions.iter().enumerate();
     let of_side = |(side, region): (usize, &condyle::machine::Region)| {
         let at_rim = looked_at
             .iter()

@@ -9,6 +9,7 @@ use condyle_results::{PlausibilityWarning, joint_range};
 use super::finished::{Finished, SolvedCycle, warning};
 
 /// A load of the machine, and the accuracy with which it must be reached.
+#[derive(Clone, Copy)]
 struct Applied {
     joint: JointIndex,
     name: &'static str,
@@ -53,11 +54,17 @@ struct Missed {
 }
 
 pub(crate) fn not_reached(finished: &Finished<'_>) -> Vec<PlausibilityWarning> {
-    let missed = APPLIED.iter().filter_map(|applied| {
+    let machine = finished.march.test().machine();
+    let pressing = machine.pressing_joint().map(|joint| Applied {
+        joint,
+        ..APPLIED[0]
+    });
+    let of_knee = if *machine.mechanism == KNEE { &APPLIED[1..] } else { &[] };
+    let missed = pressing.iter().chain(of_knee).filter_map(|applied| {
         let cycles = finished.cycles();
         let missed = cycles.filter_map(|cycle| missed(finished.machine(&cycle), &cycle, applied));
         let worst = missed.max_by(|a, b| a.percent.total_cmp(&b.percent))?;
-        let (per_unit, unit) = match KNEE.joint(applied.joint).kind() {
+        let (per_unit, unit) = match machine.mechanism.joint(applied.joint).kind() {
             JointKind::Rotation => (1000.0, "N m"),
             JointKind::Translation => (1.0, "N"),
         };
@@ -113,7 +120,7 @@ fn missing(
     waveform: &Waveform,
 ) -> f64 {
     // Contact alone balances the axial joint, so that the part that it does not carry is missed.
-    if index == IS {
+    if machine.pressing_joint() == Some(index) {
         return load(waveform, &rows[row]).abs() - rows[row].axial_force_n;
     }
     let (count, joint) = (rows.len(), machine.joint(index));
@@ -193,6 +200,9 @@ const MAX_LIFTED_PERCENT: f64 = 5.0;
 
 /// Warns of large ranges of the freedoms: that of the first or the last cycle, whichever is larger.
 pub(crate) fn ranges(finished: &Finished<'_>) -> Vec<PlausibilityWarning> {
+    if *finished.march.test().machine().mechanism != KNEE {
+        return Vec::new();
+    }
     let beyond = MOST.iter().filter_map(|&limit| range(finished, limit));
     beyond.collect()
 }
@@ -217,6 +227,9 @@ fn range(finished: &Finished<'_>, (joint, most): MostMotion) -> Option<Plausibil
 
 /// Warns if one side carries no load while the joint is loaded.
 pub(crate) fn lift_off(finished: &Finished<'_>) -> Option<PlausibilityWarning> {
+    if finished.march.test().machine().mechanism.regions.is_empty() {
+        return None;
+    }
     let lifted = finished
         .cycles()
         .map(|cycle| (lifted_percent(&cycle), cycle.name));

@@ -5,7 +5,7 @@ use std::path::Path;
 use condyle::{
     evolve::{March, WearTest},
     geometry::FemoralSurface,
-    machine::{Drive, knee::IS},
+    machine::Drive,
 };
 use condyle_case::{
     cache::Cache,
@@ -152,7 +152,9 @@ fn memory_mb_touching(case: &Case, march: &March, nodes_touched: f64, nodes_near
 
 /// Returns the mean of the axial force over a cycle, N; 0 without a waveform of axial force.
 pub(crate) fn mean_load_n(march: &March) -> f64 {
-    let Drive::Loaded(load) = &march.test().machine().joint(IS).drive else {
+    let machine = march.test().machine();
+    let pressing = machine.pressing_joint().map(|index| &machine.joint(index).drive);
+    let Some(Drive::Loaded(load)) = pressing else {
         return 0.0;
     };
     let looked_at = (0..LOOKED_AT).map(|part| part as f64 / LOOKED_AT as f64);

@@ -184,7 +184,7 @@ impl<'a> Run<'a> {
             Summary::new(&self.march, facts).expect("a march that is done has an update");
         summary.inputs_blake3.clone_from(&self.inputs_blake3);
         summary.warnings = self.warnings.iter().map(ToString::to_string).collect();
-        summary.neutral_pose = Some(NeutralPose::of(&self.march, self.case.heading.side));
+        summary.neutral_pose = NeutralPose::of(&self.march, self.case.heading.side);
         summary.wear_laws = self.wear_laws();
         summary
     }

@@ -24,6 +24,17 @@ pub struct TooManyNodes {
     pub max: u32,
 }
 
+impl TooManyNodes {
+    /// Rejects columns of `layers` hexahedra whose nodes cannot be numbered.
+    pub(super) fn check(columns: f64, layers: usize) -> Result<(), Self> {
+        let (nodes, max) = (columns * (layers as f64 + 1.0), MAX_NODES);
+        if nodes > f64::from(max) {
+            return Err(Self { nodes, max });
+        }
+        Ok(())
+    }
+}
+
 /// Fineness of the mesh of a body.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Meshing {
@@ -90,11 +101,7 @@ impl ColumnGrid {
         let (low, high) = (low.into(), high.into());
         let size = [high[0] - low[0], high[1] - low[1]];
         let [nx, nz] = size.map(|length| (length / edge_mm).round().max(1.0));
-        let nodes = (nx + 1.0) * (nz + 1.0) * (layers as f64 + 1.0);
-        if nodes > f64::from(MAX_NODES) {
-            let max = MAX_NODES;
-            return Err(TooManyNodes { nodes, max });
-        }
+        TooManyNodes::check((nx + 1.0) * (nz + 1.0), layers)?;
         Ok(Self {
             origin_mm: low.into(),
             step_mm: Place::new(size[0] / nx, size[1] / nz),

@@ -11,6 +11,7 @@
 //! # Ok::<(), condyle_mesh::columns::ColumnError>(())
 //! ```
 
+mod disc;
 mod footprint;
 mod grid;
 mod holes;
@@ -29,6 +30,7 @@ use self::{
 use super::triangle_mesh::TriangleMesh;
 
 pub use self::{
+    disc::disc_plan,
     grid::{Column, ColumnGrid, ColumnMesh, Meshing, Place, Plan, TooManyNodes},
     holes::Hole,
 };

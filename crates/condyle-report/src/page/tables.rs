@@ -6,7 +6,7 @@ use super::numbers::unit_of;
 use super::sentences::{not_estimated, reached};
 use condyle_results::{ErrorParts, Part, Side, catalogue::VOLUME_LOSS_MM3};
 
-use crate::charts::{CHANNELS, first_and_last};
+use crate::charts::{Channel, first_and_last};
 use crate::number::{first_letter_large, fixed, significant};
 use crate::results::{Region, Results, SurfaceFields};
 
@@ -129,8 +129,8 @@ pub(super) fn ranges(results: &Results) -> Vec<Value> {
         return Vec::new();
     };
     let ends = first_and_last(table);
-    let rows = CHANNELS.iter().filter_map(|channel| {
-        let values = table.column(channel.column)?;
+    let rows = Channel::all_of(table).filter_map(|channel| {
+        let values = table.column(&channel.column)?;
         let by_value = |a: &usize, b: &usize| values[*a].total_cmp(&values[*b]);
         let ends = ends.iter().map(|cycle| {
             let rows = cycle.rows.iter().copied();

@@ -308,9 +308,9 @@ fn numbers(first: &Summary, second: &Summary) -> Vec<NumberDifference> {
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct CurveDifference {
     /// Name of the column of `kinematics.csv`.
-    pub column: &'static str,
+    pub column: String,
     /// Its name in words.
-    pub title: &'static str,
+    pub title: String,
     /// Its unit.
     pub unit: &'static str,
     /// The cycle: "first" or "last".
@@ -354,8 +354,8 @@ fn curve(one: &Table, two: &Table, cycle: &'static str, name: &str) -> Option<Cu
     let values = || here.iter().map(|point| point.1);
     let range = values().fold(f64::NEG_INFINITY, f64::max) - values().fold(f64::INFINITY, f64::min);
     (rms > 0.0).then(|| CurveDifference {
-        column: channel.column,
-        title: channel.title,
+        column: channel.column.into_owned(),
+        title: channel.title.into_owned(),
         unit: channel.unit,
         cycle,
         rms,

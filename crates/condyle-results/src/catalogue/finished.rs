@@ -2,25 +2,8 @@
 
 use condyle::{
     evolve::{March, MarchState, UpdateRecord},
-    machine::{CycleRow, knee::KNEE},
+    machine::{CycleRow, TestedJoint, knee::KNEE},
 };
-
-/// A joint replacement whose tests condyle runs.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[non_exhaustive]
-pub enum Joint {
-    /// A total knee.
-    Knee,
-}
-
-impl Joint {
-    /// The joint's name in files.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Knee => "knee",
-        }
-    }
-}
 
 /// Properties of a run that its march does not have.
 #[derive(Clone, Copy, Debug, Default)]
@@ -63,8 +46,10 @@ impl<'a> FinishedRun<'a> {
     }
 
     /// The joint; none of another mechanism.
-    pub fn joint(&self) -> Option<Joint> {
-        (*self.march.test().machine().mechanism == KNEE).then_some(Joint::Knee)
+    pub fn joint(&self) -> Option<TestedJoint> {
+        let mechanism = self.march.test().machine().mechanism;
+        // The results of knees are those of the joints of the simulator of knees.
+        (mechanism.tests != TestedJoint::Knee || *mechanism == KNEE).then_some(mechanism.tests)
     }
 
     /// The state of the march.

@@ -17,7 +17,7 @@ mod finished;
 mod part;
 mod scalar;
 
-pub use finished::{FinishedRun, Joint, RunFacts};
+pub use finished::{FinishedRun, RunFacts};
 pub use part::{PARTS, Part, PartKind};
 pub use scalar::{ErrorMethod, Prominence, Scalar, Section};
 
@@ -26,6 +26,7 @@ scalar::sections! {
     contact,
     below_surface,
     motion,
+    hip,
     computation,
 }
 
@@ -65,6 +66,8 @@ pub fn output(key: &str) -> Option<&'static Scalar> {
 mod tests {
     use std::collections::BTreeSet;
 
+    use condyle::machine::TestedJoint;
+
     use super::*;
 
     #[test]
@@ -85,8 +88,8 @@ mod tests {
 
     #[test]
     fn a_hip_has_wear_and_no_range_of_ap() {
-        assert!(MASS_LOSS_MG.applies_to(None) && !AP_RANGE_MM.applies_to(None));
-        assert!(AP_RANGE_MM.applies_to(Some(Joint::Knee)));
+        assert!(MASS_LOSS_MG.applies_to(None) && !AP_RANGE_MM.applies_to(Some(TestedJoint::Hip)));
+        assert!(AP_RANGE_MM.applies_to(Some(TestedJoint::Knee)));
     }
 
     #[test]

@@ -2,7 +2,9 @@
 
 use condyle::parameter::split_unit;
 
-use super::finished::{FinishedRun, Joint};
+use condyle::machine::TestedJoint;
+
+use super::finished::FinishedRun;
 
 /// The places that show a number in addition to `summary.json`, the report's list and the Python and TypeScript types.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -68,7 +70,7 @@ pub struct Scalar {
     /// The way in which its error is found.
     pub error: ErrorMethod,
     /// The only joints that have it; empty for all.
-    pub joints: &'static [Joint],
+    pub joints: &'static [TestedJoint],
     /// True of a whole number.
     pub is_count: bool,
     /// True of a part of one, which is shown in %.
@@ -180,7 +182,13 @@ impl Scalar {
 
     /// Of the knee only.
     pub const fn of_knee(mut self) -> Self {
-        self.joints = &[Joint::Knee];
+        self.joints = &[TestedJoint::Knee];
+        self
+    }
+
+    /// Only hips have it.
+    pub const fn of_hip(mut self) -> Self {
+        self.joints = &[TestedJoint::Hip];
         self
     }
 
@@ -259,7 +267,7 @@ impl Scalar {
     }
 
     /// Returns whether tests of a joint have it; none is a joint that is not in the list.
-    pub fn applies_to(&self, joint: Option<Joint>) -> bool {
+    pub fn applies_to(&self, joint: Option<TestedJoint>) -> bool {
         self.joints.is_empty() || joint.is_some_and(|joint| self.joints.contains(&joint))
     }
 }

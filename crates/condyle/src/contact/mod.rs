@@ -36,5 +36,6 @@ pub use model::{
     Response, Settled, StateField, Tangent, TouchedNode,
 };
 pub use pressure_law::{
-    PressureLaw, PressureTable, PressureTableError, confined_modulus, softening_modulus,
+    PressureLaw, PressureTable, PressureTableError, confined_modulus, shell_modulus,
+    softening_modulus,
 };

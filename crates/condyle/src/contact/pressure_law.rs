@@ -55,6 +55,24 @@ pub fn confined_modulus(youngs_modulus_mpa: f64, poissons_ratio: f64) -> f64 {
     (1.0 - v) * youngs_modulus_mpa / ((1.0 + v) * (1.0 - 2.0 * v))
 }
 
+/// Returns the modulus of a spherical shell bonded to a rigid outer sphere whose inside is displaced evenly, MPa: the
+/// pressure per displacement, times the thickness, as [`confined_modulus`] of a flat layer.
+///
+/// $K = \frac{E h}{R (r - 1)} \left(\frac{1}{1 - 2 \nu} + \frac{2 r}{1 + \nu}\right)$ with
+/// $r = (1 + h/R)^3$, the form of Bartel et al. 1985 for the cup of a hip; a nearly incompressible shell is softer than a
+/// flat layer, since it is longer around outside than inside.
+pub fn shell_modulus(
+    youngs_modulus_mpa: f64,
+    poissons_ratio: f64,
+    radius_mm: f64,
+    thickness_mm: f64,
+) -> f64 {
+    let v = poissons_ratio;
+    let r = ((radius_mm + thickness_mm) / radius_mm).powi(3);
+    let shape = 1.0 / (1.0 - 2.0 * v) + 2.0 * r / (1.0 + v);
+    youngs_modulus_mpa * thickness_mm * shape / (radius_mm * (r - 1.0))
+}
+
 /// Returns the modulus at zero pressure, MPa, of a confined layer whose material follows the uniaxial curve
 /// $\epsilon = \tfrac{1}{2} \epsilon_0 (\sigma/\sigma_0 + (\sigma/\sigma_0)^3)$:
 /// [`confined_modulus`] of $E = 2 \sigma_0/\epsilon_0$.

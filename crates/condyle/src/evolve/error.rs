@@ -159,7 +159,7 @@ const SLID_OFF_MM: f64 = 20.0;
 impl PlacementError {
     pub(super) fn not_settled(machine: &Machine, failed: &NotSettled) -> Self {
         let mechanism = machine.mechanism;
-        let in_files = mechanism.in_files.into_iter();
+        let in_files = mechanism.in_files.iter().copied();
         let zeroed = in_files.filter(|&index| mechanism.joint(index).is_zeroed);
         let shift = |index| (mechanism.joint(index).symbol, index.of(&failed.positions));
         let shifts_mm: Vec<(&str, f64)> = zeroed.map(shift).collect();

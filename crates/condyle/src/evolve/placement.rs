@@ -29,7 +29,8 @@ pub(super) fn place(
         .at(&driven(test))
         .pose;
     let start_mm = test.start_mm;
-    let lowered = lowered(bodies.femur, bodies.surface, flexed);
+    let height_mm = test.start_height_mm.map(|height_mm| height_mm - axis_y);
+    let lowered = lowered(bodies.femur, bodies.surface, flexed, height_mm);
     let lowered = lowered.ok_or(PlacementError::Apart { start_mm })?;
     // A slight overclosure, so that the first evaluation has a stiffness.
     let down = lowered.translation.y - flexed.translation.y - FIRST_OVERCLOSURE_MM;
@@ -62,16 +63,22 @@ fn driven(test: &WearTest) -> [f64; 6] {
     })
 }
 
-/// Returns the pose lowered from far above until the first node touches; none if the femur passes the insert.
+/// Returns the pose lowered from a height, or from far above, until the first node touches; none if the femur passes the
+/// insert.
 ///
 /// The gap is a lower bound of the distance, so a step by the smallest gap cannot skip a touch.
-fn lowered(femur: &FemoralSurface, surface: &ArticulatingSurface, pose: Pose) -> Option<Pose> {
+fn lowered(
+    femur: &FemoralSurface,
+    surface: &ArticulatingSurface,
+    pose: Pose,
+    height_mm: Option<f64>,
+) -> Option<Pose> {
     const TOUCH_MM: f64 = 1e-4;
     let (low, high) = surface.height_range_mm();
     let reach = femur.reach_mm();
     let mut pose = pose;
-    // There no part of the femur can reach the insert.
-    pose.translation.y = high + reach;
+    // Far above, no part of the femur can reach the insert.
+    pose.translation.y = height_mm.unwrap_or(high + reach);
     while pose.translation.y > low - reach {
         let gap = |position: &Vec3| femur.gap_mm(&pose.to_femur(position));
         let nearest = surface

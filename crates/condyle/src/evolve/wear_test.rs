@@ -22,6 +22,9 @@ pub struct WearTest {
     pub flexion_axis_mm: (f64, f64),
     /// Position of the flexion axis over the insert before it settles, (x, z), mm.
     pub start_mm: (f64, f64),
+    /// Height of the flexion axis at which the approach starts, mm; from above the insert if none. A head in a cup starts
+    /// at the cup's centre, since the rim is in the way from above.
+    pub start_height_mm: Option<f64>,
     /// The unworn insert.
     pub insert: Arc<Insert>,
     /// The law of contact between femur and insert.

@@ -21,6 +21,8 @@ pub enum FemoralSurface {
     Sphere(Torus),
     /// One cylinder about the z axis, for verification.
     Cylinder(Cylinder),
+    /// The plane y = 0 of the femoral frame with the body above it: the disc of a pin-on-disc machine.
+    Plane,
     /// The smooth distance field of a triangle mesh.
     Mesh(SmoothField),
 }
@@ -39,6 +41,7 @@ impl FemoralSurface {
             Self::Placed(femur) => femur.gap_mm(point),
             Self::Sphere(sphere) => sphere.splat().gap_mm(point),
             Self::Cylinder(cylinder) => cylinder.gap_mm(point),
+            Self::Plane => -point.y,
             Self::Mesh(field) => field.gap_mm(point),
         }
     }
@@ -56,6 +59,7 @@ impl FemoralSurface {
             Self::Placed(femur) => femur.sample(point, spread_mm2),
             Self::Sphere(sphere) => sphere.splat().sample(point, spread_mm2),
             Self::Cylinder(cylinder) => cylinder.sample(point, spread_mm2),
+            Self::Plane => SurfaceSample::of_plane(-point.y),
             Self::Mesh(field) => field.sample(point),
         }
     }
@@ -64,7 +68,11 @@ impl FemoralSurface {
     pub(crate) fn prepared_spread_mm2(&self) -> f64 {
         match self {
             Self::Mesh(field) => field.spread_mm2,
-            Self::Generic(_) | Self::Placed(_) | Self::Sphere(_) | Self::Cylinder(_) => 0.0,
+            Self::Generic(_)
+            | Self::Placed(_)
+            | Self::Sphere(_)
+            | Self::Cylinder(_)
+            | Self::Plane => 0.0,
         }
     }
 
@@ -76,6 +84,7 @@ impl FemoralSurface {
             Self::Placed(femur) => femur.reach_mm(),
             Self::Sphere(ball) => ball.centre.norm() + ball.tube_radius_mm,
             Self::Cylinder(cylinder) => cylinder.radius_mm,
+            Self::Plane => 0.0,
             Self::Mesh(field) => field.reach_mm(),
         }
     }
@@ -92,6 +101,7 @@ impl FemoralSurface {
             Self::Cylinder(cylinder) => {
                 CurvatureBounds::convex(1.0 / cylinder.radius_mm, CurvatureBounds::FARTHEST_MM)
             }
+            Self::Plane => CurvatureBounds::convex(0.0, CurvatureBounds::FARTHEST_MM),
             Self::Mesh(field) => field.curvature_bounds(points),
         }
     }

@@ -59,11 +59,23 @@ impl<T: Number> SurfaceSample<T> {
 
     /// Creates a sample infinitely far from any surface.
     pub(crate) fn far() -> Self {
-        let (zero, none) = (T::zero(), Vector::repeat(T::zero()));
+        Self::flat(T::splat(f64::INFINITY), Vector::repeat(T::zero()))
+    }
+
+    /// Creates a sample `gap_mm` below a plane that faces down.
+    #[inline(always)]
+    pub(super) fn of_plane(gap_mm: T) -> Self {
+        let down = Vector::new(T::zero(), T::splat(-1.0), T::zero());
+        Self::flat(gap_mm, down)
+    }
+
+    #[inline(always)]
+    fn flat(gap_mm: T, normal: Vector<T>) -> Self {
+        let zero = T::zero();
         Self {
-            gap_mm: T::splat(f64::INFINITY),
-            gap_gradient: none,
-            normal: none,
+            gap_mm,
+            gap_gradient: normal,
+            normal,
             curvature: Curvature {
                 xx: zero,
                 yy: zero,

@@ -1,6 +1,6 @@
 //! A machine: joints with their drives, springs, and its frequency.
 
-use super::{JointDescription, JointIndex, JointKind, Mechanism, Waveform};
+use super::{Axis, JointDescription, JointIndex, JointKind, Mechanism, Waveform};
 use crate::{
     Vec3,
     spatial::{Mat6, Vec6},
@@ -122,6 +122,15 @@ impl Machine {
     /// Returns a joint for changes.
     pub fn joint_mut(&mut self, index: JointIndex) -> &mut Joint {
         &mut self.joints[index.place()]
+    }
+
+    /// Returns the loaded translation along y, whose load presses the bodies together, if there is one.
+    pub fn pressing_joint(&self) -> Option<JointIndex> {
+        let presses = |&index: &JointIndex| {
+            let joint = self.joint(index);
+            matches!(joint.description.axis, Axis::Along([0.0, _, 0.0])) && joint.is_loaded()
+        };
+        JointIndex::ALL.into_iter().find(presses)
     }
 
     pub(super) fn levers(&self) -> Levers {

@@ -7,6 +7,7 @@ use super::{
     Axis, Channel,
     ChannelUnit::{self, Degree, Millimetre, Newton, NewtonMetre},
     CycleQuantity, JointDescription, JointIndex, Loading, Mechanism, MovedBody, Region, Settling,
+    TestedJoint,
 };
 
 const X: [f64; 3] = [1.0, 0.0, 0.0];
@@ -214,8 +215,9 @@ pub const LATERAL: usize = 1;
 
 /// The knee: six joints, two regions.
 pub static KNEE: Mechanism = Mechanism {
+    tests: TestedJoint::Knee,
     joints: JOINTS,
-    in_files: [AP, IE, ML, VV, IS, FLEXION],
+    in_files: &[AP, IE, ML, VV, IS, FLEXION],
     channels: &[
         &AXIAL_FORCE,
         &FLEXION_MOTION,

@@ -252,6 +252,43 @@ pub enum CycleQuantity {
     RegionForce(usize),
 }
 
+/// A joint of the body whose replacement a machine tests.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum TestedJoint {
+    /// A knee.
+    Knee,
+    /// A hip.
+    Hip,
+    /// An intervertebral disc.
+    Disc,
+    /// An ankle.
+    Ankle,
+    /// None: specimens of material, such as pins on a disc.
+    Specimen,
+}
+
+impl TestedJoint {
+    /// Every joint.
+    pub const ALL: [Self; 5] = [
+        Self::Knee,
+        Self::Hip,
+        Self::Disc,
+        Self::Ankle,
+        Self::Specimen,
+    ];
+
+    /// Returns the name, such as `hip`.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Knee => "knee",
+            Self::Hip => "hip",
+            Self::Disc => "disc",
+            Self::Ankle => "ankle",
+            Self::Specimen => "specimen",
+        }
+    }
+}
+
 /// The description of six joints between insert and femur, of the regions and of the columns of results.
 ///
 /// The joints stand in the order of the chain: the first carries the insert itself, the last the femur. A
@@ -259,10 +296,12 @@ pub enum CycleQuantity {
 /// machine settles, so that the axis stays where it is.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Mechanism {
+    /// The joint of the body whose replacement it tests.
+    pub tests: TestedJoint,
     /// The joints, from the insert to the femur.
     pub joints: [JointDescription; 6],
     /// The joints in the order in which files list them.
-    pub in_files: [JointIndex; 6],
+    pub in_files: &'static [JointIndex],
     /// The waveforms that the joints take, in the order in which files list them.
     pub channels: &'static [&'static Channel],
     /// The columns of a cycle, in the order of files.
@@ -332,7 +371,7 @@ impl Mechanism {
 
     /// Formats positions, mm and rad, in the unit of files: translations first.
     pub fn readings(&self, positions: &[f64; 6]) -> String {
-        let mut joints: Vec<_> = self.in_files.to_vec();
+        let mut joints = self.in_files.to_vec();
         joints.sort_by_key(|&index| self.joint(index).kind() == JointKind::Rotation);
         let reading = |index: JointIndex| {
             let joint = self.joint(index);

@@ -23,7 +23,7 @@ pub use cycle::{
 };
 pub use mechanism::{
     Axis, Channel, ChannelUnit, CycleQuantity, CycleRow, JointDescription, JointIndex, JointKind,
-    Loading, Mechanism, MovedBody, Region, Settling,
+    Loading, Mechanism, MovedBody, Region, Settling, TestedJoint,
 };
 pub use settle::{NotSettled, settle};
 pub use simulator::Simulator;

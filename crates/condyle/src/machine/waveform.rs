@@ -56,6 +56,8 @@ pub struct Waveform {
     interpolation: Interpolation,
     /// Second derivatives at the knots, per %^2, for a spline.
     bends: Vec<f64>,
+    /// Advance of a constant during a cycle: whole turns of a rotation.
+    turn: f64,
 }
 
 impl Waveform {
@@ -68,6 +70,17 @@ impl Waveform {
             }],
             interpolation: Interpolation::HalfCosine,
             bends: Vec::new(),
+            turn: 0.0,
+        }
+    }
+
+    /// Creates an even rotation from `start` that advances by `turn` in every cycle.
+    ///
+    /// At the end of a cycle the value steps back by `turn`: only for whole turns of a rotation is that the same pose.
+    pub fn turning(start: f64, turn: f64) -> Self {
+        Self {
+            turn,
+            ..Self::constant(start)
         }
     }
 
@@ -123,6 +136,7 @@ impl Waveform {
             knots,
             interpolation,
             bends,
+            turn: 0.0,
         })
     }
 
@@ -140,6 +154,7 @@ impl Waveform {
     pub fn scaled(mut self, factor: f64) -> Self {
         self.knots.iter_mut().for_each(|knot| knot.value *= factor);
         self.bends.iter_mut().for_each(|bend| *bend *= factor);
+        self.turn *= factor;
         self
     }
 
@@ -154,7 +169,8 @@ impl Waveform {
         let percent = 100.0 * (phase - phase.floor());
         let n = self.knots.len();
         if n == 1 {
-            return (self.knots[0].value, 0.0);
+            let turned = self.turn * (phase - phase.floor());
+            return (self.knots[0].value + turned, self.turn);
         }
         let after = self.knots.partition_point(|knot| knot.percent <= percent);
         let (a, b) = ((after + n - 1) % n, after % n);

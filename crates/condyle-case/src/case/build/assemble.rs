@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use condyle::contact::{
     ContactLaw, Deformable, Foundation, FrictionModel, PressureLaw, confined_modulus,
-    softening_modulus,
+    shell_modulus, softening_modulus,
 };
 use condyle::evolve::{Schedule, Updates, WearTest};
 use condyle::geometry::Insert;
@@ -17,6 +17,7 @@ use super::shared::SharedBodies;
 use crate::cache::{Keep, KeepNothing};
 use crate::case::contact::{DeformableContact, PlasticityChoice, PressureLawChoice};
 use crate::case::contents::Case;
+use crate::case::insert::InsertShape;
 use crate::case::run_options::{IntegratorWord, Update};
 
 /// Smallest flat part of a backside that can rest on a flat tray.
@@ -68,6 +69,10 @@ impl Case {
             femur: Arc::clone(&femur.surface),
             flexion_axis_mm: femur.flexion_axis_mm,
             start_mm: femur.start_mm,
+            start_height_mm: match &self.insert.shape {
+                InsertShape::Cup(_) => Some(0.0),
+                _ => None,
+            },
             insert,
             activities,
             wear: as_linked(self.wear.law()).law,
@@ -169,7 +174,12 @@ impl Case {
     /// Returns the elastic foundation of this case.
     pub fn foundation(&self) -> Foundation {
         let material = &self.material;
-        let modulus_mpa = confined_modulus(material.youngs_modulus_mpa, material.poissons_ratio);
+        let (e_mpa, v) = (material.youngs_modulus_mpa, material.poissons_ratio);
+        let modulus_mpa = match &self.insert.shape {
+            // A curved layer is softer than a flat one of the same thickness.
+            InsertShape::Cup(cup) => shell_modulus(e_mpa, v, cup.shape.radius_mm, cup.shape.thickness_mm),
+            _ => confined_modulus(e_mpa, v),
+        };
         let pressure = match self.contact.law().unwrap_or(&PressureLawChoice::Linear) {
             PressureLawChoice::Linear => PressureLaw::Linear { modulus_mpa },
             PressureLawChoice::Logarithmic => PressureLaw::Logarithmic { modulus_mpa },

@@ -76,6 +76,7 @@ impl Case {
                 let surface = FemoralSurface::Cylinder(Cylinder { radius_mm });
                 at_origin(surface, femur.start_mm, (0.0, 0.0))
             }
+            FemurShape::Plane => at_origin(FemoralSurface::Plane, None, (0.0, 0.0)),
             FemurShape::Mesh(femur) => {
                 let placing = Placing::new(femur.length_unit, &femur.axes, side)?;
                 let PreparedFemur { shell, field } =
@@ -197,6 +198,7 @@ impl Case {
             }
             (FemurShape::Sphere(ball), _) => Ok(sphere(ball.radius_mm, about)),
             (FemurShape::Cylinder(cylinder), _) => Ok(tube(cylinder.radius_mm)),
+            (FemurShape::Plane, _) => Ok(square()),
             (FemurShape::Generic(_), _) => {
                 unreachable!("a generic femur is built as one")
             }
@@ -209,6 +211,16 @@ fn generic(femur: &GenericFemur, about: f64) -> TriangleMesh {
     let coarse = femur.surface_mesh(COARSE_MM).triangles.len() as f64;
     // The number of triangles goes with the inverse square of their edge.
     femur.surface_mesh(COARSE_MM * (coarse / about).sqrt())
+}
+
+/// Returns a square in the plane y = 0 that faces down, larger than any pin.
+fn square() -> TriangleMesh {
+    const HALF_MM: f64 = 30.0;
+    let corner = |(x, z): (f64, f64)| Vec3::new(x * HALF_MM, 0.0, z * HALF_MM);
+    TriangleMesh {
+        vertices: [(-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, 1.0)].map(corner).to_vec(),
+        triangles: vec![[0, 1, 2], [0, 2, 3]],
+    }
 }
 
 /// Returns a tube about the z axis, longer than any insert is wide.

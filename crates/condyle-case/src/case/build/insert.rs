@@ -4,7 +4,7 @@ use std::collections::BTreeSet;
 use std::path::Path;
 
 use condyle::Vec3;
-use condyle::geometry::{self, GenericInsertShape, Meshing, TriangleMesh, Underside, flat_insert};
+use condyle::geometry::{self, GenericInsertShape, Meshing, TriangleMesh, Underside, flat_insert, pin};
 use condyle_fem::HexMesh;
 use condyle_mesh::columns::listed_holes;
 use condyle_mesh::formats::{HexFile, parse_surface, read_hexahedra, surface_bytes};
@@ -35,6 +35,8 @@ impl Case {
         let mut coarser = self.insert.clone();
         match &mut coarser.shape {
             InsertShape::Generic(insert) => insert.edge_mm *= 2.0,
+            InsertShape::Cup(insert) => insert.edge_mm *= 2.0,
+            InsertShape::Pin(insert) => insert.edge_mm *= 2.0,
             InsertShape::Flat(insert) => insert.edge_mm *= 2.0,
             InsertShape::Mesh(insert) => insert.edge_mm *= 2.0,
             InsertShape::Hexahedra(_) => {
@@ -75,6 +77,19 @@ impl Case {
                     Some(motion) => shape.insert_moved(meshing, |point| motion.point(point))?,
                     None => shape.insert(meshing)?,
                 }
+            }
+            InsertShape::Cup(insert) => {
+                let meshing = meshing(insert.edge_mm, insert.layers);
+                // A hemisphere has the area of a square with sides of 2.5 radii.
+                let side_mm = 2.5 * insert.shape.radius_mm;
+                check_node_count((side_mm, side_mm), meshing, limits)?;
+                insert.shape.insert(meshing)?
+            }
+            InsertShape::Pin(insert) => {
+                let meshing = meshing(insert.edge_mm, insert.layers);
+                let side_mm = 2.0 * insert.radius_mm;
+                check_node_count((side_mm, side_mm), meshing, limits)?;
+                pin(insert.radius_mm, insert.thickness_mm, meshing)?
             }
             InsertShape::Flat(insert) => {
                 let meshing = meshing(insert.edge_mm, insert.layers);

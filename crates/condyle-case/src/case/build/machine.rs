@@ -87,6 +87,9 @@ impl case::Machine {
 }
 
 pub(super) fn start_flexion_rad(machine: &Machine) -> f64 {
+    if *machine.mechanism != KNEE {
+        return 0.0;
+    }
     match &machine.joint(knee::FLEXION).drive {
         Drive::Prescribed(flexion) => flexion.at(0.0).0,
         Drive::Locked(at) => *at,
@@ -96,6 +99,9 @@ pub(super) fn start_flexion_rad(machine: &Machine) -> f64 {
 
 impl Case {
     pub(super) fn built_activities(&self, low_point_mm: Vec3) -> Vec<Activity> {
+        if let Some(rig) = &self.machine.rig {
+            return vec![Activity::only("gait", rig.build())];
+        }
         if self.activities.is_empty() {
             return vec![Activity::only("gait", self.machine.build(low_point_mm))];
         }

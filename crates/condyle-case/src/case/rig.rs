@@ -1,0 +1,478 @@
+//! A machine as a file: joints in order, axes, drives and waveforms; condyle's own machines for hips and specimens are such
+//! files too.
+
+use std::collections::BTreeMap;
+use std::sync::{Arc, LazyLock, Mutex, PoisonError};
+
+use condyle::Vec3;
+use condyle::machine::{
+    Axis, Channel, ChannelUnit, CycleQuantity, Drive, JointDescription, JointIndex, JointKind,
+    Loading, Machine, Mechanism, MovedBody, Settling, TestedJoint, Waveform, knee,
+};
+use miette::NamedSource;
+
+use super::machine::DriveWord;
+use super::waveform;
+use crate::config::*;
+
+words! {
+    TestedJoint {
+        Knee = "knee",
+        Hip = "hip",
+        Disc = "disc",
+        Ankle = "ankle",
+        Specimen = "specimen",
+    }
+
+    JointKind {
+        Rotation = "rotation",
+        Translation = "translation",
+    }
+
+    MovedBody {
+        Femur = "counterface",
+        Insert = "bearing",
+    }
+
+    Settling {
+        Driven = "driven",
+        Free = "free",
+        HeldAtZero = "held",
+        DrivenWithoutLoad = "driven-without-load",
+    }
+}
+
+settings! {
+    /// The keys of a machine file besides its joints.
+    RigKeys {
+        /// The joint of the body whose replacement the machine tests: hip, disc, ankle, or specimen for pins and plates.
+        tests: TestedJoint;
+        /// Cycles a second.
+        frequency_hz: f64 = 1.0, in within(0.001, 100.0);
+        /// Names of all joints from the bearing to the counterface; that of the file if not given.
+        order: Option<Names> = None;
+    }
+
+    /// The keys of a joint of a machine file, besides its waveform in `[joints.load]` or `[joints.motion]`.
+    RigJointKeys {
+        /// Its name: small letters, digits and hyphens.
+        name: String;
+        /// Heading in reports; the name if not given.
+        title: Option<String> = None;
+        /// Positive direction in words.
+        positive: Option<String> = None;
+        /// Motion: a rotation or a translation.
+        kind: JointKind;
+        /// Direction of its axis in the bearing frame: the load acts along y, and the counterface lies above the bearing.
+        axis: [f64; 3], in within(-1.0, 1.0);
+        /// Body that it moves, which determines the sign.
+        moves: MovedBody = MovedBody::Femur;
+        /// Point of a rotation's axis in the bearing frame; through the centre of the counterface if not given.
+        point_mm: Option<[f64; 3]> = None, in within(-1000.0, 1000.0);
+        /// Its drive.
+        drive: DriveWord = DriveWord::Locked;
+        /// Position of a locked rotation.
+        locked_at_deg: Option<f64> = None, in within(-360.0, 360.0);
+        /// Position of a locked translation.
+        locked_at_mm: Option<f64> = None, in within(-1000.0, 1000.0);
+        /// Whole turns of a prescribed rotation in a cycle, in place of a waveform.
+        turns_per_cycle: Option<f64> = None, in within(-100.0, 100.0);
+        /// Mass that a translation moves; 5 kg if not given.
+        inertia_kg: Option<f64> = None, in within(0.0, 1000.0);
+        /// Moment of inertia that a rotation moves; 0.01 kg m2 if not given.
+        inertia_kg_m2: Option<f64> = None, in within(0.0, 100.0);
+        /// Viscous damping of a translation; 0.3 N s/mm if not given.
+        damping_n_s_per_mm: Option<f64> = None, in within(0.0, 1000.0);
+        /// Viscous damping of a rotation; 0.2 N m s/rad if not given.
+        damping_nm_s_per_rad: Option<f64> = None, in within(0.0, 1000.0);
+        /// State while the machine settles at the start of the cycle, before the first cycle.
+        settling: Settling = Settling::Driven;
+        /// Whether it reads zero where the machine has settled; true for loaded translations if not given.
+        zeroed: Option<bool> = None;
+    }
+}
+
+const fn channel(name: &'static str, unit: ChannelUnit, most: f64) -> Channel {
+    Channel {
+        name,
+        about: "Waveform of the joint, in the direction of its axis.",
+        unit,
+        sign: 1.0,
+        least: -most,
+        most,
+    }
+}
+
+static FORCE: Channel = channel("load", ChannelUnit::Newton, 20_000.0);
+static TORQUE: Channel = channel("load", ChannelUnit::NewtonMetre, 500.0);
+static TRANSLATION: Channel = channel("motion", ChannelUnit::Millimetre, 1000.0);
+static ROTATION: Channel = channel("motion", ChannelUnit::Degree, 360.0);
+
+fn channel_of(kind: JointKind, drive: DriveWord) -> Option<&'static Channel> {
+    match (drive, kind) {
+        (DriveWord::Locked, _) => None,
+        (DriveWord::Loaded, JointKind::Translation) => Some(&FORCE),
+        (DriveWord::Loaded, JointKind::Rotation) => Some(&TORQUE),
+        (DriveWord::Prescribed, JointKind::Translation) => Some(&TRANSLATION),
+        (DriveWord::Prescribed, JointKind::Rotation) => Some(&ROTATION),
+    }
+}
+
+/// The joints that a machine may have.
+const MAX_JOINTS: usize = 6;
+
+/// A machine from a file.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Rig {
+    /// Its keys.
+    pub keys: RigKeys,
+    /// Its joints, from the bearing to the counterface.
+    pub joints: Vec<RigJoint>,
+}
+
+/// A joint of a machine from a file.
+#[derive(Clone, Debug, PartialEq)]
+pub struct RigJoint {
+    /// Its keys.
+    pub keys: RigJointKeys,
+    /// Its waveform of load or motion, in the unit of files.
+    pub waveform: Option<Waveform>,
+}
+
+impl RigJoint {
+    fn read(section: &Section<'_>, log: &mut Log<'_>) -> Option<Self> {
+        let keys = RigJointKeys::read(section, log)?;
+        let channel = channel_of(keys.kind, keys.drive);
+        let mut is_sound = true;
+        let mut report = |key: &str, message: String, advice: &str, log: &mut Log<'_>| {
+            log.problem(section.key_span(key), Fault::new(message, advice));
+            is_sound = false;
+        };
+        let (name, kind, drive) = (&keys.name, keys.kind, keys.drive.word());
+        let is_word = |c: char| c.is_ascii_lowercase() || c.is_ascii_digit() || c == '-';
+        if name.is_empty() || !name.chars().all(is_word) {
+            let message = format!("a joint cannot be called \"{name}\"");
+            report("name", message, "use small letters, digits and hyphens", log);
+        }
+        if keys.axis == [0.0; 3] {
+            let message = format!("the axis of the joint \"{name}\" has no direction");
+            report("axis", message, "give it a length, such as [0, 1, 0]", log);
+        }
+        for table in ["load", "motion"] {
+            let is_given = section.value(table).is_some();
+            if is_given && channel.is_none_or(|channel| channel.name != table) {
+                let message = format!("the joint \"{name}\" is {drive}, and has a waveform of {table}");
+                let advice = "remove one of them: a joint has one drive";
+                report(table, message, advice, log);
+            }
+        }
+        let wrong: &[&str] = match kind {
+            JointKind::Rotation => &["locked_at_mm", "inertia_kg", "damping_n_s_per_mm"],
+            JointKind::Translation => &[
+                "locked_at_deg", "inertia_kg_m2", "damping_nm_s_per_rad", "turns_per_cycle", "point_mm",
+            ],
+        };
+        for key in wrong.iter().filter(|key| section.value(key).is_some()) {
+            let message = format!("`{key}` does not fit the {} \"{name}\"", kind.text().unwrap_or_default());
+            report(key, message, "remove it, or change `kind`", log);
+        }
+        let turns = keys.turns_per_cycle;
+        if turns.is_some_and(|turns| turns.fract() != 0.0 || keys.drive != DriveWord::Prescribed) {
+            let message = format!("the joint \"{name}\" does not repeat after a cycle");
+            report("turns_per_cycle", message, "use whole turns and drive = \"prescribed\"", log);
+        }
+        let waveform = match channel {
+            Some(channel) if section.value(channel.name).is_some() => {
+                Some(waveform::read(channel, section, log)?)
+            }
+            _ => None,
+        };
+        if keys.drive == DriveWord::Prescribed && waveform.is_some() == turns.is_some() {
+            let message = format!("the prescribed joint \"{name}\" needs one of [joints.motion] and `turns_per_cycle`");
+            report("drive", message, "", log);
+        }
+        is_sound.then_some(Self { keys, waveform })
+    }
+
+    fn write(&self, out: &mut Writer) {
+        self.keys.write(out);
+        if let (Some(channel), Some(waveform)) =
+            (channel_of(self.keys.kind, self.keys.drive), &self.waveform)
+        {
+            out.table(channel.name, |out| waveform::write(channel, waveform, out));
+        }
+    }
+
+    fn axis(&self) -> Axis {
+        let direction = Vec3::from(self.keys.axis).normalize().into();
+        match (self.keys.kind, self.keys.point_mm) {
+            (JointKind::Translation, _) => Axis::Along(direction),
+            (JointKind::Rotation, Some(_)) => Axis::About(direction),
+            (JointKind::Rotation, None) => Axis::AboutFemur(direction),
+        }
+    }
+
+    fn is_zeroed(&self) -> bool {
+        let is_free = self.keys.kind == JointKind::Translation && self.keys.drive == DriveWord::Loaded;
+        self.keys.zeroed.unwrap_or(is_free)
+    }
+
+    /// Returns the drive in mm, rad, N or N mm.
+    fn driven(&self) -> Drive {
+        let keys = &self.keys;
+        let channel = channel_of(keys.kind, keys.drive);
+        let waveform = || {
+            let factor = channel.map_or(1.0, Channel::factor);
+            let given = self.waveform.clone();
+            given.map_or(Waveform::constant(0.0), |waveform| waveform.scaled(factor))
+        };
+        match (keys.drive, keys.turns_per_cycle) {
+            (DriveWord::Locked, _) => {
+                let at = keys.locked_at_deg.or(keys.locked_at_mm).unwrap_or(0.0);
+                Drive::Locked(at * keys.kind.file_unit_in_solver())
+            }
+            (DriveWord::Prescribed, Some(turns)) => {
+                Drive::Prescribed(Waveform::turning(0.0, turns * std::f64::consts::TAU))
+            }
+            (DriveWord::Prescribed, None) => Drive::Prescribed(waveform()),
+            (DriveWord::Loaded, _) => Drive::Loaded(waveform()),
+        }
+    }
+
+    fn description(&self) -> JointDescription {
+        let keys = &self.keys;
+        let is_rotation = keys.kind == JointKind::Rotation;
+        let leaked = |text: &str| -> &'static str { Box::leak(text.to_owned().into_boxed_str()) };
+        let name = leaked(&keys.name);
+        let given = |text: &Option<String>, default| text.as_deref().map_or(default, leaked);
+        let (motion, load): (&Channel, &Channel) = match keys.kind {
+            JointKind::Rotation => (&ROTATION, &TORQUE),
+            JointKind::Translation => (&TRANSLATION, &FORCE),
+        };
+        JointDescription {
+            name,
+            column: leaked(&format!("{}_{}", keys.name.replace('-', "_"), keys.kind.unit())),
+            symbol: name,
+            long_name: name,
+            title: given(&keys.title, name),
+            positive: given(&keys.positive, "along the axis"),
+            decimals: if is_rotation { 2 } else { 3 },
+            least_span: if is_rotation { 1.0 } else { 0.1 },
+            axis: self.axis(),
+            moves: keys.moves,
+            settling: keys.settling,
+            is_zeroed: self.is_zeroed(),
+            inertia: if is_rotation {
+                1e3 * keys.inertia_kg_m2.unwrap_or(1e-3 * knee::MOMENT_OF_INERTIA_TONNE_MM2)
+            } else {
+                1e-3 * keys.inertia_kg.unwrap_or(1e3 * knee::MASS_TONNE)
+            },
+            damping: if is_rotation {
+                1e3 * keys.damping_nm_s_per_rad.unwrap_or(1e-3 * knee::DAMPING_NMM_S_PER_RAD)
+            } else {
+                keys.damping_n_s_per_mm.unwrap_or(knee::DAMPING_N_S_PER_MM)
+            },
+            motion: Some(motion),
+            load: Loading::By(load),
+        }
+    }
+}
+
+impl Rig {
+    /// Returns the machine of the `[machine]` table of a case if it is one by joints: from its file, from a shipped file, or
+    /// from the table itself; the outer `None` if it has problems.
+    pub(super) fn read_from(
+        section: &Section<'_>,
+        preset: Option<(&str, &str)>,
+        file: Option<&DataFile>,
+        log: &mut Log<'_>,
+    ) -> Option<Option<Self>> {
+        let mut rig = if section.value("joints").is_some() {
+            Self::read(section, log)?
+        } else if let Some(file) = file {
+            let source = file.source(section, "file", log)?;
+            Self::of_text(&source, Base::of(file.shared_files(), file.path()), log)?
+        } else if let Some((word, text)) = preset {
+            let source = Arc::new(NamedSource::new(format!("machines/{word}.toml"), text.to_owned()));
+            let base = log.base;
+            Self::of_text(&source, base, log)?
+        } else {
+            return Some(None);
+        };
+        if section.value("frequency_hz").is_some() {
+            let key = Key::number("frequency_hz", "", 1.0, within(0.001, 100.0));
+            rig.keys.frequency_hz = section.setting(&key, None, log)?;
+        }
+        if section.value("order").is_some() {
+            let key = Key::optional("order", "", Names::kind());
+            rig.keys.order = section.setting(&key, Some(None), log)?;
+        }
+        rig.ordered(section, log).map(Some)
+    }
+
+    fn of_text(source: &Source, base: Base<'_>, log: &mut Log<'_>) -> Option<Self> {
+        let read = read_document(source, base, |root, log| {
+            check(root, &Self::items(), log);
+            Self::read(root, log)
+        });
+        read.map_err(|problems| log.extend(problems)).ok()
+    }
+
+    /// Returns the machine with its joints in the order of `order`, after checking that they form a chain that presses.
+    fn ordered(mut self, section: &Section<'_>, log: &mut Log<'_>) -> Option<Self> {
+        let mut fault = |key: &str, message: String, advice: &str| {
+            log.problem(section.key_span(key), Fault::new(message, advice));
+            None
+        };
+        let names: Vec<&str> = self.joints.iter().map(|joint| joint.keys.name.as_str()).collect();
+        if let Some(Names(order)) = &self.keys.order {
+            let (mut wanted, mut present) = (order.clone(), names.clone());
+            wanted.sort();
+            present.sort_unstable();
+            if wanted != present {
+                let message = format!("`order` must name every joint once: {}", names.join(", "));
+                return fault("order", message, "");
+            }
+            let place = |joint: &RigJoint| order.iter().position(|name| *name == joint.keys.name);
+            self.joints.sort_by_key(place);
+        }
+        let mut has_zeroed = false;
+        for joint in &self.joints {
+            if has_zeroed && joint.keys.point_mm.is_some() {
+                let message = format!(
+                    "the axis of \"{}\" is fixed in the bearing, but a joint before it reads zero where the machine settles",
+                    joint.keys.name
+                );
+                return fault("joints", message, "move it nearer to the bearing, before the loaded translations");
+            }
+            has_zeroed |= joint.is_zeroed();
+        }
+        let presses = |joint: &&RigJoint| {
+            let along_y = joint.keys.axis[0] == 0.0 && joint.keys.axis[2] == 0.0;
+            joint.keys.kind == JointKind::Translation
+                && joint.keys.drive == DriveWord::Loaded
+                && along_y
+                && joint.waveform.is_some()
+        };
+        if self.joints.iter().filter(presses).count() != 1 {
+            let message = "the machine needs one joint that presses the bodies together: a loaded translation along y with \
+                           [joints.load]";
+            return fault("joints", message.to_owned(), "");
+        }
+        if let Some((one, other)) = self.same_freedom() {
+            let message = format!("the loaded joints \"{one}\" and \"{other}\" move along the same line");
+            return fault("joints", message, "lock one of them: their balance is not determined");
+        }
+        Some(self)
+    }
+
+    /// Returns two loaded joints of a kind whose axes are parallel; of rotations, only those through the same point.
+    fn same_freedom(&self) -> Option<(&str, &str)> {
+        /// Sine of the angle below which two axes count as parallel.
+        const PARALLEL: f64 = 1e-6;
+        let loaded = |joint: &&RigJoint| joint.keys.drive == DriveWord::Loaded;
+        let loaded: Vec<&RigJoint> = self.joints.iter().filter(loaded).collect();
+        let pairs = loaded.iter().enumerate();
+        let mut pairs = pairs.flat_map(|(n, one)| loaded[..n].iter().map(move |other| (other, one)));
+        let found = pairs.find(|(one, other)| {
+            let [a, b] = [one, other].map(|joint| Vec3::from(joint.keys.axis).normalize());
+            let is_alike = one.keys.kind == other.keys.kind && one.keys.point_mm == other.keys.point_mm;
+            is_alike && a.cross(&b).norm() < PARALLEL
+        });
+        found.map(|(one, other)| (one.keys.name.as_str(), other.keys.name.as_str()))
+    }
+
+    /// Returns the machine in mm, N, s and rad.
+    pub(super) fn build(&self) -> Machine {
+        let mut machine = Machine::new(self.mechanism());
+        for (joint, index) in self.joints.iter().zip(JointIndex::ALL) {
+            let built = machine.joint_mut(index);
+            built.drive = joint.driven();
+            built.axis_point_mm = joint.keys.point_mm.map_or(Vec3::zeros(), Vec3::from);
+        }
+        machine.frequency_hz = self.keys.frequency_hz;
+        machine
+    }
+
+    /// Returns the description of the joints, which lives as long as the process: equal machines share one.
+    fn mechanism(&self) -> &'static Mechanism {
+        static KNOWN: LazyLock<Mutex<BTreeMap<String, &'static Mechanism>>> = LazyLock::new(Mutex::default);
+        let joints: Vec<&RigJointKeys> = self.joints.iter().map(|joint| &joint.keys).collect();
+        let key = format!("{:?} {joints:?}", self.keys.tests);
+        // A panic elsewhere leaves the map whole.
+        let mut known = KNOWN.lock().unwrap_or_else(PoisonError::into_inner);
+        known.entry(key).or_insert_with(|| Box::leak(Box::new(self.described())))
+    }
+
+    fn described(&self) -> Mechanism {
+        let count = self.joints.len();
+        let fixed = JointDescription {
+            name: "",
+            column: "",
+            axis: Axis::Along([1.0, 0.0, 0.0]),
+            settling: Settling::HeldAtZero,
+            is_zeroed: false,
+            ..knee::KNEE.joints[0]
+        };
+        let in_files: &[JointIndex] = &JointIndex::ALL[..count];
+        let positions = in_files.iter().map(|&index| CycleQuantity::Position(index));
+        let contact = [
+            CycleQuantity::AxialForce,
+            CycleQuantity::ContactArea,
+            CycleQuantity::PeakPressure,
+        ];
+        let columns: Vec<CycleQuantity> = positions.chain(contact).collect();
+        Mechanism {
+            tests: self.keys.tests,
+            joints: std::array::from_fn(|j| self.joints.get(j).map_or(fixed, RigJoint::description)),
+            in_files,
+            channels: &[],
+            columns: columns.leak(),
+            regions: &[],
+        }
+    }
+
+    /// Writes the entries of the table `[machine]`.
+    pub(super) fn write(&self, out: &mut Writer) {
+        self.keys.write(out);
+        for joint in &self.joints {
+            out.table_of_list("joints", |out| joint.write(out));
+        }
+    }
+
+    pub(super) fn items() -> Vec<Item> {
+        let mut joint = RigJointKeys::items();
+        for channels in [[&FORCE, &TORQUE], [&TRANSLATION, &ROTATION]] {
+            joint.push(Item::Table(waveform::table(&channels)));
+        }
+        let list = TableItem {
+            is_list: true,
+            ..TableItem::new("joints", "A joint of a machine, from the bearing to the counterface.", joint)
+        };
+        let mut items = RigKeys::items();
+        items.push(Item::Table(list));
+        items
+    }
+
+    fn read(section: &Section<'_>, log: &mut Log<'_>) -> Option<Self> {
+        let keys = RigKeys::read(section, log);
+        let sections = section.list("joints", log)?;
+        if sections.len() > MAX_JOINTS {
+            let message = format!("a machine has at most {MAX_JOINTS} joints, and this one has {}", sections.len());
+            log.problem(section.key_span("joints"), Fault::new(message, "two bodies have six freedoms"));
+            return None;
+        }
+        let joints: Vec<Option<RigJoint>> =
+            sections.iter().map(|joint| RigJoint::read(joint, log)).collect();
+        let joints: Vec<RigJoint> = joints.into_iter().collect::<Option<_>>()?;
+        for (number, joint) in joints.iter().enumerate() {
+            let name = &joint.keys.name;
+            if joints[..number].iter().any(|other| other.keys.name == *name) {
+                let fault = Fault::new(format!("two joints are called \"{name}\""), "give each its own name");
+                log.problem(sections[number].value_span("name"), fault);
+                return None;
+            }
+        }
+        Some(Self { keys: keys?, joints })
+    }
+}

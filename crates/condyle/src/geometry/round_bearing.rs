@@ -1,0 +1,146 @@
+//! Round bearings: the cup of a hip and the pin of a pin-on-disc machine.
+
+use std::f64::consts::FRAC_PI_2;
+
+use condyle_mesh::columns::{Meshing, Place, disc_plan};
+
+use super::insert::{Insert, InsertError};
+use crate::{Mat3, Vec3};
+
+/// Dimensions and mounting of a hemispherical cup around the origin.
+///
+/// The machine presses the counterface along -y. With x anterior and the cup below its head, as in many simulators, z is
+/// medial for a right hip and lateral for a left one.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct CupShape {
+    /// Inner radius.
+    pub radius_mm: f64,
+    /// Thickness of the wall.
+    pub thickness_mm: f64,
+    /// Angle between the plane of the opening and the plane across the load, in the frontal plane.
+    pub inclination_deg: f64,
+    /// Rotation of the inclined cup about the load, + turns its pole from z towards x.
+    pub anteversion_deg: f64,
+}
+
+impl Default for CupShape {
+    fn default() -> Self {
+        Self {
+            radius_mm: 14.1,
+            thickness_mm: 8.0,
+            inclination_deg: 30.0,
+            anteversion_deg: 0.0,
+        }
+    }
+}
+
+impl CupShape {
+    /// Returns the unit vector from the centre to the pole of the cup, its deepest point.
+    pub fn pole(&self) -> Vec3 {
+        self.mounting() * -Vec3::y()
+    }
+
+    /// Returns the rotation from a cup that opens upwards to the mounted one.
+    fn mounting(&self) -> Mat3 {
+        let turn = |axis: Vec3, degrees: f64| {
+            nalgebra::Rotation3::from_scaled_axis(axis * degrees.to_radians())
+        };
+        // About -x the pole goes from -y towards +z.
+        let mounted = turn(Vec3::y(), self.anteversion_deg) * turn(-Vec3::x(), self.inclination_deg);
+        mounted.into_inner()
+    }
+
+    /// Meshes the cup, its centre at the origin.
+    ///
+    /// Arc length along meridians is that of the disc's radius, so that quads keep their shape near the pole and are
+    /// compressed along the rim by 2/pi.
+    ///
+    /// # Errors
+    /// Too many nodes, and the errors of [`Insert::new`] for dimensions that are not positive.
+    pub fn insert(&self, meshing: Meshing) -> Result<Insert, InsertError> {
+        let mounting = self.mounting();
+        let place = |disc: Place, outward: f64| {
+            let (sine, cosine) = (FRAC_PI_2 * disc.norm()).sin_cos();
+            let around = disc.try_normalize(0.0).unwrap_or_default() * sine;
+            let radius_mm = self.radius_mm + outward * self.thickness_mm;
+            mounting * (Vec3::new(around.x, -cosine, around.y) * radius_mm)
+        };
+        round_bearing(FRAC_PI_2 * self.radius_mm, self.thickness_mm, meshing, place)
+    }
+}
+
+/// Returns a cylindrical pin with its flat end at y = 0, `height_mm` high.
+///
+/// # Errors
+/// Too many nodes, and the errors of [`Insert::new`] for dimensions that are not positive.
+pub fn pin(radius_mm: f64, height_mm: f64, meshing: Meshing) -> Result<Insert, InsertError> {
+    round_bearing(radius_mm, height_mm, meshing, |disc, down| {
+        Vec3::new(disc.x * radius_mm, -down * height_mm, disc.y * radius_mm)
+    })
+}
+
+/// Returns the bearing whose points are at `place` of a point of the unit disc and of the part of the thickness below
+/// it; `extent_mm` is the length on the articulating surface that corresponds to the disc's radius.
+fn round_bearing(
+    extent_mm: f64,
+    thickness_mm: f64,
+    Meshing { edge_mm, layers }: Meshing,
+    place: impl Fn(Place, f64) -> Vec3,
+) -> Result<Insert, InsertError> {
+    let plan = disc_plan(edge_mm / extent_mm, layers)?;
+    // Heights of 0 to 1 stand for the parts of the thickness above the backside.
+    let columns = vec![(0.0, 1.0); plan.places_mm.len()];
+    let mut built = plan.hexahedra(&columns, layers);
+    for node in &mut built.mesh.nodes {
+        *node = place(Place::new(node.x, node.z), 1.0 - node.y);
+    }
+    let insert = Insert::new(built.mesh, &built.articulating, &built.backside)?;
+    Ok(insert.with_thickness_mm(thickness_mm))
+}
+
+#[cfg(test)]
+mod tests {
+    use std::f64::consts::PI;
+
+    use super::*;
+
+    #[test]
+    fn verify_volume_surface_and_quality_of_a_cup() {
+        let cup = CupShape::default();
+        let insert = cup.insert(Meshing { edge_mm: 1.0, layers: 6 }).unwrap();
+        let mesh = insert.mesh();
+        assert!((8_000..11_000).contains(&mesh.hexes.len()), "{}", mesh.hexes.len());
+        assert!(mesh.worst_quality() > 0.5, "{}", mesh.worst_quality());
+        let (inner, outer) = (cup.radius_mm, cup.radius_mm + cup.thickness_mm);
+        let volume = 2.0 / 3.0 * PI * (outer.powi(3) - inner.powi(3));
+        // Flat faces of a sphere miss (edge/radius)^2/4 of the volume between chord and arc.
+        let of_chords = (1.0 / inner).powi(2) / 4.0;
+        assert!((insert.volume_mm3() / volume - 1.0).abs() < 2.0 * of_chords);
+        let surface = insert.surface();
+        assert!((surface.area_mm2() / (2.0 * PI * inner * inner) - 1.0).abs() < 2.0 * of_chords);
+        for (position, normal) in surface.positions.iter().zip(&surface.normals) {
+            assert!((position.norm() - inner).abs() < 1e-9);
+            // Normals at the rim are those of faces on one side only.
+            assert!(normal.dot(position) < -0.998 * inner);
+        }
+        assert!(insert.thickness_mm().iter().all(|&thickness| thickness == 8.0));
+    }
+
+    #[test]
+    fn the_pole_of_an_inclined_cup_is_medial() {
+        let pole = CupShape::default().pole();
+        let expected = Vec3::new(0.0, -(30f64.to_radians().cos()), 0.5);
+        assert!((pole - expected).norm() < 1e-12);
+        let turned = CupShape { anteversion_deg: 90.0, ..CupShape::default() }.pole();
+        assert!((turned.x - 0.5).abs() < 1e-12);
+    }
+
+    #[test]
+    fn verify_a_pin_is_a_cylinder() {
+        let insert = pin(4.5, 10.0, Meshing { edge_mm: 0.5, layers: 5 }).unwrap();
+        // Its rim has 32 sides.
+        let volume = 16.0 * (PI / 16.0).sin() * 4.5 * 4.5 * 10.0;
+        assert!((insert.volume_mm3() / volume - 1.0).abs() < 1e-12);
+        assert!(insert.mesh().worst_quality() > 0.6);
+    }
+}
