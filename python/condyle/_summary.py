@@ -84,6 +84,10 @@ class Summary:
     """Range of IE in the first cycle. In degrees."""
     medial_load_share: float
     """Medial part of the axial force."""
+    deepest_from_load_deg: float
+    """Angle between the load and the deepest wear. In degrees."""
+    deepest_around_load_deg: float
+    """Direction of the deepest wear around the load. In degrees."""
     updates: int
     """Updates of the geometry."""
     increments: int

@@ -38,6 +38,8 @@ export interface Numbers {
   ap_range_mm: number;
   ie_range_deg: number;
   medial_load_share: number;
+  deepest_from_load_deg: number;
+  deepest_around_load_deg: number;
   updates: number;
   increments: number;
   cycles_solved: number;

@@ -113,7 +113,10 @@ impl Case {
             FemurShape::Sphere(head) if head.radius_mm < radius_mm => {}
             FemurShape::Sphere(head) => report(
                 "radius_mm",
-                format!("the cup of radius {radius_mm} mm is not larger than its head of {} mm", head.radius_mm),
+                format!(
+                    "the cup of radius {radius_mm} mm is not larger than its head of {} mm",
+                    head.radius_mm
+                ),
                 "the radius of the cup is that of the head and the radial clearance, 0.02 to 0.4 mm",
             ),
             _ => report(

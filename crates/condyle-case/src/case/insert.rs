@@ -110,7 +110,7 @@ settings_of! {
         thickness_mm: f64 = Self::default().thickness_mm, in within(1.0, 50.0);
         /// Angle between the plane of the opening and the plane across the load, in the frontal plane: on a machine about 10 to 15 degrees less than in a patient.
         inclination_deg: f64 = Self::default().inclination_deg, in within(0.0, 90.0);
-        /// Rotation of the inclined cup about the load, + turns its pole from medial to anterior.
+        /// Rotation of the inclined cup about the load, + turns its opening from lateral to anterior.
         anteversion_deg: f64 = Self::default().anteversion_deg, in within(-90.0, 90.0);
     }
 }

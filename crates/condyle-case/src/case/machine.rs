@@ -429,7 +429,10 @@ impl Machine {
         if rig.is_some() {
             let own = MachineSettings::keys();
             let shared = ["preset", "file", "frequency_hz"];
-            let own = own.iter().map(|key| key.name).filter(|key| !shared.contains(key));
+            let own = own
+                .iter()
+                .map(|key| key.name)
+                .filter(|key| !shared.contains(key));
             let channels = KNEE.channels.iter().map(|channel| channel.name);
             for key in own.chain(["springs", "freedoms"]).chain(channels) {
                 if section.value(key).is_some() {

@@ -152,7 +152,12 @@ impl RigJoint {
         let is_word = |c: char| c.is_ascii_lowercase() || c.is_ascii_digit() || c == '-';
         if name.is_empty() || !name.chars().all(is_word) {
             let message = format!("a joint cannot be called \"{name}\"");
-            report("name", message, "use small letters, digits and hyphens", log);
+            report(
+                "name",
+                message,
+                "use small letters, digits and hyphens",
+                log,
+            );
         }
         if keys.axis == [0.0; 3] {
             let message = format!("the axis of the joint \"{name}\" has no direction");
@@ -161,7 +166,8 @@ impl RigJoint {
         for table in ["load", "motion"] {
             let is_given = section.value(table).is_some();
             if is_given && channel.is_none_or(|channel| channel.name != table) {
-                let message = format!("the joint \"{name}\" is {drive}, and has a waveform of {table}");
+                let message =
+                    format!("the joint \"{name}\" is {drive}, and has a waveform of {table}");
                 let advice = "remove one of them: a joint has one drive";
                 report(table, message, advice, log);
             }
@@ -169,17 +175,29 @@ impl RigJoint {
         let wrong: &[&str] = match kind {
             JointKind::Rotation => &["locked_at_mm", "inertia_kg", "damping_n_s_per_mm"],
             JointKind::Translation => &[
-                "locked_at_deg", "inertia_kg_m2", "damping_nm_s_per_rad", "turns_per_cycle", "point_mm",
+                "locked_at_deg",
+                "inertia_kg_m2",
+                "damping_nm_s_per_rad",
+                "turns_per_cycle",
+                "point_mm",
             ],
         };
         for key in wrong.iter().filter(|key| section.value(key).is_some()) {
-            let message = format!("`{key}` does not fit the {} \"{name}\"", kind.text().unwrap_or_default());
+            let message = format!(
+                "`{key}` does not fit the {} \"{name}\"",
+                kind.text().unwrap_or_default()
+            );
             report(key, message, "remove it, or change `kind`", log);
         }
         let turns = keys.turns_per_cycle;
         if turns.is_some_and(|turns| turns.fract() != 0.0 || keys.drive != DriveWord::Prescribed) {
             let message = format!("the joint \"{name}\" does not repeat after a cycle");
-            report("turns_per_cycle", message, "use whole turns and drive = \"prescribed\"", log);
+            report(
+                "turns_per_cycle",
+                message,
+                "use whole turns and drive = \"prescribed\"",
+                log,
+            );
         }
         let waveform = match channel {
             Some(channel) if section.value(channel.name).is_some() => {
@@ -188,7 +206,9 @@ impl RigJoint {
             _ => None,
         };
         if keys.drive == DriveWord::Prescribed && waveform.is_some() == turns.is_some() {
-            let message = format!("the prescribed joint \"{name}\" needs one of [joints.motion] and `turns_per_cycle`");
+            let message = format!(
+                "the prescribed joint \"{name}\" needs one of [joints.motion] and `turns_per_cycle`"
+            );
             report("drive", message, "", log);
         }
         is_sound.then_some(Self { keys, waveform })
@@ -213,7 +233,8 @@ impl RigJoint {
     }
 
     fn is_zeroed(&self) -> bool {
-        let is_free = self.keys.kind == JointKind::Translation && self.keys.drive == DriveWord::Loaded;
+        let is_free =
+            self.keys.kind == JointKind::Translation && self.keys.drive == DriveWord::Loaded;
         self.keys.zeroed.unwrap_or(is_free)
     }
 
@@ -251,7 +272,11 @@ impl RigJoint {
         };
         JointDescription {
             name,
-            column: leaked(&format!("{}_{}", keys.name.replace('-', "_"), keys.kind.unit())),
+            column: leaked(&format!(
+                "{}_{}",
+                keys.name.replace('-', "_"),
+                keys.kind.unit()
+            )),
             symbol: name,
             long_name: name,
             title: given(&keys.title, name),
@@ -263,12 +288,16 @@ impl RigJoint {
             settling: keys.settling,
             is_zeroed: self.is_zeroed(),
             inertia: if is_rotation {
-                1e3 * keys.inertia_kg_m2.unwrap_or(1e-3 * knee::MOMENT_OF_INERTIA_TONNE_MM2)
+                1e3 * keys
+                    .inertia_kg_m2
+                    .unwrap_or(1e-3 * knee::MOMENT_OF_INERTIA_TONNE_MM2)
             } else {
                 1e-3 * keys.inertia_kg.unwrap_or(1e3 * knee::MASS_TONNE)
             },
             damping: if is_rotation {
-                1e3 * keys.damping_nm_s_per_rad.unwrap_or(1e-3 * knee::DAMPING_NMM_S_PER_RAD)
+                1e3 * keys
+                    .damping_nm_s_per_rad
+                    .unwrap_or(1e-3 * knee::DAMPING_NMM_S_PER_RAD)
             } else {
                 keys.damping_n_s_per_mm.unwrap_or(knee::DAMPING_N_S_PER_MM)
             },
@@ -293,7 +322,10 @@ impl Rig {
             let source = file.source(section, "file", log)?;
             Self::of_text(&source, Base::of(file.shared_files(), file.path()), log)?
         } else if let Some((word, text)) = preset {
-            let source = Arc::new(NamedSource::new(format!("machines/{word}.toml"), text.to_owned()));
+            let source = Arc::new(NamedSource::new(
+                format!("machines/{word}.toml"),
+                text.to_owned(),
+            ));
             let base = log.base;
             Self::of_text(&source, base, log)?
         } else {
@@ -324,7 +356,11 @@ impl Rig {
             log.problem(section.key_span(key), Fault::new(message, advice));
             None
         };
-        let names: Vec<&str> = self.joints.iter().map(|joint| joint.keys.name.as_str()).collect();
+        let names: Vec<&str> = self
+            .joints
+            .iter()
+            .map(|joint| joint.keys.name.as_str())
+            .collect();
         if let Some(Names(order)) = &self.keys.order {
             let (mut wanted, mut present) = (order.clone(), names.clone());
             wanted.sort();
@@ -343,7 +379,11 @@ impl Rig {
                     "the axis of \"{}\" is fixed in the bearing, but a joint before it reads zero where the machine settles",
                     joint.keys.name
                 );
-                return fault("joints", message, "move it nearer to the bearing, before the loaded translations");
+                return fault(
+                    "joints",
+                    message,
+                    "move it nearer to the bearing, before the loaded translations",
+                );
             }
             has_zeroed |= joint.is_zeroed();
         }
@@ -360,8 +400,13 @@ impl Rig {
             return fault("joints", message.to_owned(), "");
         }
         if let Some((one, other)) = self.same_freedom() {
-            let message = format!("the loaded joints \"{one}\" and \"{other}\" move along the same line");
-            return fault("joints", message, "lock one of them: their balance is not determined");
+            let message =
+                format!("the loaded joints \"{one}\" and \"{other}\" move along the same line");
+            return fault(
+                "joints",
+                message,
+                "lock one of them: their balance is not determined",
+            );
         }
         Some(self)
     }
@@ -373,10 +418,12 @@ impl Rig {
         let loaded = |joint: &&RigJoint| joint.keys.drive == DriveWord::Loaded;
         let loaded: Vec<&RigJoint> = self.joints.iter().filter(loaded).collect();
         let pairs = loaded.iter().enumerate();
-        let mut pairs = pairs.flat_map(|(n, one)| loaded[..n].iter().map(move |other| (other, one)));
+        let mut pairs =
+            pairs.flat_map(|(n, one)| loaded[..n].iter().map(move |other| (other, one)));
         let found = pairs.find(|(one, other)| {
             let [a, b] = [one, other].map(|joint| Vec3::from(joint.keys.axis).normalize());
-            let is_alike = one.keys.kind == other.keys.kind && one.keys.point_mm == other.keys.point_mm;
+            let is_alike =
+                one.keys.kind == other.keys.kind && one.keys.point_mm == other.keys.point_mm;
             is_alike && a.cross(&b).norm() < PARALLEL
         });
         found.map(|(one, other)| (one.keys.name.as_str(), other.keys.name.as_str()))
@@ -396,12 +443,15 @@ impl Rig {
 
     /// Returns the description of the joints, which lives as long as the process: equal machines share one.
     fn mechanism(&self) -> &'static Mechanism {
-        static KNOWN: LazyLock<Mutex<BTreeMap<String, &'static Mechanism>>> = LazyLock::new(Mutex::default);
+        static KNOWN: LazyLock<Mutex<BTreeMap<String, &'static Mechanism>>> =
+            LazyLock::new(Mutex::default);
         let joints: Vec<&RigJointKeys> = self.joints.iter().map(|joint| &joint.keys).collect();
         let key = format!("{:?} {joints:?}", self.keys.tests);
         // A panic elsewhere leaves the map whole.
         let mut known = KNOWN.lock().unwrap_or_else(PoisonError::into_inner);
-        known.entry(key).or_insert_with(|| Box::leak(Box::new(self.described())))
+        known
+            .entry(key)
+            .or_insert_with(|| Box::leak(Box::new(self.described())))
     }
 
     fn described(&self) -> Mechanism {
@@ -424,7 +474,9 @@ impl Rig {
         let columns: Vec<CycleQuantity> = positions.chain(contact).collect();
         Mechanism {
             tests: self.keys.tests,
-            joints: std::array::from_fn(|j| self.joints.get(j).map_or(fixed, RigJoint::description)),
+            joints: std::array::from_fn(|j| {
+                self.joints.get(j).map_or(fixed, RigJoint::description)
+            }),
             in_files,
             channels: &[],
             columns: columns.leak(),
@@ -447,7 +499,11 @@ impl Rig {
         }
         let list = TableItem {
             is_list: true,
-            ..TableItem::new("joints", "A joint of a machine, from the bearing to the counterface.", joint)
+            ..TableItem::new(
+                "joints",
+                "A joint of a machine, from the bearing to the counterface.",
+                joint,
+            )
         };
         let mut items = RigKeys::items();
         items.push(Item::Table(list));
@@ -458,21 +514,38 @@ impl Rig {
         let keys = RigKeys::read(section, log);
         let sections = section.list("joints", log)?;
         if sections.len() > MAX_JOINTS {
-            let message = format!("a machine has at most {MAX_JOINTS} joints, and this one has {}", sections.len());
-            log.problem(section.key_span("joints"), Fault::new(message, "two bodies have six freedoms"));
+            let message = format!(
+                "a machine has at most {MAX_JOINTS} joints, and this one has {}",
+                sections.len()
+            );
+            log.problem(
+                section.key_span("joints"),
+                Fault::new(message, "two bodies have six freedoms"),
+            );
             return None;
         }
-        let joints: Vec<Option<RigJoint>> =
-            sections.iter().map(|joint| RigJoint::read(joint, log)).collect();
+        let joints: Vec<Option<RigJoint>> = sections
+            .iter()
+            .map(|joint| RigJoint::read(joint, log))
+            .collect();
         let joints: Vec<RigJoint> = joints.into_iter().collect::<Option<_>>()?;
         for (number, joint) in joints.iter().enumerate() {
             let name = &joint.keys.name;
-            if joints[..number].iter().any(|other| other.keys.name == *name) {
-                let fault = Fault::new(format!("two joints are called \"{name}\""), "give each its own name");
+            if joints[..number]
+                .iter()
+                .any(|other| other.keys.name == *name)
+            {
+                let fault = Fault::new(
+                    format!("two joints are called \"{name}\""),
+                    "give each its own name",
+                );
                 log.problem(sections[number].value_span("name"), fault);
                 return None;
             }
         }
-        Some(Self { keys: keys?, joints })
+        Some(Self {
+            keys: keys?,
+            joints,
+        })
     }
 }

@@ -59,7 +59,11 @@ pub(crate) fn not_reached(finished: &Finished<'_>) -> Vec<PlausibilityWarning> {
         joint,
         ..APPLIED[0]
     });
-    let of_knee = if *machine.mechanism == KNEE { &APPLIED[1..] } else { &[] };
+    let of_knee = if *machine.mechanism == KNEE {
+        &APPLIED[1..]
+    } else {
+        &[]
+    };
     let missed = pressing.iter().chain(of_knee).filter_map(|applied| {
         let cycles = finished.cycles();
         let missed = cycles.filter_map(|cycle| missed(finished.machine(&cycle), &cycle, applied));

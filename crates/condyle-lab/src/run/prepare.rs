@@ -153,7 +153,9 @@ fn memory_mb_touching(case: &Case, march: &March, nodes_touched: f64, nodes_near
 /// Returns the mean of the axial force over a cycle, N; 0 without a waveform of axial force.
 pub(crate) fn mean_load_n(march: &March) -> f64 {
     let machine = march.test().machine();
-    let pressing = machine.pressing_joint().map(|index| &machine.joint(index).drive);
+    let pressing = machine
+        .pressing_joint()
+        .map(|index| &machine.joint(index).drive);
     let Some(Drive::Loaded(load)) = pressing else {
         return 0.0;
     };

@@ -35,7 +35,14 @@ pub fn disc_plan(edge: f64, layers: usize) -> Result<Plan, TooManyNodes> {
     around.extend((0..across).map(|i| core(across - i, 0)));
     let mut quads = Vec::new();
     for i in 0..across {
-        let cell = |k| [core(i, k), core(i, k + 1), core(i + 1, k + 1), core(i + 1, k)];
+        let cell = |k| {
+            [
+                core(i, k),
+                core(i, k + 1),
+                core(i + 1, k + 1),
+                core(i + 1, k),
+            ]
+        };
         quads.extend((0..across).map(cell));
     }
     let mut inner = around.clone();
@@ -97,9 +104,16 @@ mod tests {
         let disc = plan.hexahedra(&vec![(0.0, 0.05); count], 1);
         // The polygon of the rim has this area.
         let sides = 4.0 * (plan.quads.len() as f64 / 4.0).sqrt();
-        assert!(disc.mesh.worst_quality() > 0.6, "{}", disc.mesh.worst_quality());
+        assert!(
+            disc.mesh.worst_quality() > 0.6,
+            "{}",
+            disc.mesh.worst_quality()
+        );
         let area = disc.mesh.volume() / 0.05;
-        assert!(area < PI && area > PI * (1.0 - 7.0 / (sides * sides)), "{area}");
+        assert!(
+            area < PI && area > PI * (1.0 - 7.0 / (sides * sides)),
+            "{area}"
+        );
         assert!(disc.mesh.qualities().all(|quality| quality > 0.0));
     }
 }

@@ -29,7 +29,7 @@ fn from_load_deg([x, y, z]: [f64; 3]) -> f64 {
 }
 
 fn around_load_deg([x, _, z]: [f64; 3]) -> f64 {
-    x.atan2(z).to_degrees()
+    x.atan2(-z).to_degrees()
 }
 
 #[cfg(test)]
@@ -38,8 +38,8 @@ mod tests {
 
     #[test]
     fn directions_are_those_of_the_machine() {
-        assert_eq!((from_load_deg([0.0, -14.0, 0.0]), around_load_deg([0.0, -14.0, 2.0])), (0.0, 0.0));
-        assert!((from_load_deg([0.0, -1.0, 1.0]) - 45.0).abs() < 1e-12);
+        assert_eq!((from_load_deg([0.0, -14.0, 0.0]), around_load_deg([0.0, -14.0, -2.0])), (0.0, 0.0));
+        assert!((from_load_deg([0.0, -1.0, -1.0]) - 45.0).abs() < 1e-12);
         assert_eq!(around_load_deg([3.0, -10.0, 0.0]), 90.0);
     }
 }

@@ -84,7 +84,8 @@ impl FemoralSurface {
             Self::Placed(femur) => femur.reach_mm(),
             Self::Sphere(ball) => ball.centre.norm() + ball.tube_radius_mm,
             Self::Cylinder(cylinder) => cylinder.radius_mm,
-            Self::Plane => 0.0,
+            // It has no end; the approach starts this far above the highest node.
+            Self::Plane => 1.0,
             Self::Mesh(field) => field.reach_mm(),
         }
     }

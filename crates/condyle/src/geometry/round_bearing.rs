@@ -9,8 +9,8 @@ use crate::{Mat3, Vec3};
 
 /// Dimensions and mounting of a hemispherical cup around the origin.
 ///
-/// The machine presses the counterface along -y. With x anterior and the cup below its head, as in many simulators, z is
-/// medial for a right hip and lateral for a left one.
+/// The machine presses the counterface along -y. With the cup below its head, as in many simulators, and x anterior, z is
+/// lateral for a left hip; a right hip is its mirror image.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CupShape {
     /// Inner radius.
@@ -19,7 +19,7 @@ pub struct CupShape {
     pub thickness_mm: f64,
     /// Angle between the plane of the opening and the plane across the load, in the frontal plane.
     pub inclination_deg: f64,
-    /// Rotation of the inclined cup about the load, + turns its pole from z towards x.
+    /// Rotation of the inclined cup about the load, + turns its opening towards anterior.
     pub anteversion_deg: f64,
 }
 
@@ -45,8 +45,8 @@ impl CupShape {
         let turn = |axis: Vec3, degrees: f64| {
             nalgebra::Rotation3::from_scaled_axis(axis * degrees.to_radians())
         };
-        // About -x the pole goes from -y towards +z.
-        let mounted = turn(Vec3::y(), self.anteversion_deg) * turn(-Vec3::x(), self.inclination_deg);
+        // About x the pole goes from -y towards -z.
+        let mounted = turn(Vec3::y(), self.anteversion_deg) * turn(Vec3::x(), self.inclination_deg);
         mounted.into_inner()
     }
 
@@ -65,7 +65,12 @@ impl CupShape {
             let radius_mm = self.radius_mm + outward * self.thickness_mm;
             mounting * (Vec3::new(around.x, -cosine, around.y) * radius_mm)
         };
-        round_bearing(FRAC_PI_2 * self.radius_mm, self.thickness_mm, meshing, place)
+        round_bearing(
+            FRAC_PI_2 * self.radius_mm,
+            self.thickness_mm,
+            meshing,
+            place,
+        )
     }
 }
 
@@ -107,9 +112,18 @@ mod tests {
     #[test]
     fn verify_volume_surface_and_quality_of_a_cup() {
         let cup = CupShape::default();
-        let insert = cup.insert(Meshing { edge_mm: 1.0, layers: 6 }).unwrap();
+        let insert = cup
+            .insert(Meshing {
+                edge_mm: 1.0,
+                layers: 6,
+            })
+            .unwrap();
         let mesh = insert.mesh();
-        assert!((8_000..11_000).contains(&mesh.hexes.len()), "{}", mesh.hexes.len());
+        assert!(
+            (8_000..11_000).contains(&mesh.hexes.len()),
+            "{}",
+            mesh.hexes.len()
+        );
         assert!(mesh.worst_quality() > 0.5, "{}", mesh.worst_quality());
         let (inner, outer) = (cup.radius_mm, cup.radius_mm + cup.thickness_mm);
         let volume = 2.0 / 3.0 * PI * (outer.powi(3) - inner.powi(3));
@@ -123,21 +137,38 @@ mod tests {
             // Normals at the rim are those of faces on one side only.
             assert!(normal.dot(position) < -0.998 * inner);
         }
-        assert!(insert.thickness_mm().iter().all(|&thickness| thickness == 8.0));
+        assert!(
+            insert
+                .thickness_mm()
+                .iter()
+                .all(|&thickness| thickness == 8.0)
+        );
     }
 
     #[test]
     fn the_pole_of_an_inclined_cup_is_medial() {
         let pole = CupShape::default().pole();
-        let expected = Vec3::new(0.0, -(30f64.to_radians().cos()), 0.5);
+        let expected = Vec3::new(0.0, -(30f64.to_radians().cos()), -0.5);
         assert!((pole - expected).norm() < 1e-12);
-        let turned = CupShape { anteversion_deg: 90.0, ..CupShape::default() }.pole();
-        assert!((turned.x - 0.5).abs() < 1e-12);
+        let turned = CupShape {
+            anteversion_deg: 90.0,
+            ..CupShape::default()
+        }
+        .pole();
+        assert!((turned.x + 0.5).abs() < 1e-12);
     }
 
     #[test]
     fn verify_a_pin_is_a_cylinder() {
-        let insert = pin(4.5, 10.0, Meshing { edge_mm: 0.5, layers: 5 }).unwrap();
+        let insert = pin(
+            4.5,
+            10.0,
+            Meshing {
+                edge_mm: 0.5,
+                layers: 5,
+            },
+        )
+        .unwrap();
         // Its rim has 32 sides.
         let volume = 16.0 * (PI / 16.0).sin() * 4.5 * 4.5 * 10.0;
         assert!((insert.volume_mm3() / volume - 1.0).abs() < 1e-12);

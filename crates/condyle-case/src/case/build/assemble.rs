@@ -177,7 +177,9 @@ impl Case {
         let (e_mpa, v) = (material.youngs_modulus_mpa, material.poissons_ratio);
         let modulus_mpa = match &self.insert.shape {
             // A curved layer is softer than a flat one of the same thickness.
-            InsertShape::Cup(cup) => shell_modulus(e_mpa, v, cup.shape.radius_mm, cup.shape.thickness_mm),
+            InsertShape::Cup(cup) => {
+                shell_modulus(e_mpa, v, cup.shape.radius_mm, cup.shape.thickness_mm)
+            }
             _ => confined_modulus(e_mpa, v),
         };
         let pressure = match self.contact.law().unwrap_or(&PressureLawChoice::Linear) {

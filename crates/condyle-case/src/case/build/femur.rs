@@ -218,7 +218,9 @@ fn square() -> TriangleMesh {
     const HALF_MM: f64 = 30.0;
     let corner = |(x, z): (f64, f64)| Vec3::new(x * HALF_MM, 0.0, z * HALF_MM);
     TriangleMesh {
-        vertices: [(-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, 1.0)].map(corner).to_vec(),
+        vertices: [(-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, 1.0)]
+            .map(corner)
+            .to_vec(),
         triangles: vec![[0, 1, 2], [0, 2, 3]],
     }
 }

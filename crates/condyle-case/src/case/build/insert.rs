@@ -4,7 +4,9 @@ use std::collections::BTreeSet;
 use std::path::Path;
 
 use condyle::Vec3;
-use condyle::geometry::{self, GenericInsertShape, Meshing, TriangleMesh, Underside, flat_insert, pin};
+use condyle::geometry::{
+    self, GenericInsertShape, Meshing, TriangleMesh, Underside, flat_insert, pin,
+};
 use condyle_fem::HexMesh;
 use condyle_mesh::columns::listed_holes;
 use condyle_mesh::formats::{HexFile, parse_surface, read_hexahedra, surface_bytes};
