@@ -125,10 +125,10 @@ impl Preset {
     /// Returns the word and the text of the machine file, unless the preset is the knee simulator.
     fn rig(self) -> Option<(&'static str, &'static str)> {
         let text = match self {
-            Self::StanmoreForce | Self::StanmoreDisplacement => return None,
             Self::Iso142421Like => include_str!("../../machines/iso-14242-1-like.toml"),
             Self::Iso142423Like => include_str!("../../machines/iso-14242-3-like.toml"),
             Self::PinOnDisc => include_str!("../../machines/pin-on-disc.toml"),
+            _ => return None,
         };
         Some((self.word(), text))
     }

@@ -127,7 +127,14 @@ impl Case {
 
 /// Returns a case to start from: every key with its default and its meaning.
 pub fn template(preset: Preset) -> String {
-    let text = format!("[machine]\npreset = {:?}\n", preset.word());
+    let bodies = match preset {
+        Preset::Iso142421Like | Preset::Iso142423Like => {
+            "[femur]\nshape = \"sphere\"\nradius_mm = 14.0\n[insert]\nshape = \"cup\"\n"
+        }
+        Preset::PinOnDisc => "[femur]\nshape = \"plane\"\n[insert]\nshape = \"pin\"\n",
+        _ => "",
+    };
+    let text = format!("{bodies}[machine]\npreset = {:?}\n", preset.word());
     match CaseReader::new(MemoryFiles::default()).parse(&text, "template", Path::new("")) {
         Ok(case) => case.written(true),
         Err(error) => unreachable!("the defaults are a case, a test reads them: {error}"),
