@@ -37,9 +37,9 @@ impl BallInCup {
         for _ in 0..100 {
             let middle = f64::midpoint(low, high);
             if at(middle).force_n() < load_n {
-                low = middle
+                low = middle;
             } else {
-                high = middle
+                high = middle;
             }
         }
         at(low)
