@@ -2,7 +2,7 @@
 
 use std::fs;
 
-use condyle_lab::{BodyFacts, InsertFacts, Preview};
+use condyle_lab::{BodyFacts, EdgeFacts, InsertFacts, Preview};
 
 use crate::{
     arguments::Check,
@@ -64,6 +64,10 @@ fn rows(preview: &Preview) -> Vec<Row> {
     rows.extend([
         ("settled, from the origin", settled),
         ("  contact", pressed),
+        (
+            "  smooth femur to triangles",
+            format!("{:.4} mm where they touch", at_rest.femur_deviation_mm),
+        ),
         ("a run needs", needs),
     ]);
     rows
@@ -78,6 +82,12 @@ fn rows_of_body(name: &'static str, body: &BodyFacts) -> Vec<Row> {
     let [along, up, across] = body.size_mm;
     let size = format!("{along:.1} x {up:.1} x {across:.1} mm");
     let mut rows = vec![(name, source), ("  size AP, SI, ML", size)];
+    if let Some(EdgeFacts { edge_mm, slivers }) = &body.edges {
+        let [shortest, median, longest] = edge_mm;
+        let edges =
+            format!("{shortest:.2} to {longest:.2} mm, median {median:.2} mm; {slivers} slivers");
+        rows.push(("  edges of triangles", edges));
+    }
     if body.file.is_some() {
         let defects = match body.defects.len() {
             0 => "none".to_owned(),

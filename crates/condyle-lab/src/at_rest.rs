@@ -32,6 +32,8 @@ pub struct AtRest {
     pub contact_area_mm2: f64,
     /// Highest pressure, MPa.
     pub peak_pressure_mpa: f64,
+    /// Largest distance between the triangles of the femur and its smooth surface in contact, mm.
+    pub femur_deviation_mm: f64,
     #[serde(skip)]
     pub(crate) pose: Pose,
     #[serde(skip)]
@@ -84,6 +86,10 @@ impl AtRest {
             medial_load_share: is_knee.then(|| medial_n / axial_force_n),
             contact_area_mm2: sum(|node| node.covered_mm2),
             peak_pressure_mpa: result.peak_pressure_mpa,
+            femur_deviation_mm: result.touched.iter().fold(0.0, |largest, node| {
+                let place = motion.pose.to_femur(&surface.positions[node.node as usize]);
+                femur.deviation_mm(&place).max(largest)
+            }),
             pose: motion.pose,
             nodes_near: surface.positions.iter().filter(is_near).count(),
             touched: result.touched,

@@ -12,7 +12,7 @@ mod run;
 pub use crate::{
     at_rest::AtRest,
     markdown::aligned,
-    preview::{BodyFacts, Expected, InsertFacts, Preview},
+    preview::{BodyFacts, EdgeFacts, Expected, InsertFacts, Preview},
     run::{
         Outcome, Reached, RunEvent, RunOptions,
         error::RunError,

@@ -84,6 +84,7 @@ impl Preview {
             file,
             triangles.bounds(),
             file.map(|_| triangles.triangles.len()),
+            file.and_then(|_| EdgeFacts::of(&triangles)),
             &warnings,
         );
         let insert = InsertFacts::of(&case, &march, &warnings);
@@ -144,6 +145,8 @@ pub struct BodyFacts {
     pub size_mm: [f64; 3],
     /// Triangles of its file; none for hexahedra and for a shape by dimensions.
     pub triangles: Option<usize>,
+    /// Their edges.
+    pub edges: Option<EdgeFacts>,
     /// Defects of its file.
     pub defects: Vec<String>,
 }
@@ -154,6 +157,7 @@ impl BodyFacts {
         file: Option<&DataFile>,
         (low, high): (Vec3, Vec3),
         triangles: Option<usize>,
+        edges: Option<EdgeFacts>,
         warnings: &[String],
     ) -> Self {
         let file = file.map(DataFile::name);
@@ -164,9 +168,41 @@ impl BodyFacts {
             shape,
             size_mm: (high - low).into(),
             triangles,
+            edges,
             defects: warnings.iter().filter_map(own).collect(),
             file,
         }
+    }
+}
+
+/// The shape of the triangles of a mesh.
+#[derive(Debug, Serialize)]
+pub struct EdgeFacts {
+    /// Length of the shortest, the median and the longest edge, mm.
+    pub edge_mm: [f64; 3],
+    /// Triangles whose height is less than a twentieth of their longest edge.
+    pub slivers: usize,
+}
+
+impl EdgeFacts {
+    /// Returns the shape of the triangles of `mesh`; `None` without triangles.
+    fn of(mesh: &TriangleMesh) -> Option<Self> {
+        const SLIVER: f64 = 0.05;
+        let mut lengths = Vec::with_capacity(3 * mesh.triangles.len());
+        let mut slivers = 0;
+        for triangle in 0..mesh.triangles.len() {
+            let [a, b, c] = mesh.corners(triangle);
+            let edges = [b - a, c - b, a - c].map(|edge| edge.norm());
+            let longest = edges.into_iter().fold(0.0, f64::max);
+            slivers += usize::from((b - a).cross(&(c - a)).norm() < SLIVER * longest * longest);
+            lengths.extend(edges);
+        }
+        lengths.sort_unstable_by(f64::total_cmp);
+        let (first, last) = (lengths.first()?, lengths.last()?);
+        Some(Self {
+            edge_mm: [*first, lengths[lengths.len() / 2], *last],
+            slivers,
+        })
     }
 }
 
@@ -193,6 +229,7 @@ impl InsertFacts {
         let insert = march.test().insert.as_ref();
         let (mesh, places) = (insert.mesh(), insert.surface().positions);
         let dishes = Dishes::find(&places);
+        let triangles = case.insert_triangles();
         let thickness = |dish: Vec3| {
             let nodes = places.iter().zip(insert.thickness_mm());
             let near = nodes.filter(|(place, _)| (*place - dish).norm() < AROUND_DISH_MM);
@@ -204,7 +241,8 @@ impl InsertFacts {
                 case.insert.shape.word(),
                 case.insert.file(),
                 bounds(&mesh.nodes),
-                case.insert_triangle_count(),
+                triangles.as_ref().map(|mesh| mesh.triangles.len()),
+                triangles.as_ref().and_then(EdgeFacts::of),
                 warnings,
             ),
             hexahedra: mesh.hexes.len(),

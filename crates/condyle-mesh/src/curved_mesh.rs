@@ -87,17 +87,6 @@ impl<'a> CurvedMesh<'a> {
         normal - along * (2.0 * normal.dot(&along))
     }
 
-    /// Returns the squared distance from a point to the triangle's plane, mm2: a cheap lower bound.
-    pub fn plane_distance2(&self, triangle: usize, point: &Vec3) -> f64 {
-        let (normal, offset) = self.planes[triangle];
-        (normal.dot(point) - offset).powi(2)
-    }
-
-    /// Returns the squared distance from a point to the flat triangle, mm2.
-    pub fn distance2(&self, triangle: usize, point: &Vec3) -> f64 {
-        Self::distance2_to_triangle(&self.mesh.corners(triangle), point)
-    }
-
     /// Returns the squared distance from a point to a flat triangle, mm2.
     pub fn distance2_to_triangle(corners: &[Vec3; 3], point: &Vec3) -> f64 {
         (weighted(corners, closest_point(corners, point)) - point).norm_squared()
@@ -176,7 +165,13 @@ pub struct Foot {
     pub normal: Vec3,
 }
 
-fn lift(corners: &[Vec3; 3], normals: &[Vec3; 3], weights: [f64; 3], flat: &Vec3) -> Vec3 {
+/// Returns the rise of the curved surface over the place `flat` of a triangle.
+pub(crate) fn lift(
+    corners: &[Vec3; 3],
+    normals: &[Vec3; 3],
+    weights: [f64; 3],
+    flat: &Vec3,
+) -> Vec3 {
     let half = |i: usize| normals[i] * (weights[i] / 2.0 * (corners[i] - flat).dot(&normals[i]));
     half(0) + half(1) + half(2)
 }

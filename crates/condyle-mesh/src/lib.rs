@@ -5,7 +5,8 @@
 //! 1. **A file becomes a mesh.** [`formats`] reads and writes triangle surfaces ([`TriangleMesh`]) and hexahedra,
 //!    from a disk or from memory ([`files`]).
 //! 2. **A triangle mesh becomes a surface.** [`repair`] welds, closes and orients it, and lists the defects that it
-//!    cannot repair. [`CurvedMesh`] takes its facets as samples of a curved surface.
+//!    cannot repair. [`CurvedMesh`] takes its facets as samples of a curved surface, and
+//!    [`DividedMesh`] divides those that are long.
 //! 3. **A surface becomes hexahedra.** [`columns`] fills the space below it with columns along y.
 //!
 //! ```
@@ -28,6 +29,7 @@
 mod coarse;
 pub mod columns;
 mod curved_mesh;
+mod divided_mesh;
 pub mod files;
 pub mod formats;
 pub mod repair;
@@ -36,4 +38,5 @@ mod triangle_mesh;
 pub use coarse::coarser;
 pub use condyle_fem::Vec3;
 pub use curved_mesh::{CurvedMesh, Foot};
+pub use divided_mesh::DividedMesh;
 pub use triangle_mesh::{TriangleMesh, bounds, hit};

@@ -95,7 +95,7 @@ impl Limits {
     pub const BYTES_OF_INSERT_NODE: f64 = 800.0;
 
     /// Bytes of a node of the distance field of a femur in triangles, while that is made.
-    pub const BYTES_OF_FIELD_NODE: f64 = 48.0;
+    pub const BYTES_OF_FIELD_NODE: f64 = 52.0;
 
     /// Returns the number of items of `bytes_each` bytes that fit into the memory.
     pub(super) fn most(&self, bytes_each: f64) -> usize {

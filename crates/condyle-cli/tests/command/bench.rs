@@ -193,3 +193,14 @@ pub fn cases_with_data(test: &str, file: &str) -> Option<PathBuf> {
     }
     there.then(|| root.join("cases"))
 }
+
+/// The folder of reproducers of a report from outside, if it is there; says so if not.
+pub fn reproducer(report: &str, test: &str) -> Option<PathBuf> {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../shared/reproducers");
+    let folder = root.join(report);
+    if !folder.is_dir() {
+        eprintln!("skipped: {test}: shared/reproducers/{report} is not there");
+        return None;
+    }
+    folder.canonicalize().ok()
+}

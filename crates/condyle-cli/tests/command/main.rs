@@ -14,6 +14,7 @@ mod contract;
 mod converge;
 mod cross_linked;
 mod determinism;
+mod femur_meshes;
 mod folders;
 mod interrupt;
 mod left_knee;

@@ -180,6 +180,53 @@ pub(crate) fn thin_polyethylene(finished: &Finished<'_>) -> Option<PlausibilityW
     (thinnest < MIN_THICKNESS_MM).then(|| warning("thin_polyethylene", value, message, advice))
 }
 
+/// Distance between the triangles of a femur and its smooth surface up to which the contact is right, mm: the chord error
+/// of an export for manufacturing. Beyond it the triangles no longer determine the surface.
+const MAX_DEVIATION_MM: f64 = 0.05;
+
+/// Largest part of the contact, by overclosure, where the triangles of a femur do not determine its surface, %; our choice:
+/// in sound knees, up to 4 % lies at the sharp edges that the smooth surface rounds.
+const MAX_ROUGH_PERCENT: f64 = 10.0;
+
+/// Warns of a femur whose triangles are too coarse, or too rough, where they touch the insert.
+pub(crate) fn femur_mesh(finished: &Finished<'_>) -> Option<PlausibilityWarning> {
+    let touched: Vec<bool> = {
+        let worn = finished.march.fields().wear_depth_mm.iter();
+        let pressed = finished.march.state().first_pressure_mpa.iter();
+        worn.zip(pressed)
+            .map(|(worn, pressed)| worn + pressed > 0.0)
+            .collect()
+    };
+    let femur = finished.march.femur();
+    let (mut whole, mut doubtful, mut largest_mm): (f64, f64, f64) = (0.0, 0.0, 0.0);
+    for pose in finished.cycles().flat_map(|cycle| poses(finished, &cycle)) {
+        let nodes = touched
+            .iter()
+            .enumerate()
+            .filter(|(_, is_touched)| **is_touched);
+        for (node, _) in nodes {
+            let place = pose.to_femur(&finished.surface.positions[node]);
+            // The overclosure is a measure of the pressure in every model.
+            let pressed = (-femur.gap_mm(&place)).max(0.0) * finished.surface.shares[node].area_mm2;
+            let deviation_mm = femur.deviation_mm(&place);
+            whole += pressed;
+            if pressed > 0.0 && deviation_mm > MAX_DEVIATION_MM {
+                doubtful += pressed;
+                largest_mm = largest_mm.max(deviation_mm);
+            }
+        }
+    }
+    let percent = 100.0 * doubtful / whole.max(f64::MIN_POSITIVE);
+    let message = format!(
+        "{percent:.0} % of the contact is where the smooth surface of the femur is more than {MAX_DEVIATION_MM} mm from the \
+             triangles of its mesh, up to {largest_mm:.3} mm; up to {MAX_ROUGH_PERCENT:.0} % is acceptable"
+    );
+    let advice = "The mesh is too coarse, too rough, or has a sharp edge there: export the femur with a chord error of at most 0.03 mm, \
+                 without decimation, and smooth a scan.";
+    let value = (percent, MAX_ROUGH_PERCENT, "%");
+    (percent > MAX_ROUGH_PERCENT).then(|| warning("femur_mesh", value, message, advice))
+}
+
 /// Largest part of a cycle during which a condyle may be beyond the rim, %; our choice.
 const MAX_BEYOND_PERCENT: f64 = 1.0;
 /// Distance within which a condyle counts as being at the surface, loaded or not, mm: the gap up to which a mesh's
@@ -206,8 +253,8 @@ pub(crate) fn femur_beyond_rim(finished: &Finished<'_>) -> Option<PlausibilityWa
     Some(warning("femur_beyond_rim", value, message, advice))
 }
 
-/// Returns, for every side, the part of a cycle during which its condyle is nearest to the rim.
-fn beyond(finished: &Finished<'_>, cycle: &SolvedCycle<'_>) -> Vec<Beyond> {
+/// Returns the poses of the femur at instants of a cycle.
+fn poses(finished: &Finished<'_>, cycle: &SolvedCycle<'_>) -> Vec<Pose> {
     let test = finished.march.test();
     let machine = finished.machine(cycle);
     let chain = Chain::new(
@@ -215,14 +262,20 @@ fn beyond(finished: &Finished<'_>, cycle: &SolvedCycle<'_>) -> Vec<Beyond> {
         finished.march.state().zero_mm,
         test.flexion_axis_mm,
     );
-    // A gap at every node is slow: a coarse sample of the cycle is enough for a share in %.
+    // A gap at every node is slow: a coarse sample of the cycle is enough for a part of it.
     let every = cycle.rows.len().div_ceil(INSTANTS).max(1);
-    let looked_at: Vec<Pose> = cycle
+    cycle
         .rows
         .iter()
         .step_by(every)
         .map(|row| chain.at(&row.positions).pose)
-        .collect();
+        .collect()
+}
+
+/// Returns, for every side, the part of a cycle during which its condyle is nearest to the rim.
+fn beyond(finished: &Finished<'_>, cycle: &SolvedCycle<'_>) -> Vec<Beyond> {
+    let looked_at = poses(finished, cycle);
+    let machine = finished.machine(cycle);
     let sides = machine.mechanism.regions.iter().enumerate();
     let of_side = |(side, region): (usize, &condyle::machine::Region)| {
         let at_rim = looked_at

@@ -22,8 +22,12 @@ use finished::{Finished, warning};
 /// A check of one number; none if the run is plausible.
 type Check = fn(&Finished<'_>) -> Option<PlausibilityWarning>;
 
-/// Place of the femur on the insert, and impossible pressure.
-const PLACE: [Check; 2] = [bodies::pressure_at_rim, bodies::pressure_beyond_flow];
+/// Place of the femur on the insert, its mesh, and impossible pressure.
+const PLACE: [Check; 3] = [
+    bodies::pressure_at_rim,
+    bodies::femur_mesh,
+    bodies::pressure_beyond_flow,
+];
 
 /// Load on the polyethylene, and quality of the solution.
 const REST: [Check; 10] = [

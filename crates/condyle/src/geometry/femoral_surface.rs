@@ -90,6 +90,15 @@ impl FemoralSurface {
         }
     }
 
+    /// Returns the largest distance between the surface and the triangles that it is made from next to a point, mm; 0 of
+    /// a shape by dimensions.
+    pub fn deviation_mm(&self, point: &Vec3) -> f64 {
+        match self {
+            Self::Mesh(field) => field.deviation_mm(point),
+            Self::Generic(_) | Self::Placed(_) | Self::Sphere(_) | Self::Cylinder(_) => 0.0,
+        }
+    }
+
     /// Returns bounds on the surface around points, in every lane.
     #[inline(always)]
     pub(crate) fn curvature_bounds<T: Number>(&self, points: &Vector<T>) -> CurvatureBounds {

@@ -16,13 +16,15 @@ use serde::{Deserialize, Serialize};
 
 use self::{
     curvature_grid::CurvatureGrid,
-    grid::{NodeGrid, add_laplacian, bound_far_gaps, gaps_at_nodes, spline_coefficients},
+    grid::{
+        NodeGrid, SPACING_MM, add_laplacian, bound_far_gaps, gaps_at_nodes, spline_coefficients,
+    },
     spline::GapSpline,
 };
-use condyle_mesh::{CurvedMesh, TriangleMesh, repair::edge_report};
+use condyle_mesh::{DividedMesh, TriangleMesh, repair::edge_report};
 
 use super::surface_sample::{CurvatureBounds, SurfaceSample};
-use crate::{Vector, number::Number};
+use crate::{Vec3, Vector, number::Number};
 
 /// A smooth signed distance to a triangle mesh.
 ///
@@ -33,6 +35,8 @@ pub struct SmoothField {
     /// Nodes beyond the band, whose gap is a bound.
     is_far: Arc<[bool]>,
     curvature: CurvatureGrid,
+    /// Largest distance between the field's surface and the triangles next to each node, mm; 0 away from them.
+    deviation_mm: Arc<[f32]>,
     /// Spread of the shares over which it is averaged, mm2; a stored field is averaged over none.
     #[serde(skip)]
     pub(super) spread_mm2: f64,
@@ -54,12 +58,13 @@ impl SmoothField {
     /// The bytes of the result do not depend on `threads`; 1 starts no thread.
     pub fn new(mesh: &TriangleMesh, threads: usize) -> Self {
         let grid = NodeGrid::around(mesh.bounds());
-        let mut gaps = gaps_at_nodes(&grid, &CurvedMesh::new(mesh), threads);
+        let mut gaps = gaps_at_nodes(&grid, &DividedMesh::new(mesh), threads);
         // Only a closed surface has an inside far from its triangles.
         let is_far = bound_far_gaps(&grid, &mut gaps, edge_report(mesh).is_closed());
         let gap = GapSpline::new(grid, spline_coefficients(&grid, &is_far, gaps));
         Self {
             curvature: CurvatureGrid::new(&gap),
+            deviation_mm: deviations(mesh, &gap).into(),
             is_far: is_far.into(),
             gap,
             spread_mm2: 0.0,
@@ -101,6 +106,15 @@ impl SmoothField {
         self.gap.grid.reach_mm()
     }
 
+    /// Returns the largest distance between the field's surface and the triangles of the mesh next to a point, mm.
+    ///
+    /// It is the chord error of the triangles, with the noise of a scan and the sharp edges that the field rounds.
+    pub fn deviation_mm(&self, point: &Vec3) -> f64 {
+        let nodes = self.gap.nodes_at(point);
+        let deviations = nodes.map(|node| f64::from(self.deviation_mm[node]));
+        deviations.fold(0.0, f64::max)
+    }
+
     /// Returns the gap at a point, mm.
     #[inline(always)]
     pub fn gap_mm<T: Number>(&self, point: &Vector<T>) -> T {
@@ -112,6 +126,29 @@ impl SmoothField {
     pub fn sample<T: Number>(&self, point: &Vector<T>) -> SurfaceSample<T> {
         self.gap.sample(point)
     }
+}
+
+/// Returns the largest distance between a spline's surface and the triangles next to each node, mm.
+fn deviations(mesh: &TriangleMesh, gap: &GapSpline) -> Vec<f32> {
+    let mut deviations = vec![0.0; gap.grid.node_count()];
+    for triangle in 0..mesh.triangles.len() {
+        let [a, b, c] = mesh.corners(triangle);
+        let [along, aside] = [b - a, c - a];
+        let longest = along.norm().max(aside.norm()).max((c - b).norm());
+        // Two at least: the middle of a side is farthest from a curved surface.
+        let steps = ((longest / SPACING_MM).ceil() as usize).max(1) * 2;
+        for i in 0..=steps {
+            for j in 0..=steps - i {
+                let [u, v] = [i, j].map(|part| part as f64 / steps as f64);
+                let place = a + along * u + aside * v;
+                let distance = gap.gap_mm(&place).abs() as f32;
+                for node in gap.nodes_at(&place) {
+                    deviations[node] = distance.max(deviations[node]);
+                }
+            }
+        }
+    }
+    deviations
 }
 
 #[cfg(test)]

@@ -49,15 +49,15 @@ impl Case {
         built.map_err(|why| why.to_string())
     }
 
-    /// Returns the number of triangles in the file of its insert, if there is one.
-    pub fn insert_triangle_count(&self) -> Option<usize> {
+    /// Returns the triangles in the file of its insert, if there are any, in the insert frame of a right knee, mm.
+    pub fn insert_triangles(&self) -> Option<TriangleMesh> {
         let InsertShape::Mesh(insert) = &self.insert.shape else {
             return None;
         };
         let path = insert.file.path();
         let bytes = surface_bytes(insert.file.files(), path).ok()?;
-        let mesh = parse_surface(path, &bytes).ok()?;
-        Some(mesh.triangles.len())
+        let placing = Placing::new(insert.length_unit, &insert.axes, self.heading.side).ok()?;
+        Some(placing.mesh(parse_surface(path, &bytes).ok()?))
     }
 
     pub(super) fn built_insert(

@@ -56,7 +56,7 @@ impl Placing {
         self.linear * point
     }
 
-    fn mesh(&self, mesh: TriangleMesh) -> TriangleMesh {
+    pub(super) fn mesh(&self, mesh: TriangleMesh) -> TriangleMesh {
         let mut placed = mesh.mapped(|vertex| self.point(vertex));
         if self.mirrors {
             turn_round(&mut placed);

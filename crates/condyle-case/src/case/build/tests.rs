@@ -436,7 +436,7 @@ fn more_nodes_than_memory_should_hold_are_refused() {
     let femur = "[femur]\nshape = \"mesh\"\nfile = \"a.stl\"\n";
     let said = refusal(femur, folder.path());
     assert!(
-        said.contains("the distance field would have 61629875 nodes, and more than 41666666"),
+        said.contains("the distance field would have 61629875 nodes, and more than 38461538"),
         "{said}"
     );
 }

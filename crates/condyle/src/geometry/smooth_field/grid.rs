@@ -1,6 +1,6 @@
 //! The regular grid at whose nodes the gap to a mesh is known, and the numbers at its nodes.
 
-use condyle_mesh::CurvedMesh;
+use condyle_mesh::DividedMesh;
 use serde::{Deserialize, Serialize};
 
 use crate::Vec3;
@@ -88,7 +88,7 @@ pub const BEYOND_BAND_MM: f64 = 1e3;
 ///
 /// Each of `threads` fills its own layers, and no number depends on the thread that computed it. With one thread, the
 /// thread of the caller does the work.
-pub fn gaps_at_nodes(grid: &NodeGrid, curved: &CurvedMesh<'_>, threads: usize) -> Vec<f64> {
+pub fn gaps_at_nodes(grid: &NodeGrid, curved: &DividedMesh, threads: usize) -> Vec<f64> {
     let mut gaps = vec![BEYOND_BAND_MM; grid.node_count()];
     if threads <= 1 {
         fill_layers(grid, curved, 0, &mut gaps);
@@ -105,7 +105,7 @@ pub fn gaps_at_nodes(grid: &NodeGrid, curved: &CurvedMesh<'_>, threads: usize) -
 }
 
 /// Fills the layers of nodes from `first_layer` with their gaps to the nearest triangle.
-fn fill_layers(grid: &NodeGrid, curved: &CurvedMesh<'_>, first_layer: usize, gaps: &mut [f64]) {
+fn fill_layers(grid: &NodeGrid, curved: &DividedMesh, first_layer: usize, gaps: &mut [f64]) {
     let nearest = nearest_triangles(grid, curved, first_layer, gaps.len());
     let [_, row, layer] = grid.strides();
     for (here, (gap, triangle)) in gaps.iter_mut().zip(nearest).enumerate() {
@@ -122,7 +122,7 @@ fn fill_layers(grid: &NodeGrid, curved: &CurvedMesh<'_>, first_layer: usize, gap
 /// Returns the triangle nearest to each of `count` nodes from `first_layer` on; none beyond the band.
 fn nearest_triangles(
     grid: &NodeGrid,
-    curved: &CurvedMesh<'_>,
+    curved: &DividedMesh,
     first_layer: usize,
     count: usize,
 ) -> impl Iterator<Item = Option<usize>> {

@@ -1,0 +1,109 @@
+//! The triangles of a femur do not matter as long as they determine its surface; where they do not, the run is doubtful.
+
+use std::path::Path;
+
+use condyle::geometry::{GenericFemur, GenericFemurShape, TriangleMesh};
+use condyle_mesh::formats::write_stl;
+use condyle_results::catalogue::{MASS_LOSS_MG, PEAK_PRESSURE_MPA};
+
+use crate::bench::{Bench, SMALL, reproducer};
+
+/// Mass, peak pressure, and whether the mesh of the femur is doubtful.
+type Outcome = (f64, f64, bool);
+
+fn outcome(bench: &Bench, case: &str) -> Outcome {
+    let said = bench.say(&["run", case, "--out", "out", "--force"]);
+    assert_eq!(said.code, Some(0), "{}", said.err);
+    let summary = bench.summary("out");
+    let is_doubtful = summary
+        .plausibility
+        .iter()
+        .any(|doubt| doubt.check == "femur_mesh");
+    (
+        summary[&MASS_LOSS_MG],
+        summary[&PEAK_PRESSURE_MPA],
+        is_doubtful,
+    )
+}
+
+#[track_caller]
+fn assert_same_or_doubtful((mass, peak, is_doubtful): Outcome, right: Outcome, name: &str) {
+    let is_same = (mass / right.0 - 1.0).abs() < 0.01 && (peak / right.1 - 1.0).abs() < 0.05;
+    assert!(
+        is_same || is_doubtful,
+        "{name}: {mass} mg, {peak} MPa, not {right:?}"
+    );
+}
+
+fn run_mesh(bench: &Bench, mesh: &TriangleMesh) -> Outcome {
+    let mut stl = Vec::new();
+    write_stl(&mut stl, mesh).unwrap();
+    std::fs::write(bench.path("femur.stl"), stl).unwrap();
+    outcome(bench, "mesh.toml")
+}
+
+/// Divides every flat triangle in four.
+fn in_four(mesh: &TriangleMesh) -> TriangleMesh {
+    let corners = (0..mesh.triangles.len()).flat_map(|triangle| {
+        let [a, b, c] = mesh.corners(triangle);
+        let (ab, bc, ca) = ((a + b) / 2.0, (b + c) / 2.0, (c + a) / 2.0);
+        [[a, ab, ca], [ab, b, bc], [ca, bc, c], [ab, bc, ca]]
+    });
+    let vertices: Vec<_> = corners.flatten().collect();
+    let triangles = (0..vertices.len() as u32 / 3).map(|n| [3 * n, 3 * n + 1, 3 * n + 2]);
+    TriangleMesh {
+        triangles: triangles.collect(),
+        vertices,
+    }
+}
+
+#[test]
+fn verify_any_triangles_of_a_femur_give_its_wear_or_a_doubt() {
+    let bench = Bench::new();
+    let rest = format!("{SMALL}[accuracy]\nestimate = false\n");
+    bench.write("case.toml", &rest);
+    let mesh = "[femur]\nshape = \"mesh\"\nfile = \"femur.stl\"\nflexion_axis_mm = [0.0, 0.0]\nstart_mm = [-7.0, 0.0]\n";
+    bench.write("mesh.toml", &format!("{mesh}{rest}"));
+    let right = outcome(&bench, "case.toml");
+    let femur = GenericFemur::new(GenericFemurShape::default());
+    // Chord errors of 0.002, 0.01, 0.03 and 0.1 mm, and beyond.
+    for edge_mm in [0.6, 1.3, 2.3, 3.0, 4.2, 6.0] {
+        let mut mesh = femur.surface_mesh(edge_mm);
+        for divided in 0..3 {
+            let name = format!("edges of {edge_mm} mm, divided {divided} times");
+            let outcome = run_mesh(&bench, &mesh);
+            assert_same_or_doubtful(outcome, right, &name);
+            assert!(!outcome.2 || edge_mm > 2.3, "{name}: doubtful");
+            if edge_mm < 1.0 {
+                break;
+            }
+            mesh = in_four(&mesh);
+        }
+    }
+}
+
+#[test]
+fn verify_a_femur_with_long_facets_wears_as_the_same_solid_remeshed() {
+    let name = "verify_a_femur_with_long_facets_wears_as_the_same_solid_remeshed";
+    let Some(folder) = reproducer("second", name) else {
+        return;
+    };
+    let bench = Bench::new();
+    let run = |femur: &Path| {
+        let case = std::fs::read_to_string(folder.join("pair/my.toml")).unwrap();
+        let insert = folder.join("pair/insert.stl");
+        let quoted = |path: &Path| format!("file = {path:?}");
+        let case = case.replace("file = \"femur.stl\"", &quoted(femur));
+        bench.write(
+            "case.toml",
+            &case.replace("file = \"insert.stl\"", &quoted(&insert)),
+        );
+        outcome(&bench, "case.toml")
+    };
+    // Both are doubtful, since they touch the sharp edges of their notch, and alike all the same.
+    let right = run(&folder.join("pair/femur.stl"));
+    for file in ["femur.stl", "femur_sub8mm.stl"] {
+        let (mass, peak, _) = run(&folder.join("cad-femur").join(file));
+        assert_same_or_doubtful((mass, peak, false), right, file);
+    }
+}

@@ -1,0 +1,274 @@
+//! The normals of the smooth surfaces that the triangles of a mesh belong to.
+
+use std::collections::BTreeMap;
+
+use super::{
+    patch::Patch,
+    samples::{MIN_HEIGHT_MM, height, sides_by_edge},
+};
+use crate::{Vec3, triangle_mesh::TriangleMesh};
+
+/// Triangles that meet at more than 30 degrees belong to two surfaces.
+pub(super) const MIN_COSINE: f64 = 0.866;
+
+/// Weight of a normal by its triangles relative to that by one edge: triangles decide only what edges leave open, as
+/// normals that alternate from ring to ring of a cylinder. Ten times more or less changes the surface by less than a tenth of
+/// its chord error.
+const WEIGHT_OF_TRIANGLES: f64 = 0.03;
+
+/// The unit normals at the corners of all triangles, and the edges where two smooth surfaces meet.
+pub(super) struct Normals {
+    /// Of every corner of every triangle; none where the triangle is no part of a smooth surface.
+    pub(super) at_corners: Vec<[Option<Vec3>; 3]>,
+    /// The side of the only other triangle at each side.
+    pub(super) across: Vec<[Option<TriangleSide>; 3]>,
+    /// Of every side, true where two smooth surfaces meet.
+    pub(super) is_crease: Vec<[bool; 3]>,
+}
+
+/// A triangle and the number of one of its sides, which begins at the corner of the same number.
+type TriangleSide = (usize, usize);
+
+impl Normals {
+    /// Computes the normals, given the unit normal of each triangle.
+    ///
+    /// Corners at one vertex share a normal unless a crease divides them. The first estimate is that of
+    /// [`TriangleMesh::vertex_normals`], with the small weight that slivers deserve. On a quadratic surface, the sum of the
+    /// normals at both ends of an edge is perpendicular to it, in any triangulation: the normals are those that satisfy
+    /// this best, and differ least from the estimate.
+    pub(super) fn new(mesh: &TriangleMesh, facets: &[Vec3]) -> Self {
+        let across = sides_across(mesh);
+        let is_crease = creases(mesh, facets, &across);
+        let fan_of = fans(&across, &is_crease);
+        let count = fan_of
+            .iter()
+            .flatten()
+            .max()
+            .map_or(0, |&last| last as usize + 1);
+        let mut estimate = vec![Vec3::zeros(); count];
+        for (triangle, fans) in fan_of.iter().enumerate() {
+            let corners = mesh.corners(triangle);
+            for i in 0..3 {
+                let [a, b] = [1, 2].map(|step| corners[(i + step) % 3] - corners[i]);
+                let weight = a.norm_squared() * b.norm_squared();
+                // A corner with an edge of no length has no direction.
+                if weight > 0.0 {
+                    estimate[fans[i] as usize] += a.cross(&b) / weight;
+                }
+            }
+        }
+        for normal in &mut estimate {
+            *normal = normal.try_normalize(0.0).unwrap_or_default();
+        }
+        let mut is_smooth = vec![true; count];
+        for (fans, facet) in fan_of.iter().zip(facets) {
+            for &fan in fans {
+                // As at the tip of a cone, around which neighbours differ little and opposite triangles much.
+                is_smooth[fan as usize] &= estimate[fan as usize].dot(facet) > MIN_COSINE;
+            }
+        }
+        let normals = adjusted(&estimate, &edges(mesh, &fan_of, &is_smooth));
+        let corner = |fan: u32, facet: &Vec3| {
+            let normal = normals[fan as usize];
+            (is_smooth[fan as usize] && normal.dot(facet) > MIN_COSINE).then_some(normal)
+        };
+        let triangles = fan_of.iter().zip(facets);
+        Self {
+            at_corners: triangles
+                .map(|(fans, facet)| fans.map(|fan| corner(fan, facet)))
+                .collect(),
+            across,
+            is_crease,
+        }
+    }
+}
+
+impl Normals {
+    /// Returns the cubic patch over a triangle.
+    pub(super) fn patch(&self, mesh: &TriangleMesh, triangle: usize, facet: &Vec3) -> Patch {
+        let corners = mesh.corners(triangle);
+        let normals = self.at_corners[triangle];
+        let side = |i: usize| {
+            let j = (i + 1) % 3;
+            let along = corners[j] - corners[i];
+            // The side of another triangle runs in the opposite direction.
+            let across = self.across[triangle][i].map(|(other, side)| {
+                let normals = &self.at_corners[other];
+                [normals[(side + 1) % 3], normals[side]]
+            });
+            let across = across.unwrap_or([normals[i], normals[j]]);
+            [
+                tangent(&along, normals[i], across[0]),
+                tangent(&along, normals[j], across[1]),
+            ]
+        };
+        let tangents = [0, 1, 2].map(side);
+        Patch::new(
+            corners,
+            normals.map(|normal| normal.unwrap_or(*facet)),
+            tangents,
+        )
+    }
+}
+
+/// Returns the part of an edge that is tangential to the surfaces on both of its sides, by their normals at one end; the
+/// edge itself, where they have none or their crease leads elsewhere.
+fn tangent(along: &Vec3, normal: Option<Vec3>, across: Option<Vec3>) -> Vec3 {
+    /// Cosine of the angle between an edge and its crease, as between triangles and their surface.
+    const ALONG: f64 = MIN_COSINE;
+    let (Some(one), Some(other)) = (normal, across) else {
+        return *along;
+    };
+    let tangent = if one.dot(&other) > MIN_COSINE {
+        let mean = (one + other).normalize();
+        along - mean * mean.dot(along)
+    } else {
+        let crease = one.cross(&other).normalize();
+        crease * crease.dot(along)
+    };
+    if tangent.norm() > ALONG * along.norm() {
+        tangent
+    } else {
+        *along
+    }
+}
+
+fn sides_across(mesh: &TriangleMesh) -> Vec<[Option<TriangleSide>; 3]> {
+    let mut across = vec![[None; 3]; mesh.triangles.len()];
+    for sides in sides_by_edge(mesh).values() {
+        if let &[(one, side), (other, opposite)] = &sides[..] {
+            across[one][side] = Some((other, opposite));
+            across[other][opposite] = Some((one, side));
+        }
+    }
+    across
+}
+
+fn creases(
+    mesh: &TriangleMesh,
+    facets: &[Vec3],
+    across: &[[Option<TriangleSide>; 3]],
+) -> Vec<[bool; 3]> {
+    let has_plane: Vec<bool> = (0..mesh.triangles.len())
+        .map(|triangle| height(mesh.corners(triangle)) > MIN_HEIGHT_MM)
+        .collect();
+    let is_crease = |one: usize, other: usize| {
+        !(facets[one].dot(&facets[other]) > MIN_COSINE && has_plane[one] && has_plane[other])
+    };
+    let triangles = across.iter().enumerate();
+    triangles
+        .map(|(one, sides)| sides.map(|side| side.is_some_and(|(other, _)| is_crease(one, other))))
+        .collect()
+}
+
+/// Returns for every corner the number of its fan: the corners around a vertex between two creases.
+fn fans(across: &[[Option<TriangleSide>; 3]], is_crease: &[[bool; 3]]) -> Vec<[u32; 3]> {
+    // Each corner points to another one of its fan, the first to itself.
+    let mut linked: Vec<usize> = (0..3 * across.len()).collect();
+    let corner = |triangle: usize, at: usize| 3 * triangle + at % 3;
+    for (one, sides) in across.iter().enumerate() {
+        for side in 0..3 {
+            // The side of the other triangle runs in the opposite direction.
+            if let (Some((other, opposite)), false) = (sides[side], is_crease[one][side]) {
+                join(&mut linked, corner(one, side), corner(other, opposite + 1));
+                join(&mut linked, corner(one, side + 1), corner(other, opposite));
+            }
+        }
+    }
+    let mut numbers = vec![u32::MAX; linked.len()];
+    let mut next = 0;
+    let mut fan = |corner: usize| {
+        let first = first_of(&mut linked, corner);
+        if numbers[first] == u32::MAX {
+            numbers[first] = next;
+            next += 1;
+        }
+        numbers[first]
+    };
+    let all = (0..across.len()).map(|t| [3 * t, 3 * t + 1, 3 * t + 2].map(&mut fan));
+    all.collect()
+}
+
+fn first_of(linked: &mut [usize], mut corner: usize) -> usize {
+    while linked[corner] != corner {
+        linked[corner] = linked[linked[corner]];
+        corner = linked[corner];
+    }
+    corner
+}
+
+fn join(linked: &mut [usize], one: usize, other: usize) {
+    let (one, other) = (first_of(linked, one), first_of(linked, other));
+    linked[one.max(other)] = one.min(other);
+}
+
+/// An edge of a smooth surface: its fans and its direction.
+type Edge = ([usize; 2], Vec3);
+
+/// Returns the edges between smooth fans, each once for each surface that it belongs to.
+fn edges(mesh: &TriangleMesh, fan_of: &[[u32; 3]], is_smooth: &[bool]) -> Vec<Edge> {
+    let mut edges = BTreeMap::new();
+    for (triangle, fans) in fan_of.iter().enumerate() {
+        let corners = mesh.corners(triangle);
+        for i in 0..3 {
+            let j = (i + 1) % 3;
+            let along = (corners[j] - corners[i])
+                .try_normalize(0.0)
+                .unwrap_or_default();
+            if is_smooth[fans[i] as usize] && is_smooth[fans[j] as usize] {
+                edges.insert([fans[i].min(fans[j]), fans[i].max(fans[j])], along);
+            }
+        }
+    }
+    let edges = edges.into_iter();
+    edges
+        .map(|(fans, along)| (fans.map(|fan| fan as usize), along))
+        .collect()
+}
+
+/// Returns the normals n whose sums over the ends of edges are perpendicular to them, in the sense of least squares:
+/// the minimum of the sum of (d . (n_i + n_j))^2 over the edges and of w |n - n_0|^2 over the normals, by conjugate gradients.
+fn adjusted(estimate: &[Vec3], edges: &[Edge]) -> Vec<Vec3> {
+    /// Largest number of iterations, many more than it takes: the condition number is about a hundred.
+    const MAX_ITERATIONS: usize = 200;
+    /// Decrease of the residual at which the normals are exact to a microradian.
+    const RESIDUAL: f64 = 1e-6;
+    let across = |of: &[Vec3], to: &mut [Vec3], factor: f64| {
+        for ([i, j], along) in edges {
+            let push = along * (factor * along.dot(&(of[*i] + of[*j])));
+            to[*i] += push;
+            to[*j] += push;
+        }
+        // A normal changes only across itself.
+        for (to, normal) in to.iter_mut().zip(estimate) {
+            *to -= normal * normal.dot(to);
+        }
+    };
+    let dot =
+        |one: &[Vec3], other: &[Vec3]| one.iter().zip(other).map(|(a, b)| a.dot(b)).sum::<f64>();
+    let mut residual = vec![Vec3::zeros(); estimate.len()];
+    across(estimate, &mut residual, -1.0);
+    let mut change = vec![Vec3::zeros(); estimate.len()];
+    let mut direction = residual.clone();
+    let mut square = dot(&residual, &residual);
+    let enough = RESIDUAL * RESIDUAL * square;
+    for _ in 0..MAX_ITERATIONS {
+        if square <= enough {
+            break;
+        }
+        let mut image: Vec<Vec3> = direction.iter().map(|d| d * WEIGHT_OF_TRIANGLES).collect();
+        across(&direction, &mut image, 1.0);
+        let step = square / dot(&direction, &image);
+        for i in 0..change.len() {
+            change[i] += direction[i] * step;
+            residual[i] -= image[i] * step;
+        }
+        let before = std::mem::replace(&mut square, dot(&residual, &residual));
+        for i in 0..change.len() {
+            direction[i] = residual[i] + direction[i] * (square / before);
+        }
+    }
+    let all = estimate.iter().zip(&change);
+    all.map(|(normal, change)| (normal + change).try_normalize(0.0).unwrap_or_default())
+        .collect()
+}

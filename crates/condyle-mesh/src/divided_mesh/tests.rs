@@ -1,0 +1,159 @@
+use super::*;
+
+const RING_MM: f64 = 14.0;
+const TUBE_MM: f64 = 22.0;
+
+/// Returns the lower side of a torus about the z axis in rows along the ring and columns across the tube; the corners of
+/// every other column are half a row off.
+fn torus(rows: u32, columns: u32) -> TriangleMesh {
+    let place = |row: u32, column: u32| {
+        let is_aside = column % 2 == 1 && row > 0 && row < rows;
+        let row = f64::from(row) + if is_aside { 0.5 } else { 0.0 };
+        let along = 2.4 * row / f64::from(rows) - 1.2;
+        let across = 1.4 * f64::from(column) / f64::from(columns) - 0.7;
+        let reach = RING_MM + TUBE_MM * across.cos();
+        let place = [
+            along.sin() * reach,
+            -along.cos() * reach,
+            TUBE_MM * across.sin(),
+        ];
+        Vec3::from(place.map(|x| f64::from(x as f32)))
+    };
+    let places = (0..=rows).flat_map(|row| (0..=columns).map(move |column| place(row, column)));
+    let corner = |row: u32, column: u32| row * (columns + 1) + column;
+    let cells = (0..rows).flat_map(|row| (0..columns).map(move |column| (row, column)));
+    let quads = cells.map(|(i, j)| {
+        [[0, 0], [1, 0], [1, 1], [0, 1]].map(|[down, aside]| corner(i + down, j + aside))
+    });
+    TriangleMesh::of_quads(places.collect(), quads)
+}
+
+/// Divides every flat triangle in four, with the rounding of a file in single precision.
+fn in_four(mesh: &TriangleMesh) -> TriangleMesh {
+    let mut vertices = mesh.vertices.clone();
+    let mut middles = std::collections::BTreeMap::new();
+    let mut middle = |a: u32, b: u32| {
+        *middles.entry((a.min(b), a.max(b))).or_insert_with(|| {
+            let middle = (vertices[a as usize] + vertices[b as usize]) / 2.0;
+            vertices.push(middle.map(|x| f64::from(x as f32)));
+            vertices.len() as u32 - 1
+        })
+    };
+    let mut triangles = Vec::new();
+    for &[a, b, c] in &mesh.triangles {
+        let (ab, bc, ca) = (middle(a, b), middle(b, c), middle(c, a));
+        triangles.extend([[a, ab, ca], [ab, b, bc], [ca, bc, c], [ab, bc, ca]]);
+    }
+    TriangleMesh {
+        vertices,
+        triangles,
+    }
+}
+
+/// Returns the gap from a point to the nearest triangle.
+fn gap(curved: &DividedMesh, point: &Vec3) -> f64 {
+    let triangles = 0..curved.mesh.triangles.len();
+    let nearest = triangles.min_by(|&a, &b| {
+        curved
+            .distance2(a, point)
+            .total_cmp(&curved.distance2(b, point))
+    });
+    let foot = curved.foot(nearest.expect("there are triangles"), point);
+    (point - foot.point).dot(&foot.normal)
+}
+
+/// Returns the largest error of gaps near the middle of the torus.
+fn largest_error(mesh: &TriangleMesh) -> f64 {
+    let curved = DividedMesh::new(mesh);
+    let mut largest: f64 = 0.0;
+    for i in 0..20 {
+        for j in 0..20 {
+            let (along, across) = (0.09 * f64::from(i) - 0.9, 0.05 * f64::from(j) - 0.5);
+            let reach = RING_MM + (TUBE_MM - 0.2) * across.cos();
+            let z = (TUBE_MM - 0.2) * across.sin();
+            let point = Vec3::new(along.sin() * reach, -along.cos() * reach, z);
+            largest = largest.max((gap(&curved, &point) + 0.2).abs());
+        }
+    }
+    largest
+}
+
+#[test]
+fn verify_curved_triangles_are_nearer_to_a_torus_than_a_fifth_of_the_chord_error() {
+    // Long facets along the ring, across it, and even ones.
+    for (rows, columns) in [(80, 30), (40, 10), (20, 15), (40, 4), (80, 4)] {
+        let sagitta =
+            |turn: f64, count: u32, radius: f64| radius * (turn / f64::from(count)).powi(2) / 8.0;
+        let around = sagitta(2.4, rows, RING_MM + TUBE_MM);
+        let chord_error = around.max(sagitta(1.4, columns, TUBE_MM));
+        let error = largest_error(&torus(rows, columns));
+        assert!(
+            error < 0.2 * chord_error,
+            "{rows} {columns}: {error} of {chord_error}"
+        );
+    }
+}
+
+#[test]
+fn verify_flat_facets_that_are_subdivided_are_as_curved_as_whole_ones() {
+    let chord_error = (RING_MM + TUBE_MM) * (2.4_f64 / 40.0).powi(2) / 8.0;
+    let mut mesh = torus(40, 20);
+    for divisions in 0..3 {
+        let error = largest_error(&mesh);
+        assert!(
+            error < 0.2 * chord_error,
+            "{divisions}: {error} of {chord_error}"
+        );
+        mesh = in_four(&mesh);
+    }
+}
+
+#[test]
+fn a_block_keeps_its_edges_and_its_inside() {
+    let block = TriangleMesh::block(Vec3::zeros(), Vec3::new(20.0, 8.0, 30.0));
+    for mesh in [block.clone(), in_four(&in_four(&block))] {
+        let curved = DividedMesh::new(&mesh);
+        assert_eq!(curved.mesh.triangles.len(), 12);
+        for (point, expected) in [
+            (Vec3::new(21.0, 9.0, 15.0), 2f64.sqrt()),
+            (Vec3::new(-1.0, -1.0, -1.0), 3f64.sqrt()),
+            (Vec3::new(20.5, 4.0, 3.0), 0.5),
+            (Vec3::new(19.5, 7.5, 15.0), -0.5),
+        ] {
+            let gap = gap(&curved, &point);
+            assert!((gap - expected).abs() < 1e-9, "{point}: {gap}");
+        }
+    }
+}
+
+#[test]
+fn slivers_next_to_a_sharp_edge_raise_no_ridge() {
+    // A cylinder that ends at a plane, with facets of its whole length.
+    const SIDES: u32 = 40;
+    let ring = |z: f64| {
+        (0..SIDES).map(move |i| {
+            let angle = std::f64::consts::TAU * f64::from(i) / f64::from(SIDES);
+            Vec3::new(20.0 * angle.cos(), 20.0 * angle.sin(), z)
+        })
+    };
+    let vertices = ring(0.0).chain(ring(60.0)).collect();
+    let next = |i: u32| (i + 1) % SIDES;
+    let quads = (0..SIDES).map(|i| [i, next(i), next(i) + SIDES, i + SIDES]);
+    let mut mesh = TriangleMesh::of_quads(vertices, quads);
+    for i in 1..SIDES - 1 {
+        mesh.triangles
+            .extend([[0, i + 1, i], [SIDES, SIDES + i, SIDES + i + 1]]);
+    }
+    let curved = DividedMesh::new(&mesh);
+    for i in 0..100 {
+        let angle = 0.063 * f64::from(i);
+        let point = Vec3::new(
+            19.8 * angle.cos(),
+            19.8 * angle.sin(),
+            1.0 + 0.58 * f64::from(i),
+        );
+        let gap = gap(&curved, &point);
+        // The facets are 0.06 mm from the cylinder.
+        assert!((gap + 0.2).abs() < 2e-3, "{gap}");
+    }
+}
