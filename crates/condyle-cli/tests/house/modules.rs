@@ -50,6 +50,10 @@ const MAY_USE: &[(&str, &[&str])] = &[
         &["condyle_mesh::triangle_mesh"],
     ),
     (
+        "condyle_mesh::divided_mesh",
+        &["condyle_mesh::curved_mesh", "condyle_mesh::triangle_mesh"],
+    ),
+    (
         "condyle_mesh::columns",
         &[
             "condyle_fem",
