@@ -95,7 +95,11 @@ impl FemoralSurface {
     pub fn deviation_mm(&self, point: &Vec3) -> f64 {
         match self {
             Self::Mesh(field) => field.deviation_mm(point),
-            Self::Generic(_) | Self::Placed(_) | Self::Sphere(_) | Self::Cylinder(_) => 0.0,
+            Self::Generic(_)
+            | Self::Placed(_)
+            | Self::Sphere(_)
+            | Self::Cylinder(_)
+            | Self::Plane => 0.0,
         }
     }
 
