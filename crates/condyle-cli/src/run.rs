@@ -138,7 +138,18 @@ fn in_words(summary: &Summary, scalar: &Scalar) -> Option<String> {
     let mut words = with_unit(summary.get(scalar)?);
     if let Some(error) = summary.error.as_ref().and_then(|errors| errors.get(scalar)) {
         let (off, percent) = (with_unit(error.in_unit.total), error.percent.total);
-        words += &format!(", discretisation error +/- {off} ({percent:.2} %)");
+        let parts = error.percent.parts().into_iter();
+        let missing: Vec<String> = parts
+            .filter(|(_, percent)| percent.is_none())
+            .map(|(part, _)| part.name().replace('_', " "))
+            .collect();
+        words += &match missing.is_empty() {
+            true => format!(", discretisation error +/- {off} ({percent:.2} %)"),
+            false => format!(
+                ", discretisation error more than {off} ({percent:.2} %), which excludes {}",
+                missing.join(" and ")
+            ),
+        };
     }
     let cycles_before = scalar.cycle_key.and_then(catalogue::scalar);
     match cycles_before.and_then(|scalar| summary.get(scalar)) {

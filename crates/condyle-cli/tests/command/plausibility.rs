@@ -3,7 +3,7 @@
 use condyle_results::catalogue;
 use std::fs;
 
-use crate::bench::{Bench, SMALL};
+use crate::bench::{Bench, SMALL, reproducer};
 
 /// A femur that rides over the rim of a flat dish; found among random designs.
 pub const ON_THE_RIM: &str = "\
@@ -296,4 +296,36 @@ fn elements_inside_out_end_the_march_and_what_came_before_is_kept() {
         ],
     );
     assert!(!bench.path("out/summary.json").exists());
+}
+
+#[test]
+fn an_error_without_one_of_its_parts_is_doubtful_and_incomplete_on_its_line() {
+    let bench = Bench::with_case(&SMALL.replace("updates = 3", "updates = 1"));
+    let said = bench.run_into("out");
+    let found = checks(&bench, "out");
+    assert!(
+        found.iter().any(|check| check == "error_incomplete"),
+        "{found:?}"
+    );
+    let mut lines = said.out.lines();
+    let mass = lines.find(|line| line.starts_with("mass loss  ")).unwrap();
+    assert!(mass.ends_with("which excludes updates"), "{mass}");
+}
+
+#[test]
+fn a_femur_that_explicit_steps_throw_off_ends_the_run() {
+    let name = "a_femur_that_explicit_steps_throw_off_ends_the_run";
+    let Some(folder) = reproducer("second", name) else {
+        return;
+    };
+    let case = fs::read_to_string(folder.join("explicit-flies-off/case.toml")).unwrap();
+    let bench = Bench::with_case(&case);
+    let said = bench.say(&["run", "case.toml", "--out", "out"]);
+    said.assert_refused(
+        3,
+        &[
+            "explicit steps leave all bounds at",
+            "integrator = \"implicit\"",
+        ],
+    );
 }

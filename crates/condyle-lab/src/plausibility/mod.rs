@@ -30,13 +30,14 @@ const PLACE: [Check; 3] = [
 ];
 
 /// Load on the polyethylene, and quality of the solution.
-const REST: [Check; 10] = [
+const REST: [Check; 11] = [
     bodies::insert_rocks,
     interval_too_wide,
     mesh_quality,
     counts_of_volume,
     single_update,
     updates_too_few,
+    error_incomplete,
     error_of_mass,
     error_of_depth,
     added_inertia,
@@ -133,6 +134,23 @@ fn large_error(
     let advice = "The parts of the error say what to refine: increments, updates, edge_mm or slip tolerance.";
     (percent > MAX_ERROR_PERCENT)
         .then(|| warning(check, (percent, MAX_ERROR_PERCENT, "%"), message, advice))
+}
+
+/// Warns of an estimate of the error of the mass that lacks one of its parts.
+pub(crate) fn error_incomplete(finished: &Finished<'_>) -> Option<PlausibilityWarning> {
+    let error = finished.summary.error.as_ref()?;
+    let parts = error.of(&MASS_LOSS_MG).percent.parts().into_iter();
+    let missing = parts.filter(|(_, percent)| percent.is_none());
+    let missing: Vec<&str> = missing.map(|(part, _)| part.name()).collect();
+    let message = format!(
+        "the discretisation error of the mass loss is incomplete, without its part from {}: the error is larger than stated",
+        missing.join(", ").replace('_', " ")
+    );
+    let advice = "The warnings at the end state the reason. Refine the part that is missing, and compare both runs.";
+    let value = (missing.len() as f64, 0.0, "");
+    // Nothing worn has no error in %.
+    let is_worn = finished.summary[&MASS_LOSS_MG] > 0.0;
+    (is_worn && !missing.is_empty()).then(|| warning("error_incomplete", value, message, advice))
 }
 
 /// Warns of a predicted interval that is too wide for decisions.

@@ -375,6 +375,9 @@ impl March {
         let depths = self.state.depths.clone();
         self.state.depths.add(taken);
         let nodes = self.insert.mesh().nodes.clone();
+        // The depth worn so far is the sum by causes, as in a resumed march: that by steps differs in the last bit.
+        let worn_mm = self.state.depths.total_mm();
+        self.insert.restore(nodes.clone(), &worn_mm);
         Ok(Lowered {
             mesh_nodes: std::mem::replace(&mut self.state.mesh_nodes, nodes),
             depths,

@@ -1,7 +1,10 @@
 //! Explicit steps of time by central differences: the balance of the implicit method with nothing to solve.
 
+use std::f64::consts::PI;
+
 use super::{
-    CycleError, Kinematics, Machine, MachineState, Simulator, balance::Balance, simulator::Stepped,
+    CycleError, JointKind, Kinematics, Machine, MachineState, Simulator, balance::Balance,
+    simulator::Stepped,
 };
 use crate::spatial::{Mat6, RelativeMotion};
 
@@ -9,6 +12,10 @@ use crate::spatial::{Mat6, RelativeMotion};
 const STEPS_PER_STABILITY: usize = 16;
 /// Rates beyond which the motion is unstable, mm/s or rad/s.
 const FASTEST: f64 = 1e6;
+/// Positions of a loaded joint beyond which the bodies have parted, mm and rad: several times the size of a joint, and a
+/// half turn.
+const FARTHEST_MM: f64 = 200.0;
+const FARTHEST_RAD: f64 = PI;
 /// Part of the stable step that is taken: the load may grow before the next estimate.
 const SAFETY: f64 = 0.8;
 
@@ -101,7 +108,14 @@ impl Simulator<'_> {
         self.counters.explicit_steps += 1;
         // NaN fails the comparison too.
         let is_bounded = |rate: &f64| rate.abs() <= FASTEST;
-        if !next.rates.iter().all(is_bounded) {
+        let is_near = |j: usize| {
+            let farthest = match machine.joints[j].description.kind() {
+                JointKind::Rotation => FARTHEST_RAD,
+                JointKind::Translation => FARTHEST_MM,
+            };
+            next.positions[j].abs() <= farthest
+        };
+        if !(next.rates.iter().all(is_bounded) && machine.loaded().all(is_near)) {
             return Err(CycleError::Unstable {
                 percent: 100.0 * phase,
                 readings: machine.mechanism.readings(&now.positions),
@@ -294,6 +308,21 @@ mod tests {
         let [coarse, fine] = [100, 200].map(|steps| (after(steps) - exact).abs());
         assert!(coarse < 2e-3, "{coarse}");
         assert!((coarse / fine - 4.0).abs() < 0.3, "{}", coarse / fine);
+    }
+
+    #[test]
+    fn a_femur_that_flies_off_ends_the_run_where_it_leaves() {
+        let mut machine = machine(MASS);
+        machine.joint_mut(IS).drive = Drive::Loaded(Waveform::constant(1000.0));
+        let mut start = MachineState::at_rest(&machine, [0.0; 6]);
+        start.now.accelerations[IS.place()] = 1000.0 / MASS;
+        let mut contact = support(1e-3, 0.0);
+        let chain = Chain::new(&machine, Vec3::zeros(), (0.0, 0.0));
+        let time = TimeSettings::default();
+        let mut simulator = Simulator::new(&machine, &chain, &mut contact, &time);
+        // It is 1000 mm away after 0.1 s, at a rate far below the limit.
+        let end = simulator.explicit(&start, 0.1, 0.0);
+        assert!(matches!(end, Err(CycleError::Unstable { .. })));
     }
 
     #[test]
