@@ -40,7 +40,7 @@ type Row = (&'static str, String);
 fn rows(preview: &Preview) -> Vec<Row> {
     let (at_rest, expected) = (&preview.at_rest, &preview.expected);
     let flexed = at_rest.flexion_deg.zip(at_rest.vv_deg);
-    let flexed = flexed.map(|(flexion, vv)| format!(", flexion {flexion:.1} deg, VV {vv:.2} deg"));
+    let flexed = flexed.map(|(flexion, vv)| format!("flexion {flexion:.1} deg, VV {vv:.2} deg"));
     let load_n = at_rest.axial_force_n;
     let load = match at_rest.medial_load_share {
         Some(share) => format!("{:.0} % of {load_n:.0} N medial", 100.0 * share),
@@ -58,11 +58,14 @@ fn rows(preview: &Preview) -> Vec<Row> {
         "about {duration} and {:.0} MB of {:.0} MB",
         expected.memory_mb, expected.memory_allowed_mb
     );
-    let settled = from_origin(at_rest.flexion_axis_mm) + &flexed.unwrap_or_default();
+    let centre = from_origin(at_rest.flexion_axis_mm);
     let mut rows = rows_of_body("femur", &preview.femur);
     rows.extend(rows_of_insert(&preview.insert));
+    rows.extend(match flexed {
+        Some(flexed) => vec![("settled", flexed), ("  flexion axis from origin", centre)],
+        None => vec![("settled", centre)],
+    });
     rows.extend([
-        ("settled, from the origin", settled),
         ("  contact", pressed),
         (
             "  smooth femur to triangles",

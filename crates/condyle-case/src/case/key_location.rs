@@ -9,7 +9,7 @@ use condyle::machine::knee;
 
 use super::build::{BuildError, BuildWarning, Finding};
 use super::contents::Case;
-use super::machine::DriveWord;
+use super::drive::DriveWord;
 use super::run_options::Limits;
 use crate::config::*;
 

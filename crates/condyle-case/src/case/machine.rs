@@ -5,6 +5,7 @@ use condyle::machine::{Channel, JointDescription, JointIndex, JointKind, Wavefor
 
 use toml::de::DeTable;
 
+use super::drive::DriveWord;
 use super::rig::Rig;
 use super::waveform::{self, waveform_items};
 use crate::config::*;
@@ -30,16 +31,6 @@ choice! {
         Pair = "pair",
         /// Each spring of the pair.
         Each = "each",
-    }
-
-    /// Drive of a freedom.
-    DriveWord {
-        /// Held at a position.
-        Locked = "locked",
-        /// Moved along a waveform of position.
-        Prescribed = "prescribed",
-        /// Free under a waveform of load, or under none.
-        Loaded = "loaded",
     }
 }
 
@@ -143,33 +134,6 @@ impl Preset {
             DriveWord::Prescribed
         } else {
             DriveWord::Loaded
-        }
-    }
-}
-
-impl DriveWord {
-    fn fits(self, joint: &JointDescription) -> bool {
-        match self {
-            Self::Locked => true,
-            Self::Prescribed => joint.motion.is_some(),
-            Self::Loaded => joint.can_be_free(),
-        }
-    }
-
-    fn words_for(joint: &JointDescription) -> Vec<&'static str> {
-        let drives = Self::ALL.iter().copied();
-        drives
-            .filter(|drive| drive.fits(joint))
-            .map(Self::word)
-            .collect()
-    }
-
-    /// Returns the waveform that the drive of a joint needs.
-    fn channel(self, joint: &JointDescription) -> Option<&'static Channel> {
-        match self {
-            Self::Locked => None,
-            Self::Prescribed => joint.motion,
-            Self::Loaded => joint.load_channel(),
         }
     }
 }

@@ -10,6 +10,7 @@ mod contact;
 mod contents;
 #[cfg(feature = "file-system")]
 mod draft;
+mod drive;
 mod femur;
 mod frame;
 mod insert;
@@ -28,8 +29,9 @@ mod wear;
 
 // Only some of these items are public; the others are for the files of this module.
 pub use self::{
-    activity::*, assignment::*, build::*, contact::*, contents::*, femur::*, frame::*, insert::*,
-    machine::*, material::*, pressure_table::*, reader::*, rig::*, run_options::*, wear::*,
+    activity::*, assignment::*, build::*, contact::*, contents::*, drive::*, femur::*, frame::*,
+    insert::*, machine::*, material::*, pressure_table::*, reader::*, rig::*, run_options::*,
+    wear::*,
 };
 
 #[cfg(feature = "file-system")]

@@ -11,7 +11,7 @@ use condyle::machine::{
 };
 use miette::NamedSource;
 
-use super::machine::DriveWord;
+use super::drive::DriveWord;
 use super::waveform;
 use crate::config::*;
 
@@ -92,6 +92,62 @@ settings! {
     }
 }
 
+impl RigJointKeys {
+    /// Returns what is wrong with the keys of a joint, each with the key at fault.
+    fn faults(&self, section: &Section<'_>) -> Vec<(&'static str, Fault)> {
+        let mut faults = Vec::new();
+        let (name, drive) = (&self.name, self.drive.word());
+        let mut add =
+            |key, message: String, advice: &str| faults.push((key, Fault::new(message, advice)));
+        let is_word = |c: char| c.is_ascii_lowercase() || c.is_ascii_digit() || c == '-';
+        if name.is_empty() || !name.chars().all(is_word) {
+            let message = format!("a joint cannot be called \"{name}\"");
+            add("name", message, "use small letters, digits and hyphens");
+        }
+        if self.axis == [0.0; 3] {
+            let message = format!("the axis of the joint \"{name}\" has no direction");
+            add("axis", message, "give it a length, such as [0, 1, 0]");
+        }
+        let channel = channel_of(self.kind, self.drive);
+        for table in ["load", "motion"] {
+            let is_given = section.value(table).is_some();
+            if is_given && channel.is_none_or(|channel| channel.name != table) {
+                let message =
+                    format!("the joint \"{name}\" is {drive}, and has a waveform of {table}");
+                add(table, message, "remove one of them: a joint has one drive");
+            }
+        }
+        let wrong: &[&'static str] = match self.kind {
+            JointKind::Rotation => &["locked_at_mm", "inertia_kg", "damping_n_s_per_mm"],
+            JointKind::Translation => &[
+                "locked_at_deg",
+                "inertia_kg_m2",
+                "damping_nm_s_per_rad",
+                "turns_per_cycle",
+                "point_mm",
+            ],
+        };
+        for key in wrong.iter().filter(|key| section.value(key).is_some()) {
+            let kind = self.kind.text().unwrap_or_default();
+            let message = format!("`{key}` does not fit the {kind} \"{name}\"");
+            add(key, message, "remove it, or change `kind`");
+        }
+        let is_prescribed = self.drive == DriveWord::Prescribed;
+        if self
+            .turns_per_cycle
+            .is_some_and(|turns| turns.fract() != 0.0 || !is_prescribed)
+        {
+            let message = format!("the joint \"{name}\" does not repeat after a cycle");
+            add(
+                "turns_per_cycle",
+                message,
+                "use whole turns and drive = \"prescribed\"",
+            );
+        }
+        faults
+    }
+}
+
 const fn channel(name: &'static str, unit: ChannelUnit, most: f64) -> Channel {
     Channel {
         name,
@@ -143,73 +199,24 @@ impl RigJoint {
     fn read(section: &Section<'_>, log: &mut Log<'_>) -> Option<Self> {
         let keys = RigJointKeys::read(section, log)?;
         let channel = channel_of(keys.kind, keys.drive);
-        let mut is_sound = true;
-        let mut report = |key: &str, message: String, advice: &str, log: &mut Log<'_>| {
-            log.problem(section.key_span(key), Fault::new(message, advice));
-            is_sound = false;
-        };
-        let (name, kind, drive) = (&keys.name, keys.kind, keys.drive.word());
-        let is_word = |c: char| c.is_ascii_lowercase() || c.is_ascii_digit() || c == '-';
-        if name.is_empty() || !name.chars().all(is_word) {
-            let message = format!("a joint cannot be called \"{name}\"");
-            report(
-                "name",
-                message,
-                "use small letters, digits and hyphens",
-                log,
-            );
-        }
-        if keys.axis == [0.0; 3] {
-            let message = format!("the axis of the joint \"{name}\" has no direction");
-            report("axis", message, "give it a length, such as [0, 1, 0]", log);
-        }
-        for table in ["load", "motion"] {
-            let is_given = section.value(table).is_some();
-            if is_given && channel.is_none_or(|channel| channel.name != table) {
-                let message =
-                    format!("the joint \"{name}\" is {drive}, and has a waveform of {table}");
-                let advice = "remove one of them: a joint has one drive";
-                report(table, message, advice, log);
-            }
-        }
-        let wrong: &[&str] = match kind {
-            JointKind::Rotation => &["locked_at_mm", "inertia_kg", "damping_n_s_per_mm"],
-            JointKind::Translation => &[
-                "locked_at_deg",
-                "inertia_kg_m2",
-                "damping_nm_s_per_rad",
-                "turns_per_cycle",
-                "point_mm",
-            ],
-        };
-        for key in wrong.iter().filter(|key| section.value(key).is_some()) {
-            let message = format!(
-                "`{key}` does not fit the {} \"{name}\"",
-                kind.text().unwrap_or_default()
-            );
-            report(key, message, "remove it, or change `kind`", log);
-        }
-        let turns = keys.turns_per_cycle;
-        if turns.is_some_and(|turns| turns.fract() != 0.0 || keys.drive != DriveWord::Prescribed) {
-            let message = format!("the joint \"{name}\" does not repeat after a cycle");
-            report(
-                "turns_per_cycle",
-                message,
-                "use whole turns and drive = \"prescribed\"",
-                log,
-            );
-        }
+        let mut faults = keys.faults(section);
         let waveform = match channel {
             Some(channel) if section.value(channel.name).is_some() => {
                 Some(waveform::read(channel, section, log)?)
             }
             _ => None,
         };
-        if keys.drive == DriveWord::Prescribed && waveform.is_some() == turns.is_some() {
+        let is_prescribed = keys.drive == DriveWord::Prescribed;
+        if is_prescribed && waveform.is_some() == keys.turns_per_cycle.is_some() {
             let message = format!(
-                "the prescribed joint \"{name}\" needs one of [joints.motion] and `turns_per_cycle`"
+                "the prescribed joint \"{}\" needs one of [joints.motion] and `turns_per_cycle`",
+                keys.name
             );
-            report("drive", message, "", log);
+            faults.push(("drive", Fault::new(message, "")));
+        }
+        let is_sound = faults.is_empty();
+        for (key, fault) in faults {
+            log.problem(section.key_span(key), fault);
         }
         is_sound.then_some(Self { keys, waveform })
     }

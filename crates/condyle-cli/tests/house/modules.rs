@@ -172,9 +172,10 @@ const MAY_USE: &[(&str, &[&str])] = &[
             "condyle_report::figure",
             "condyle_report::number",
             "condyle_report::results",
-            // The table of joints that the columns of kinematics.csv are made by.
+            // The table of joints that the columns of kinematics.csv are made by, and the units in their names.
             "condyle::machine::knee",
             "condyle::machine::mechanism",
+            "condyle::parameter",
         ],
     ),
     (

@@ -8,8 +8,9 @@ use condyle::machine::{
 };
 
 use crate::case::contents::Case;
+use crate::case::drive::DriveWord;
 use crate::case::machine as case;
-use crate::case::machine::{DriveWord, Freedom, StiffnessOf};
+use crate::case::machine::{Freedom, StiffnessOf};
 
 const TONNE_PER_KG: f64 = 1e-3;
 const TONNE_MM2_PER_KG_M2: f64 = 1e3;
