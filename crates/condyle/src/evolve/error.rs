@@ -6,11 +6,8 @@ use thiserror::Error;
 use super::WearTest;
 use crate::{
     Vec3,
-    machine::{CycleError, Machine, MachineState, NotSettled},
+    machine::{CycleError, HEAVY, Machine, MachineState, NotSettled},
 };
-
-/// Added inertia, as a multiple of the machine's own, beyond which it dominates the motion instead of the loads.
-const HEAVY: f64 = 1.0;
 
 /// The reason why a march ended early.
 #[expect(missing_docs, reason = "the messages describe the fields")]

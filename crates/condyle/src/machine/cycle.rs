@@ -231,6 +231,9 @@ impl Cycle {
     }
 }
 
+/// Added inertia, as a multiple of the machine's own, beyond which it dominates the motion instead of the loads.
+pub(crate) const HEAVY: f64 = 1.0;
+
 /// The reason why a cycle was not solved.
 #[expect(missing_docs, reason = "the messages describe the fields")]
 #[derive(Clone, Debug, PartialEq, Error)]
@@ -247,11 +250,20 @@ pub enum CycleError {
     },
     /// Explicit steps whose rates exceed all bounds.
     #[error(
-        "explicit steps leave all bounds at {percent:.2} % of the cycle, past {readings}; where friction rises steeply \
+        "explicit steps leave all bounds at {percent:.2} % of the cycle, past {readings}{}; where friction rises steeply \
          with the speed or the load jumps no step is short enough: take a larger slip_tolerance_mm_per_s, a shorter explicit_step_s, or \
-         integrator = \"implicit\""
+         integrator = \"implicit\"",
+        if *added_inertia > HEAVY {
+            format!(", with {added_inertia:.0} times the machine's inertia added to it so that explicit_step_s is stable")
+        } else {
+            String::new()
+        }
     )]
-    Unstable { percent: f64, readings: String },
+    Unstable {
+        percent: f64,
+        readings: String,
+        added_inertia: f64,
+    },
     /// A load that the insert cannot bear.
     #[error("at {percent:.2} % of the cycle the load {why}")]
     NotBorne { percent: f64, why: NotBorne },

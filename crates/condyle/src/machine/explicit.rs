@@ -119,6 +119,7 @@ impl Simulator<'_> {
             return Err(CycleError::Unstable {
                 percent: 100.0 * phase,
                 readings: machine.mechanism.readings(&now.positions),
+                added_inertia: self.counters.added_inertia,
             });
         }
         Ok((next, motion))

@@ -17,6 +17,8 @@ mod waveform;
 
 pub use assembly::{Drive, Joint, Machine, Spring};
 pub use chain::{Chain, Configuration};
+pub(crate) use cycle::HEAVY;
+
 pub use cycle::{
     Cycle, CycleError, Integration, Kinematics, MachineState, SolverCounters, TimeSettings,
     WarmStart,
