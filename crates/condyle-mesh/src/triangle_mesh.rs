@@ -90,6 +90,28 @@ impl TriangleMesh {
         self
     }
 
+    /// Divides every triangle in four at the middles of its sides, which `middle_of` places between two corners.
+    pub fn in_four(&self, middle_of: impl Fn(&Vec3, &Vec3) -> Vec3) -> Self {
+        let mut vertices = self.vertices.clone();
+        // Only looked up: its order does not matter.
+        let mut middles = std::collections::HashMap::new();
+        let mut middle = |a: u32, b: u32| {
+            *middles.entry((a.min(b), a.max(b))).or_insert_with(|| {
+                vertices.push(middle_of(&vertices[a as usize], &vertices[b as usize]));
+                vertices.len() as u32 - 1
+            })
+        };
+        let mut triangles = Vec::with_capacity(4 * self.triangles.len());
+        for &[a, b, c] in &self.triangles {
+            let (ab, bc, ca) = (middle(a, b), middle(b, c), middle(c, a));
+            triangles.extend([[a, ab, ca], [ab, b, bc], [ca, bc, c], [ab, bc, ca]]);
+        }
+        Self {
+            vertices,
+            triangles,
+        }
+    }
+
     /// Returns a closed block from `low` to `high` of twelve triangles.
     pub fn block(low: Vec3, high: Vec3) -> Self {
         let corner = |i: u32| {

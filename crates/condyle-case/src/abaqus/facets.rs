@@ -6,8 +6,6 @@ use condyle::Vec3;
 use condyle::geometry::{FemoralSurface, TriangleMesh};
 use condyle::spatial::Pose;
 
-use crate::case::in_four;
-
 /// Gap below which a node of the insert may come into contact, mm.
 const NEAR_MM: f64 = 0.1;
 /// Edge of the cells by which triangles near such nodes are found, mm.
@@ -35,7 +33,7 @@ pub(super) fn facets(
         if longest_mm <= LONGEST_EDGE_MM {
             break;
         }
-        facets = in_four(&facets, |a, b| (a + b) / 2.0);
+        facets = facets.in_four(|a, b| (a + b) / 2.0);
     }
     facets.mapped(|corner| on_surface(femur, corner))
 }

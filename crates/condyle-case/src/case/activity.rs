@@ -170,8 +170,7 @@ impl Activity {
 fn check_names(sections: &[Section<'_>], all: &[Activity], log: &mut Log<'_>) {
     for (number, (section, activity)) in sections.iter().zip(all).enumerate() {
         let name = &activity.keys.name;
-        let is_word = |c: char| c.is_ascii_lowercase() || c.is_ascii_digit() || c == '-';
-        let fault = if name.is_empty() || name.len() > LONGEST_NAME || !name.chars().all(is_word) {
+        let fault = if name.len() > LONGEST_NAME || !is_name(name) {
             let advice = "write 1 to 40 small letters, digits and hyphens, such as \"stairs\"";
             Fault::new(format!("an activity cannot be called \"{name}\""), advice)
         } else if all[..number].iter().any(|other| other.keys.name == *name) {

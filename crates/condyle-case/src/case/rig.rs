@@ -87,7 +87,7 @@ settings! {
         damping_nm_s_per_rad: Option<f64> = None, in within(0.0, 1000.0);
         /// State while the machine settles at the start of the cycle, before the first cycle.
         settling: Settling = Settling::Driven;
-        /// Whether it reads zero where the machine has settled; true for loaded translations if not given.
+        /// True if it reads zero where the machine has settled; true for loaded translations if not given.
         zeroed: Option<bool> = None;
     }
 }
@@ -99,8 +99,7 @@ impl RigJointKeys {
         let (name, drive) = (&self.name, self.drive.word());
         let mut add =
             |key, message: String, advice: &str| faults.push((key, Fault::new(message, advice)));
-        let is_word = |c: char| c.is_ascii_lowercase() || c.is_ascii_digit() || c == '-';
-        if name.is_empty() || !name.chars().all(is_word) {
+        if !is_name(name) {
             let message = format!("a joint cannot be called \"{name}\"");
             add("name", message, "use small letters, digits and hyphens");
         }
@@ -294,17 +293,16 @@ impl RigJoint {
             moves: keys.moves,
             settling: keys.settling,
             is_zeroed: self.is_zeroed(),
+            // Files state SI units; the library computes in t, mm and s, and 1 kg m2 is 1e3 t mm2.
             inertia: if is_rotation {
-                1e3 * keys
-                    .inertia_kg_m2
-                    .unwrap_or(1e-3 * knee::MOMENT_OF_INERTIA_TONNE_MM2)
+                let given = keys.inertia_kg_m2;
+                given.map_or(knee::MOMENT_OF_INERTIA_TONNE_MM2, |inertia| 1e3 * inertia)
             } else {
-                1e-3 * keys.inertia_kg.unwrap_or(1e3 * knee::MASS_TONNE)
+                keys.inertia_kg.map_or(knee::MASS_TONNE, |mass| 1e-3 * mass)
             },
             damping: if is_rotation {
-                1e3 * keys
-                    .damping_nm_s_per_rad
-                    .unwrap_or(1e-3 * knee::DAMPING_NMM_S_PER_RAD)
+                let given = keys.damping_nm_s_per_rad;
+                given.map_or(knee::DAMPING_NMM_S_PER_RAD, |damping| 1e3 * damping)
             } else {
                 keys.damping_n_s_per_mm.unwrap_or(knee::DAMPING_N_S_PER_MM)
             },
@@ -338,13 +336,19 @@ impl Rig {
         } else {
             return Some(None);
         };
-        if section.value("frequency_hz").is_some() {
-            let key = Key::number("frequency_hz", "", 1.0, within(0.001, 100.0));
-            rig.keys.frequency_hz = section.setting(&key, None, log)?;
-        }
-        if section.value("order").is_some() {
-            let key = Key::optional("order", "", Names::kind());
-            rig.keys.order = section.setting(&key, Some(None), log)?;
+        // The case may replace these two keys of a file.
+        for key in RigKeys::keys() {
+            match key.name {
+                "frequency_hz" => {
+                    let of_file = rig.keys.frequency_hz;
+                    rig.keys.frequency_hz = section.setting(&key, Some(of_file), log)?;
+                }
+                "order" => {
+                    let of_file = rig.keys.order.take();
+                    rig.keys.order = section.setting(&key, Some(of_file), log)?;
+                }
+                _ => {}
+            }
         }
         rig.ordered(section, log).map(Some)
     }

@@ -174,6 +174,12 @@ impl<T: Setting> Setting for Option<T> {
     }
 }
 
+/// Returns whether `text` is a name that may become part of a file name or a column: small letters, digits and hyphens.
+pub(crate) fn is_name(text: &str) -> bool {
+    let is_part = |c: char| c.is_ascii_lowercase() || c.is_ascii_digit() || c == '-';
+    !text.is_empty() && text.chars().all(is_part)
+}
+
 pub(crate) fn wrong_type(value: &Spanned<DeValue<'_>>, key: &Key, log: &mut Log<'_>) {
     let found = type_name(value.get_ref());
     let fault = type_fault(key.name, &key.kind.to_string(), found);

@@ -179,12 +179,12 @@ pub fn updates_kept(folder: &Path) -> usize {
     checkpoint.state.updates.len()
 }
 
-/// Where the shipped cases are, if the data of subject DM are there; says so if not.
+/// Returns the folder of the shipped cases, if the data of subject DM are there; otherwise prints that `test` is skipped.
 pub fn dm_cases(test: &str) -> Option<PathBuf> {
     cases_with_data(test, "dm-knee/tibial-insert.stl")
 }
 
-/// Where the shipped cases are, if a file of the shared data is there; says so if not.
+/// Returns the folder of the shipped cases, if a file of the shared data is there; otherwise prints that `test` is skipped.
 pub fn cases_with_data(test: &str, file: &str) -> Option<PathBuf> {
     let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../..");
     let there = root.join("../shared/data").join(file).is_file();
@@ -194,7 +194,7 @@ pub fn cases_with_data(test: &str, file: &str) -> Option<PathBuf> {
     there.then(|| root.join("cases"))
 }
 
-/// The folder of reproducers of a report from outside, if it is there; says so if not.
+/// Returns a folder of reproducers from outside, if it is there; otherwise prints that `test` is skipped.
 pub fn reproducer(report: &str, test: &str) -> Option<PathBuf> {
     let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../shared/reproducers");
     let folder = root.join(report);

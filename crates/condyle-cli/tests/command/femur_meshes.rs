@@ -42,21 +42,6 @@ fn run_mesh(bench: &Bench, mesh: &TriangleMesh) -> Outcome {
     outcome(bench, "mesh.toml")
 }
 
-/// Divides every flat triangle in four.
-fn in_four(mesh: &TriangleMesh) -> TriangleMesh {
-    let corners = (0..mesh.triangles.len()).flat_map(|triangle| {
-        let [a, b, c] = mesh.corners(triangle);
-        let (ab, bc, ca) = ((a + b) / 2.0, (b + c) / 2.0, (c + a) / 2.0);
-        [[a, ab, ca], [ab, b, bc], [ca, bc, c], [ab, bc, ca]]
-    });
-    let vertices: Vec<_> = corners.flatten().collect();
-    let triangles = (0..vertices.len() as u32 / 3).map(|n| [3 * n, 3 * n + 1, 3 * n + 2]);
-    TriangleMesh {
-        triangles: triangles.collect(),
-        vertices,
-    }
-}
-
 #[test]
 fn verify_any_triangles_of_a_femur_give_its_wear_or_a_doubt() {
     let bench = Bench::new();
@@ -77,7 +62,7 @@ fn verify_any_triangles_of_a_femur_give_its_wear_or_a_doubt() {
             if edge_mm < 1.0 {
                 break;
             }
-            mesh = in_four(&mesh);
+            mesh = mesh.in_four(|a, b| (a + b) / 2.0);
         }
     }
 }

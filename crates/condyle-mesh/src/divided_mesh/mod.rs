@@ -28,7 +28,7 @@ pub struct DividedMesh {
     facets: Vec<Facet>,
 }
 
-/// Where a facet ends at creases: normals between those of the surfaces that meet there, by corner and by the side
+/// The creases at the ends of a facet: normals between those of the surfaces that meet there, by corner and by the side
 /// opposite to it.
 struct Facet {
     at_corners: [Option<Vec3>; 3],

@@ -30,24 +30,7 @@ fn torus(rows: u32, columns: u32) -> TriangleMesh {
 
 /// Divides every flat triangle in four, with the rounding of a file in single precision.
 fn in_four(mesh: &TriangleMesh) -> TriangleMesh {
-    let mut vertices = mesh.vertices.clone();
-    let mut middles = std::collections::BTreeMap::new();
-    let mut middle = |a: u32, b: u32| {
-        *middles.entry((a.min(b), a.max(b))).or_insert_with(|| {
-            let middle = (vertices[a as usize] + vertices[b as usize]) / 2.0;
-            vertices.push(middle.map(|x| f64::from(x as f32)));
-            vertices.len() as u32 - 1
-        })
-    };
-    let mut triangles = Vec::new();
-    for &[a, b, c] in &mesh.triangles {
-        let (ab, bc, ca) = (middle(a, b), middle(b, c), middle(c, a));
-        triangles.extend([[a, ab, ca], [ab, b, bc], [ca, bc, c], [ab, bc, ca]]);
-    }
-    TriangleMesh {
-        vertices,
-        triangles,
-    }
+    mesh.in_four(|a, b| ((a + b) / 2.0).map(|x| f64::from(x as f32)))
 }
 
 /// Returns the gap from a point to the nearest triangle.

@@ -257,7 +257,7 @@ fn sphere(radius_mm: f64, about: f64) -> TriangleMesh {
     let halvings = (about / ICOSAHEDRON_FACES).log(4.0).round() as usize;
     let mut ball = icosahedron();
     for _ in 0..halvings {
-        ball = in_four(&ball, |a, b| (a + b).normalize());
+        ball = ball.in_four(|a, b| (a + b).normalize());
     }
     ball.mapped(|vertex| vertex.normalize() * radius_mm)
 }
@@ -293,30 +293,6 @@ fn icosahedron() -> TriangleMesh {
                 }
             }
         }
-    }
-    TriangleMesh {
-        vertices,
-        triangles,
-    }
-}
-
-/// Divides every triangle in four at its midpoints, which `middle_of` places between two corners.
-pub(crate) fn in_four(
-    mesh: &TriangleMesh,
-    middle_of: impl Fn(&Vec3, &Vec3) -> Vec3,
-) -> TriangleMesh {
-    let mut vertices = mesh.vertices.clone();
-    let mut middles = std::collections::HashMap::new();
-    let mut middle = |a: u32, b: u32| {
-        *middles.entry((a.min(b), a.max(b))).or_insert_with(|| {
-            vertices.push(middle_of(&vertices[a as usize], &vertices[b as usize]));
-            vertices.len() as u32 - 1
-        })
-    };
-    let mut triangles = Vec::with_capacity(4 * mesh.triangles.len());
-    for &[a, b, c] in &mesh.triangles {
-        let (ab, bc, ca) = (middle(a, b), middle(b, c), middle(c, a));
-        triangles.extend([[a, ab, ca], [ab, b, bc], [ca, bc, c], [ab, bc, ca]]);
     }
     TriangleMesh {
         vertices,

@@ -18,7 +18,6 @@ pub use femur::FEMUR_TRIANGLES;
 pub use shared::SharedBodies;
 
 pub(super) use error::Finding;
-pub(crate) use femur::in_four;
 
 #[cfg(feature = "file-system")]
 pub(super) use {
