@@ -35,7 +35,7 @@ def test_the_text_is_that_of_the_command(command: str, tmp_path: Path) -> None:
     ("case", "kind", "message"),
     [
         ("not-there.toml", condyle.BadInput, "not-there.toml cannot be read"),
-        ({"femur": {"start_mm": [80.0, 0.0]}}, condyle.BadInput, "femur and insert are apart"),
+        ({"femur": {"start_mm": [80.0, 0.0]}}, condyle.BadInput, "counterface and insert are apart"),
         ({"limits": {"memory_gb": 0.01}}, condyle.BadInput, "memory"),
         ({"contact": {"friction": "slippery"}}, condyle.BadInput, "friction"),
         ({"contact": {"friction": object()}}, condyle.BadInput, "no value of a case"),

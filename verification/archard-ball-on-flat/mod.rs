@@ -5,7 +5,7 @@ use std::{f64::consts::PI, path::Path};
 use condyle::{
     contact::Foundation,
     evolve::March,
-    geometry::FemoralSurface,
+    geometry::Counterface,
     machine::{Chain, Simulator},
 };
 
@@ -41,7 +41,7 @@ fn rows() -> Vec<Row> {
 fn on_a_flat() -> Vec<Row> {
     let (contact, stiffness) = rubbing(0.07, 1.0);
     let rub = Rub {
-        femur: FemoralSurface::sphere(RADIUS_MM),
+        femur: Counterface::sphere(RADIUS_MM),
         insert: block(24.0, THICKNESS_MM, 0.5),
         contact,
         ap: to_and_fro(AMPLITUDE_MM),

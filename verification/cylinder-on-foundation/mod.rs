@@ -3,7 +3,7 @@
 use condyle::{
     Vec3,
     contact::{Bodies, PressureLaw},
-    geometry::{Cylinder, FemoralSurface},
+    geometry::{Counterface, Cylinder},
 };
 
 use crate::{
@@ -102,7 +102,7 @@ fn exact(law: &ExactLaw) -> Exact {
 
 /// The cylinder at places over two edges of the mesh.
 fn slide(law: &PressureLaw, edge_mm: f64) -> Vec<Pressed> {
-    let femur = FemoralSurface::Cylinder(Cylinder {
+    let femur = Counterface::Cylinder(Cylinder {
         radius_mm: RADIUS_MM,
     });
     let (law, layer) = (
@@ -110,7 +110,7 @@ fn slide(law: &PressureLaw, edge_mm: f64) -> Vec<Pressed> {
         block(WIDTH_MM, THICKNESS_MM, edge_mm),
     );
     let bodies = Bodies {
-        femur: &femur,
+        counterface: &femur,
         insert: &layer,
         surface: &layer.surface(),
     };

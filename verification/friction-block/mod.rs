@@ -53,7 +53,7 @@ fn at_speeds() -> Vec<Row> {
     let (law, stiffness) = rubbing(FRICTION, TOLERANCE_MM_PER_S);
     let (femur, insert) = (plate(SIZE_MM), block(SIZE_MM, THICKNESS_MM, 1.0));
     let bodies = Bodies {
-        femur: &femur,
+        counterface: &femur,
         insert: &insert,
         surface: &insert.surface(),
     };
@@ -105,7 +105,7 @@ fn moved(ap: Drive, damping: f64, increments: usize) -> (Cycle, Machine) {
     time.force_tolerance_n = 1e-7;
     time.most_cycles_to_repeat = 2;
     let bodies = Bodies {
-        femur: &femur,
+        counterface: &femur,
         insert: &insert,
         surface: &insert.surface(),
     };

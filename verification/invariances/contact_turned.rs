@@ -3,7 +3,7 @@
 use condyle::{
     Mat3, Vec3,
     contact::{Bodies, Tangent},
-    geometry::{FemoralSurface, GenericInsertShape, Insert},
+    geometry::{Counterface, GenericInsertShape, Insert},
     spatial::{Mat6, Pose, RelativeMotion, Twist, Vec6, WrenchByTwist},
 };
 use condyle_mesh::columns::ColumnGrid;
@@ -89,9 +89,9 @@ pub(super) fn rows() -> [Row; 3] {
 
 /// A ball's wrench and tangent.
 fn response(insert: &Insert, motion: &RelativeMotion) -> (Vec6, Tangent) {
-    let (femur, (law, _)) = (FemoralSurface::sphere(24.0), rubbing(0.07, 1.0));
+    let (femur, (law, _)) = (Counterface::sphere(24.0), rubbing(0.07, 1.0));
     let bodies = Bodies {
-        femur: &femur,
+        counterface: &femur,
         insert,
         surface: &insert.surface(),
     };

@@ -5,7 +5,7 @@ use std::f64::consts::PI;
 use condyle::{
     Vec3,
     contact::{Bodies, PressureLaw, PressureTable},
-    geometry::{FemoralSurface, GenericInsertShape, Insert, Meshing, SmoothField},
+    geometry::{Counterface, GenericInsertShape, Insert, Meshing, SmoothField},
 };
 
 use crate::{
@@ -39,7 +39,7 @@ const ACCEPTED: Accepted = Accepted {
 
 fn rows() -> Vec<Row> {
     let layer = layer(DEFAULT_EDGE_MM);
-    let (shape, mesh) = (FemoralSurface::sphere(RADIUS_MM), mesh_over(&layer));
+    let (shape, mesh) = (Counterface::sphere(RADIUS_MM), mesh_over(&layer));
     let mut rows = Vec::new();
     for law in exact_laws() {
         for (femur, body) in [(&shape, "shape"), (&mesh, "mesh")] {
@@ -59,14 +59,14 @@ fn rows() -> Vec<Row> {
 }
 
 /// The ball of triangles, made ready for an insert.
-fn mesh_over(insert: &Insert) -> FemoralSurface {
+fn mesh_over(insert: &Insert) -> Counterface {
     let field = SmoothField::new(&ball_mesh(RADIUS_MM, TRIANGLE_MM), 1);
-    FemoralSurface::Mesh(field).prepared_for(insert.surface().mean_spread_mm2())
+    Counterface::Mesh(field).prepared_for(insert.surface().mean_spread_mm2())
 }
 
 fn finer() -> Row {
     let [linear, ..] = exact_laws();
-    let femur = FemoralSurface::sphere(RADIUS_MM);
+    let femur = Counterface::sphere(RADIUS_MM);
     let three = [1.0, 0.5, 0.25].map(|part| {
         let layer = layer(part * DEFAULT_EDGE_MM);
         slide(&linear.law, &femur, &layer)
@@ -106,10 +106,10 @@ fn layer(edge_mm: f64) -> Insert {
 }
 
 /// The ball at places along a line that meets no symmetry of the mesh.
-fn slide(law: &PressureLaw, femur: &FemoralSurface, layer: &Insert) -> Vec<Pressed> {
+fn slide(law: &PressureLaw, femur: &Counterface, layer: &Insert) -> Vec<Pressed> {
     let law = without_friction(law);
     let bodies = Bodies {
-        femur,
+        counterface: femur,
         insert: layer,
         surface: &layer.surface(),
     };
@@ -137,11 +137,11 @@ const APPROACH_MM: f64 = 0.13;
 ///
 /// The dish is a surface of revolution about the line along z at the height of its sagittal radius.
 /// A table of two points is a linear law whatever the thickness, so the force has one size.
-fn forces_in_dish(femur: &FemoralSurface, dish: &Insert) -> Vec<f64> {
+fn forces_in_dish(femur: &Counterface, dish: &Insert) -> Vec<f64> {
     let stiff = PressureTable::new(vec![(0.0, 0.0), (1.0, modulus_mpa() / THICKNESS_MM)]);
     let law = without_friction(&PressureLaw::Tabulated(stiff.expect("a table that rises")));
     let bodies = Bodies {
-        femur,
+        counterface: femur,
         insert: dish,
         surface: &dish.surface(),
     };

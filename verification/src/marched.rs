@@ -33,7 +33,7 @@ pub(crate) fn started(case: &Case) -> (March, Foundation) {
 /// The bodies of a march as worn so far, `surface` that of its insert.
 pub(crate) fn bodies_of<'a>(march: &'a March, surface: &'a ArticulatingSurface) -> Bodies<'a> {
     Bodies {
-        femur: march.femur(),
+        counterface: march.counterface(),
         insert: march.insert(),
         surface,
     }

@@ -56,8 +56,8 @@ impl<'a> Observed<'a> {
     /// mu s N v with s = v/sqrt(v^2 + v0^2), from the femur's motion and normal at the share.
     fn friction_nmm_per_s(&self, node: &TouchedNode, motion: &RelativeMotion) -> f64 {
         let share = &self.bodies.surface.shares[node.node as usize];
-        let in_femur = motion.pose.to_femur(&share.centre);
-        let sample = self.bodies.femur.sample(&in_femur, share.spread_mm2);
+        let in_femur = motion.pose.to_counterface(&share.centre);
+        let sample = self.bodies.counterface.sample(&in_femur, share.spread_mm2);
         let normal = motion.pose.rotation * sample.normal;
         let velocity = motion.twist.angular.cross(&share.centre) + motion.twist.linear;
         let speed = (velocity - normal * normal.dot(&velocity)).norm();

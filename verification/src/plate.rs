@@ -3,7 +3,7 @@
 use condyle::{
     Vec3,
     contact::Foundation,
-    geometry::{FemoralSurface, SmoothField, TriangleMesh},
+    geometry::{Counterface, SmoothField, TriangleMesh},
 };
 
 use crate::law::{THICKNESS_MM, exact_laws};
@@ -12,7 +12,7 @@ use crate::law::{THICKNESS_MM, exact_laws};
 const EDGE_MM: f64 = 2.0;
 
 /// The underside of a plate at y = 0 of the femoral frame, at least `half_mm` to every side.
-pub(crate) fn plate(half_mm: f64) -> FemoralSurface {
+pub(crate) fn plate(half_mm: f64) -> Counterface {
     let half_count = (half_mm / EDGE_MM).ceil() as i32;
     let side = -half_count..=half_count;
     let place = |i: i32, k: i32| Vec3::new(f64::from(i) * EDGE_MM, 0.0, f64::from(k) * EDGE_MM);
@@ -31,7 +31,7 @@ pub(crate) fn plate(half_mm: f64) -> FemoralSurface {
             .collect(),
         triangles: triangles.collect(),
     };
-    FemoralSurface::Mesh(SmoothField::new(&mesh, 1))
+    Counterface::Mesh(SmoothField::new(&mesh, 1))
 }
 
 /// A linear foundation with friction, and the stiffness of its layer, MPa/mm.

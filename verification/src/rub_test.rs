@@ -5,7 +5,7 @@ use std::sync::Arc;
 use condyle::{
     contact::Foundation,
     evolve::{Activity, Schedule, WearTest},
-    geometry::{FemoralSurface, Insert},
+    geometry::{Counterface, Insert},
     machine::{Drive, Waveform},
     wear::Archard,
 };
@@ -20,7 +20,7 @@ pub(crate) const MM_PER_M: f64 = 1000.0;
 
 /// What a rub is made of.
 pub(crate) struct Rub {
-    pub femur: FemoralSurface,
+    pub femur: Counterface,
     pub insert: Insert,
     pub contact: Foundation,
     /// Motion of the insert along AP.
@@ -41,7 +41,7 @@ impl Rub {
         time.force_tolerance_n = 1e-6 * self.load_n;
         (time.repeat_tolerance_mm, time.repeat_tolerance_rad) = (1e-5, 1e-6);
         WearTest {
-            femur: Arc::new(self.femur),
+            counterface: Arc::new(self.femur),
             flexion_axis_mm: (0.0, 0.0),
             start_mm: (0.0, 0.0),
             start_height_mm: None,

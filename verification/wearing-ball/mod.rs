@@ -2,7 +2,7 @@
 
 use std::f64::consts::{PI, TAU};
 
-use condyle::{evolve::UpdateRecord, geometry::FemoralSurface, machine::knee};
+use condyle::{evolve::UpdateRecord, geometry::Counterface, machine::knee};
 
 use crate::{
     Case, Row,
@@ -69,7 +69,7 @@ fn updates() -> Vec<UpdateRecord> {
     let (contact, _) = rubbing(0.0, 1.0);
     let per_cycle = WEAR_FACTOR_MM3_PER_NM / MM_PER_M * LOAD_N * TAU * ORBIT_MM;
     let rub = Rub {
-        femur: FemoralSurface::sphere(RADIUS_MM),
+        femur: Counterface::sphere(RADIUS_MM),
         insert: block(10.0, THICKNESS_MM, 0.25),
         contact,
         ap: to_and_fro(ORBIT_MM),

@@ -31,7 +31,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     let poses = read_poses(&std::fs::read_to_string(poses)?)?;
     let march = March::start(Case::read(case.as_ref())?.build(1)?.test)?;
     let bodies = Bodies {
-        femur: march.femur(),
+        counterface: march.counterface(),
         insert: march.insert(),
         surface: &march.insert().surface(),
     };

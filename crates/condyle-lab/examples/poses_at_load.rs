@@ -38,7 +38,7 @@ fn balanced(march: &March, phase: f64, force_n: f64) -> Result<Pose, String> {
     let test = march.test();
     let chain = Chain::new(test.machine(), march.state().zero_mm, test.flexion_axis_mm);
     let bodies = Bodies {
-        femur: march.femur(),
+        counterface: march.counterface(),
         insert: march.insert(),
         surface: &march.insert().surface(),
     };

@@ -13,7 +13,7 @@ use condyle::{
     contact::{
         Backside, Bodies, ContactLaw, ContactMemory, ContactModel, Deformable, FrictionModel,
     },
-    geometry::{FemoralSurface, Insert, Meshing, TriangleMesh, flat_insert},
+    geometry::{Counterface, Insert, Meshing, TriangleMesh, flat_insert},
     spatial::{Pose, RelativeMotion, Twist},
 };
 use condyle_case::abaqus::{Pressed, Slide};
@@ -38,10 +38,10 @@ fn main() -> Result<(), Box<dyn Error>> {
         return Err("say where the two files are to be".into());
     };
     let insert = block()?;
-    let femur = FemoralSurface::sphere(RADIUS_MM);
+    let femur = Counterface::sphere(RADIUS_MM);
     let surface = insert.surface();
     let bodies = Bodies {
-        femur: &femur,
+        counterface: &femur,
         insert: &insert,
         surface: &surface,
     };

@@ -71,8 +71,8 @@ impl AtRest {
             MEDIAL => -node.force_n.y,
             _ => 0.0,
         });
-        let femur = march.femur();
-        let is_near = |place: &&Vec3| femur.gap_mm(&motion.pose.to_femur(place)) < NEAR_MM;
+        let femur = march.counterface();
+        let is_near = |place: &&Vec3| femur.gap_mm(&motion.pose.to_counterface(place)) < NEAR_MM;
         let (x, y) = test.flexion_axis_mm;
         let is_knee = *test.machine().mechanism == KNEE;
         let in_files = |joint: JointIndex| {
@@ -87,7 +87,9 @@ impl AtRest {
             contact_area_mm2: sum(|node| node.covered_mm2),
             peak_pressure_mpa: result.peak_pressure_mpa,
             femur_deviation_mm: result.touched.iter().fold(0.0, |largest, node| {
-                let place = motion.pose.to_femur(&surface.positions[node.node as usize]);
+                let place = motion
+                    .pose
+                    .to_counterface(&surface.positions[node.node as usize]);
                 femur.deviation_mm(&place).max(largest)
             }),
             pose: motion.pose,

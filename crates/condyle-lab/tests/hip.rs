@@ -9,7 +9,7 @@ use condyle::{
         Bodies, ContactLaw, ContactMemory, Foundation, PressureLaw, confined_modulus, shell_modulus,
     },
     evolve::March,
-    geometry::{CupShape, FemoralSurface, Meshing},
+    geometry::{Counterface, CupShape, Meshing},
     spatial::{Pose, RelativeMotion},
 };
 use condyle_case::case::Case;
@@ -155,7 +155,7 @@ fn verify_contact_of_a_ball_in_a_cup() {
         let closed = BallInCup::under(load_n, CUP_MM, clearance_mm, stiffness);
         assert!((closed.eccentricity_mm() / exact.eccentricity_mm() - 1.0).abs() < 0.004);
         let femur =
-            FemoralSurface::sphere(CUP_MM - clearance_mm).prepared_for(surface.mean_spread_mm2());
+            Counterface::sphere(CUP_MM - clearance_mm).prepared_for(surface.mean_spread_mm2());
         let law = Foundation::new(
             PressureLaw::Linear {
                 modulus_mpa: confined_modulus(e_mpa, v),
@@ -164,7 +164,7 @@ fn verify_contact_of_a_ball_in_a_cup() {
             1.0,
         );
         let bodies = Bodies {
-            femur: &femur,
+            counterface: &femur,
             insert: &insert,
             surface: &surface,
         };

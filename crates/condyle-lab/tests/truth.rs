@@ -10,7 +10,7 @@ use std::{ops::ControlFlow, path::Path, sync::Arc};
 use condyle::{
     contact::{ContactLaw, ContactMemory, ContactModel, Foundation, Search, TouchedNode},
     evolve::{CycleRecord, March, Progress, WearTest},
-    geometry::{ArticulatingSurface, FemoralSurface},
+    geometry::{ArticulatingSurface, Counterface},
     machine::{Chain, JointIndex, Simulator, SolverCounters, knee::KNEE, settle},
     spatial::RelativeMotion,
 };
@@ -171,7 +171,7 @@ fn jump_n(
     touched: &[TouchedNode],
     motion: &RelativeMotion,
 ) -> f64 {
-    let FemoralSurface::Generic(femur) = march.femur() else {
+    let Counterface::Generic(femur) = march.counterface() else {
         return 0.0;
     };
     let shape = femur.shape();
@@ -179,7 +179,7 @@ fn jump_n(
     let change_per_mm = 1.0 / shape.posterior_radius_mm - 1.0 / shape.distal_radius_mm;
     let jump_n = |node: &TouchedNode| {
         let share = &surface.shares[node.node as usize];
-        let place = motion.pose.to_femur(&share.centre);
+        let place = motion.pose.to_counterface(&share.centre);
         let is_passing = (place.x * cosine - place.y * sine).abs() <= law.settings.sample_reuse_mm;
         let slope = law.stiffness_mpa_per_mm(march.insert(), node.node as usize);
         let jump_mm = share.spread_mm2 * change_per_mm;

@@ -16,16 +16,16 @@ const MODULUS_MPA: f64 = 2142.0;
 const DEPTH_MM: f64 = 0.1;
 
 fn main() -> Result<(), Box<dyn Error>> {
-    // 1. The bodies. The femur is prepared for the size of the surface's shares, over which pressure is averaged.
+    // 1. The bodies. The counterface is prepared for the size of the surface's shares, over which pressure is averaged.
     let meshing = Meshing {
         edge_mm: 0.5,
         layers: 1,
     };
     let insert = flat_insert((24.0, 24.0), THICKNESS_MM, meshing)?;
     let surface = insert.surface();
-    let femur = FemoralSurface::sphere(RADIUS_MM).prepared_for(surface.mean_spread_mm2());
+    let counterface = Counterface::sphere(RADIUS_MM).prepared_for(surface.mean_spread_mm2());
     let bodies = Bodies {
-        femur: &femur,
+        counterface: &counterface,
         insert: &insert,
         surface: &surface,
     };
@@ -37,7 +37,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     let law = Foundation::new(pressure, 0.0, 1.0);
     let mut contact = law.contact(bodies, ContactMemory::default());
 
-    // 3. The pose of the femoral frame in the insert frame: the ball is DEPTH_MM deep in the plate, at rest.
+    // 3. The pose of the counterface frame in the insert frame: the ball is DEPTH_MM deep in the plate, at rest.
     let centre_mm = Vec3::new(0.0, RADIUS_MM - DEPTH_MM, 0.0);
     let motion = RelativeMotion::at_rest(Pose::new(Mat3::identity(), centre_mm));
     let force_n = -contact.respond(&motion).wrench.force.y;

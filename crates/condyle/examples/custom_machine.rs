@@ -37,7 +37,7 @@ const fn held(name: &'static str, column: &'static str, axis: Axis) -> JointDesc
         decimals: 3,
         least_span: 1.0,
         axis,
-        moves: MovedBody::Femur,
+        moves: MovedBody::Counterface,
         settling: Settling::HeldAtZero,
         is_zeroed: false,
         inertia: 1e-3,
@@ -51,7 +51,7 @@ const X: [f64; 3] = [1.0, 0.0, 0.0];
 const Y: [f64; 3] = [0.0, 1.0, 0.0];
 const Z: [f64; 3] = [0.0, 0.0, 1.0];
 
-/// From the disc (the insert) to the ball (the femur): three rotations that stay locked, then the orbit and the load.
+/// From the disc (the insert) to the ball (the counterface): three rotations that stay locked, then the orbit and the load.
 const JOINTS: [JointDescription; 6] = [
     held("turn", "turn_deg", Axis::About(Y)),
     held("tilt", "tilt_deg", Axis::About(X)),
@@ -135,7 +135,7 @@ fn ball_on_disc() -> Result<WearTest, Box<dyn Error>> {
         modulus_mpa: 2142.0,
     };
     Ok(WearTest {
-        femur: Arc::new(FemoralSurface::sphere(24.0)),
+        counterface: Arc::new(Counterface::sphere(24.0)),
         flexion_axis_mm: (0.0, 0.0),
         start_mm: (0.0, 0.0),
         start_height_mm: None,

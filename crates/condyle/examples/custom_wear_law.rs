@@ -76,7 +76,7 @@ fn ball_on_plate(wear: Arc<dyn WearLaw>) -> Result<WearTest, Box<dyn Error>> {
     let archard = WEAR_LAWS.iter().find(|kind| kind.word == "archard");
     let archard = archard.expect("it is built in").with_defaults();
     Ok(WearTest {
-        femur: Arc::new(FemoralSurface::sphere(24.0)),
+        counterface: Arc::new(Counterface::sphere(24.0)),
         flexion_axis_mm: (0.0, 0.0),
         start_mm: (0.0, 0.0),
         start_height_mm: None,

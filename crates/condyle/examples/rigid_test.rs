@@ -11,7 +11,7 @@ use condyle::{contact::confined_modulus, machine::knee, prelude::*};
 
 fn main() -> Result<(), Box<dyn Error>> {
     // 1. Two shapes. The coarse mesh keeps the example quick; shipped cases use 1.05 mm.
-    let femur = GenericFemur::new(GenericFemurShape::default());
+    let counterface = GenericFemur::new(GenericFemurShape::default());
     let meshing = Meshing {
         edge_mm: 2.5,
         layers: 2,
@@ -26,7 +26,7 @@ fn main() -> Result<(), Box<dyn Error>> {
 
     // 3. The test: 2 million cycles, the surface updated four times.
     let test = WearTest {
-        femur: Arc::new(FemoralSurface::Generic(femur)),
+        counterface: Arc::new(Counterface::Generic(counterface)),
         flexion_axis_mm: (0.0, 0.0),
         start_mm: (0.0, 0.0),
         start_height_mm: None,
@@ -47,7 +47,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         schedule: Schedule::fixed(2e6, 4),
     };
 
-    // 4. Lower the femur until it rests, then update until all cycles are done. The closure is called after
+    // 4. Lower the counterface until it rests, then update until all cycles are done. The closure is called after
     //    every increment; returning `ControlFlow::Break` stops the march.
     let mut march = March::start(test)?;
     println!("cycles      mass (mg)  depth (mm)  peak pressure (MPa)");

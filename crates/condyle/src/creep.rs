@@ -8,7 +8,7 @@ const REFERENCE_MIN: f64 = 1e4;
 /// Creep of UHMWPE in compression: a strain of $J(t) = A + B (\log_{10} t - 4)$ per MPa, $t$ the minutes under load; 0
 /// before the time at which that becomes positive, 25 s with the defaults.
 ///
-/// Source: Lee and Pienkowski 1998, as used in knee models; the constants are quoted from memory, not checked at the
+/// Source: Lee and Pienkowski 1998, as used in models of joints; the constants are quoted from memory, not checked at the
 /// source. They hold for constant stress of 2 to 8 MPa. For varying stress, steps of stress are superposed (Boltzmann), and
 /// a part of the largest strain so far is permanent:
 ///

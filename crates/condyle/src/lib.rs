@@ -3,7 +3,7 @@
 //!
 //! # A complete run
 //!
-//! A femoral component of two condyles flexes by 60 degrees under a load of up to 2 kN on an insert that moves
+//! A counterface of two condyles flexes by 60 degrees under a load of up to 2 kN on an insert that moves
 //! 4 mm to and fro. The insert is worn by 1 million cycles in two updates of its surface:
 //!
 //! ```
@@ -12,7 +12,7 @@
 //! use condyle::{contact::confined_modulus, machine::knee, prelude::*};
 //!
 //! // Two shapes: mm, in a right knee; x anterior, y superior, z lateral.
-//! let femur = GenericFemur::new(GenericFemurShape::default());
+//! let counterface = GenericFemur::new(GenericFemurShape::default());
 //! let coarse = Meshing { edge_mm: 3.0, layers: 2 };
 //! let insert = GenericInsertShape::default().insert(coarse)?;
 //!
@@ -32,7 +32,7 @@
 //! // Polyethylene as an elastic foundation with a friction coefficient of 0.07, regularised over 1 mm/s.
 //! let modulus_mpa = confined_modulus(463.0, 0.46);
 //! let test = WearTest {
-//!     femur: Arc::new(FemoralSurface::Generic(femur)),
+//!     counterface: Arc::new(Counterface::Generic(counterface)),
 //!     flexion_axis_mm: (0.0, 0.0),
 //!     start_mm: (0.0, 0.0),
 //!     start_height_mm: None,
@@ -48,7 +48,7 @@
 //!     schedule: Schedule::fixed(1e6, 2),
 //! };
 //!
-//! // Lower the femur until it rests on the insert, then march to the last cycle.
+//! // Lower the counterface until it rests on the insert, then march to the last cycle.
 //! let mut march = March::start(test)?;
 //! march.run()?;
 //!
@@ -70,7 +70,7 @@
 //!
 //! | part | module | to replace it |
 //! | --- | --- | --- |
-//! | shapes and meshes | [`geometry`], [`anatomy`] | [`FemoralSurface`](geometry::FemoralSurface), [`Insert`](geometry::Insert) |
+//! | shapes and meshes | [`geometry`], [`anatomy`] | [`Counterface`](geometry::Counterface), [`Insert`](geometry::Insert) |
 //! | joints, drives, springs | [`machine`] | a table: [`Mechanism`](machine::Mechanism) |
 //! | contact pressure | [`contact`] | the trait [`ContactLaw`](contact::ContactLaw) |
 //! | wear of a node in a cycle | [`wear`] | the trait [`WearLaw`](wear::WearLaw) |

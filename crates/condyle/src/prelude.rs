@@ -7,7 +7,7 @@ pub use crate::{
     },
     evolve::{Activity, March, MarchError, PlacementError, Progress, Schedule, Updates, WearTest},
     geometry::{
-        FemoralSurface, GenericFemur, GenericFemurShape, GenericInsertShape, Insert, Meshing,
+        Counterface, GenericFemur, GenericFemurShape, GenericInsertShape, Insert, Meshing,
         flat_insert,
     },
     machine::{Drive, Interpolation, Knot, Machine, Mechanism, TimeSettings, Waveform},

@@ -1,21 +1,21 @@
 //! Poses, twists and wrenches, typed by body and frame.
 //!
-//! There are two bodies: the [insert](body::Insert) and the [femur](body::Femur). Each carries a frame of the same
-//! name. A quantity's type states its body and its frame: [`Twist<Femur, Insert>`](Twist) is the femur's motion past
-//! the insert in the insert frame, [`Wrench<Insert, Femur>`](Wrench) acts on the insert and is expressed in the femoral
+//! There are two bodies: the [insert](body::Insert) and the [counterface](body::Counterface). Each carries a frame of the same
+//! name. A quantity's type states its body and its frame: [`Twist<Counterface, Insert>`](Twist) is the counterface's motion past
+//! the insert in the insert frame, [`Wrench<Insert, Counterface>`](Wrench) acts on the insert and is expressed in the counterface
 //! frame. Only a wrench on a body does work on a twist of the same body, so a forgotten sign or frame does not compile:
 //!
 //! ```compile_fail
-//! use condyle::spatial::{Twist, Wrench, body::{Femur, Insert}};
-//! let (on_insert, of_femur) = (Wrench::<Insert, Insert>::zero(), Twist::<Femur, Insert>::zero());
-//! on_insert.power(&of_femur);
+//! use condyle::spatial::{Twist, Wrench, body::{Counterface, Insert}};
+//! let (on_insert, of_counterface) = (Wrench::<Insert, Insert>::zero(), Twist::<Counterface, Insert>::zero());
+//! on_insert.power(&of_counterface);
 //! ```
 //!
 //! ```
-//! use condyle::{Vec3, spatial::{Twist, Wrench, body::{Femur, Insert}}};
+//! use condyle::{Vec3, spatial::{Twist, Wrench, body::{Counterface, Insert}}};
 //! let on_insert = Wrench::<Insert, Insert>::new(Vec3::zeros(), Vec3::new(0.0, -100.0, 0.0));
-//! let sinking = Twist::<Femur, Insert>::new(Vec3::zeros(), Vec3::new(0.0, -2.0, 0.0));
-//! // A force of 100 N down on the insert pushes the femur up and takes 200 N mm/s from it.
+//! let sinking = Twist::<Counterface, Insert>::new(Vec3::zeros(), Vec3::new(0.0, -2.0, 0.0));
+//! // A force of 100 N down on the insert pushes the counterface up and takes 200 N mm/s from it.
 //! assert_eq!(on_insert.reaction().power(&sinking), -200.0);
 //! ```
 
@@ -30,19 +30,19 @@ pub mod body {
         type Other: Body<Other = Self>;
     }
 
-    /// The bearing: the tibial insert of a knee.
+    /// The bearing, of polyethylene: an insert, a cup, a pin.
     #[derive(Clone, Copy, Debug, PartialEq, Eq)]
     pub enum Insert {}
 
-    /// The counterface: the femoral component of a knee.
+    /// The counterface, which is rigid: condyles, a head, a disc.
     #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-    pub enum Femur {}
+    pub enum Counterface {}
 
     impl Body for Insert {
-        type Other = Femur;
+        type Other = Counterface;
     }
 
-    impl Body for Femur {
+    impl Body for Counterface {
         type Other = Insert;
     }
 }
@@ -57,7 +57,7 @@ use crate::{
     Mat3, Vec3, Vector,
     number::{F64x4, Number, dot, scale_add},
 };
-use body::{Body, Femur, Insert};
+use body::{Body, Counterface, Insert};
 
 /// Six numbers: three angular ones or a moment, then three linear ones or a force.
 pub type Vec6 = nalgebra::Vector6<f64>;
@@ -66,7 +66,7 @@ pub type Mat6 = nalgebra::Matrix6<f64>;
 
 /// The position of the body `Of` in the frame of the body `In`: a point p of its frame is at R p + t.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Pose<In: Body = Insert, Of: Body = Femur> {
+pub struct Pose<In: Body = Insert, Of: Body = Counterface> {
     /// R, from the directions of `Of` to those of `In`.
     pub rotation: Mat3,
     /// t, the origin of `Of` in the frame of `In`, mm.
@@ -103,30 +103,30 @@ impl<In: Body, Of: Body> Pose<In, Of> {
     }
 }
 
-impl Pose<Insert, Femur> {
-    /// Converts a point of the insert frame to the femoral frame, mm.
+impl Pose<Insert, Counterface> {
+    /// Converts a point of the insert frame to the counterface frame, mm.
     #[inline]
-    pub fn to_femur(&self, point: &Vec3) -> Vec3 {
+    pub fn to_counterface(&self, point: &Vec3) -> Vec3 {
         self.rotation.tr_mul(&(point - self.translation))
     }
 
-    /// Converts a point of the femoral frame to the insert frame, mm.
+    /// Converts a point of the counterface frame to the insert frame, mm.
     pub fn to_insert(&self, point: &Vec3) -> Vec3 {
         self.point(point)
     }
 }
 
-/// Pose and velocity of the femur relative to the insert, in the insert frame.
+/// Pose and velocity of the counterface relative to the insert, in the insert frame.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RelativeMotion {
-    /// The pose of the femur.
+    /// The pose of the counterface.
     pub pose: Pose,
-    /// The velocity of the femur, rad/s and mm/s.
+    /// The velocity of the counterface, rad/s and mm/s.
     pub twist: Twist,
 }
 
 impl RelativeMotion {
-    /// Creates a femur at rest at a pose.
+    /// Creates a counterface at rest at a pose.
     pub fn at_rest(pose: Pose) -> Self {
         let twist = Twist::zero();
         Self { pose, twist }
@@ -138,7 +138,7 @@ impl RelativeMotion {
 /// It is a rate (rad/s, mm/s), a small motion (rad, mm), or the screw of a joint: the motion per
 /// unit of its position. The velocity of the material at p is v + w x p.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Twist<Of: Body = Femur, In: Body = Insert> {
+pub struct Twist<Of: Body = Counterface, In: Body = Insert> {
     /// Angular part w, rad/s or rad.
     pub angular: Vec3,
     /// Linear part v: the motion of the material of `Of` at the origin of `In`, mm/s or mm.
@@ -187,7 +187,7 @@ impl<Of: Body, In: Body> Twist<Of, In> {
     }
 }
 
-impl Twist<Femur, Insert> {
+impl Twist<Counterface, Insert> {
     /// Returns the small motion from one pose to another.
     pub fn between(from: &Pose, to: &Pose) -> Self {
         let turned = to.rotation * from.rotation.transpose();
@@ -295,7 +295,7 @@ macro_rules! six_numbers {
 six_numbers!(Twist, angular, linear);
 six_numbers!(Wrench, moment, force);
 
-/// Derivative of a wrench on the insert by a twist of the femur, both in the frame of `In`.
+/// Derivative of a wrench on the insert by a twist of the counterface, both in the frame of `In`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct WrenchByTwist<In: Body = Insert> {
     /// Rows: moment, then force. Columns: angular, then linear.
@@ -318,18 +318,18 @@ impl<In: Body> WrenchByTwist<In> {
     }
 }
 
-impl<In: Body> Mul<&Twist<Femur, In>> for &WrenchByTwist<In> {
+impl<In: Body> Mul<&Twist<Counterface, In>> for &WrenchByTwist<In> {
     type Output = Wrench<Insert, In>;
 
-    fn mul(self, twist: &Twist<Femur, In>) -> Wrench<Insert, In> {
+    fn mul(self, twist: &Twist<Counterface, In>) -> Wrench<Insert, In> {
         Wrench::from_numbers(&(self.matrix * twist.numbers()))
     }
 }
 
-/// Converts twists from the insert frame to the femoral frame, and wrenches back.
+/// Converts twists from the insert frame to the counterface frame, and wrenches back.
 ///
 /// It is the 6 by 6 matrix A from a twist at the insert's origin to one at the
-/// femur's. Power is the same in both frames, so A' converts wrenches back, and A' D A a derivative D of
+/// counterface's. Power is the same in both frames, so A' converts wrenches back, and A' D A a derivative D of
 /// one by the other.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct FrameChange {
@@ -337,35 +337,35 @@ pub(crate) struct FrameChange {
 }
 
 impl FrameChange {
-    /// Creates the change of frame at a pose of the femur.
-    pub fn to_femur(pose: &Pose) -> Self {
+    /// Creates the change of frame at a pose of the counterface.
+    pub fn to_counterface(pose: &Pose) -> Self {
         let turn = pose.rotation.transpose();
         let mut matrix = Mat6::zeros();
         matrix.fixed_view_mut::<3, 3>(0, 0).copy_from(&turn);
         matrix.fixed_view_mut::<3, 3>(3, 3).copy_from(&turn);
-        // Moving the origin by t adds w x t to the linear part: -[t]x w, seen from the femur.
+        // Moving the origin by t adds w x t to the linear part: -[t]x w, seen from the counterface.
         let lever = -turn * pose.translation.cross_matrix();
         matrix.fixed_view_mut::<3, 3>(3, 0).copy_from(&lever);
         Self { matrix }
     }
 
-    /// Converts a twist of the femur to its own frame.
-    pub fn twist(&self, twist: &Twist<Femur, Insert>) -> Twist<Femur, Femur> {
+    /// Converts a twist of the counterface to its own frame.
+    pub fn twist(&self, twist: &Twist<Counterface, Insert>) -> Twist<Counterface, Counterface> {
         Twist::from_numbers(&(self.matrix * twist.numbers()))
     }
 
     /// Converts a wrench on the insert back to the insert frame.
-    pub fn wrench_back(&self, wrench: &Wrench<Insert, Femur>) -> Wrench<Insert, Insert> {
+    pub fn wrench_back(&self, wrench: &Wrench<Insert, Counterface>) -> Wrench<Insert, Insert> {
         Wrench::from_numbers(&self.matrix.tr_mul(&wrench.numbers()))
     }
 
     /// Converts a derivative of the one by the other back to the insert frame.
-    pub fn derivative_back(&self, by: &WrenchByTwist<Femur>) -> WrenchByTwist<Insert> {
+    pub fn derivative_back(&self, by: &WrenchByTwist<Counterface>) -> WrenchByTwist<Insert> {
         WrenchByTwist::new(self.matrix.tr_mul(&by.matrix) * self.matrix)
     }
 }
 
-/// A pose of the femur in the insert for four points at a time.
+/// A pose of the counterface in the insert for four points at a time.
 pub(crate) struct Pose4 {
     /// Columns of R.
     columns: [Vector<F64x4>; 3],
@@ -382,20 +382,20 @@ impl Pose4 {
         }
     }
 
-    /// Converts points of the insert frame to the femoral frame.
+    /// Converts points of the insert frame to the counterface frame.
     #[inline(always)]
-    pub fn to_femur(&self, point: &Vector<F64x4>) -> Vector<F64x4> {
-        self.turn_to_femur(&(point - self.translation))
+    pub fn to_counterface(&self, point: &Vector<F64x4>) -> Vector<F64x4> {
+        self.turn_to_counterface(&(point - self.translation))
     }
 
-    /// Converts vectors of the insert frame to the femoral frame.
+    /// Converts vectors of the insert frame to the counterface frame.
     #[inline(always)]
-    pub fn turn_to_femur(&self, vector: &Vector<F64x4>) -> Vector<F64x4> {
+    pub fn turn_to_counterface(&self, vector: &Vector<F64x4>) -> Vector<F64x4> {
         let [x, y, z] = &self.columns;
         Vector::new(dot(x, vector), dot(y, vector), dot(z, vector))
     }
 
-    /// Converts vectors of the femoral frame to the insert frame.
+    /// Converts vectors of the counterface frame to the insert frame.
     #[inline(always)]
     pub fn turn_to_insert(&self, vector: &Vector<F64x4>) -> Vector<F64x4> {
         let [x, y, z] = &self.columns;
@@ -403,7 +403,7 @@ impl Pose4 {
     }
 }
 
-/// A twist of the femur in its own frame, for four points at a time.
+/// A twist of the counterface in its own frame, for four points at a time.
 pub(crate) struct Twist4 {
     pub angular: Vector<F64x4>,
     linear: Vector<F64x4>,
@@ -411,7 +411,7 @@ pub(crate) struct Twist4 {
 
 impl Twist4 {
     /// Creates a twist that is the same for every point.
-    pub fn new(twist: &Twist<Femur, Femur>) -> Self {
+    pub fn new(twist: &Twist<Counterface, Counterface>) -> Self {
         Self {
             angular: twist.angular.map(F64x4::splat),
             linear: twist.linear.map(F64x4::splat),
@@ -438,7 +438,7 @@ mod tests {
     fn power_is_the_same_in_both_frames() {
         let rotation = nalgebra::Rotation3::new(Vec3::new(0.3, -0.8, 0.2)).into_inner();
         let pose = Pose::new(rotation, Vec3::new(4.0, -20.0, 3.0));
-        let change = FrameChange::to_femur(&pose);
+        let change = FrameChange::to_counterface(&pose);
         let twist = Twist::new(Vec3::new(1.0, 0.3, -2.0), Vec3::new(10.0, 3.0, 40.0));
         let wrench = Wrench::new(Vec3::new(5.0, 7.0, -1.0), Vec3::new(0.4, -3.0, 2.0));
         let power = change.wrench_back(&wrench).reaction().power(&twist);
@@ -446,14 +446,14 @@ mod tests {
     }
 
     #[test]
-    fn verify_a_twist_in_the_femoral_frame_moves_the_same_material() {
+    fn verify_a_twist_in_the_counterface_frame_moves_the_same_material() {
         let rotation = nalgebra::Rotation3::new(Vec3::new(-0.2, 0.5, 0.9)).into_inner();
         let pose = Pose::new(rotation, Vec3::new(4.0, -20.0, 3.0));
         let twist: Twist = Twist::new(Vec3::new(1.0, 0.3, -2.0), Vec3::new(10.0, 3.0, 40.0));
-        let own = FrameChange::to_femur(&pose).twist(&twist);
+        let own = FrameChange::to_counterface(&pose).twist(&twist);
         let place = Vec3::new(7.0, -25.0, 12.0);
         let velocity = twist.linear + twist.angular.cross(&place);
-        let seen = own.linear + own.angular.cross(&pose.to_femur(&place));
+        let seen = own.linear + own.angular.cross(&pose.to_counterface(&place));
         assert!((pose.rotation * seen - velocity).norm() < 1e-12);
     }
 }

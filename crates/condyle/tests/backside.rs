@@ -1,4 +1,4 @@
-//! A deformable insert that rests on its tray, under a femur.
+//! A deformable insert that rests on its tray, under a counterface.
 
 use condyle::{
     Mat3, Vec3,
@@ -7,7 +7,7 @@ use condyle::{
         Settled,
     },
     geometry::{
-        ArticulatingSurface, FemoralSurface, GenericFemur, GenericFemurShape, GenericInsertShape,
+        ArticulatingSurface, Counterface, GenericFemur, GenericFemurShape, GenericInsertShape,
         Insert, Meshing, flat_insert,
     },
     spatial::{Mat6, Pose, RelativeMotion, Vec6},
@@ -19,19 +19,19 @@ const POISSON: f64 = 0.46;
 
 /// Two bodies, and the law of their contact.
 struct Pair {
-    femur: FemoralSurface,
+    counterface: Counterface,
     insert: Insert,
     surface: ArticulatingSurface,
     law: Deformable,
 }
 
 impl Pair {
-    fn new(femur: FemoralSurface, insert: Insert, backside: Backside) -> Self {
+    fn new(counterface: Counterface, insert: Insert, backside: Backside) -> Self {
         let elastic = Elastic::new(MODULUS_MPA, POISSON).unwrap();
         let law = Deformable::new(elastic, 0.07, 1.0, backside, &insert).unwrap();
         Self {
             surface: insert.surface(),
-            femur,
+            counterface,
             insert,
             law,
         }
@@ -39,7 +39,7 @@ impl Pair {
 
     fn contact(&self, state: ContactState) -> Box<dyn ContactModel + '_> {
         let bodies = Bodies {
-            femur: &self.femur,
+            counterface: &self.counterface,
             insert: &self.insert,
             surface: &self.surface,
         };
@@ -65,7 +65,7 @@ fn on_a_layer(backside: Backside) -> Pair {
         layers: 6,
     };
     let layer = flat_insert((45.0, 45.0), 9.0, meshing).unwrap();
-    Pair::new(FemoralSurface::sphere(BALL_MM), layer, backside)
+    Pair::new(Counterface::sphere(BALL_MM), layer, backside)
 }
 
 const BALL_MM: f64 = 121.0;
@@ -148,14 +148,14 @@ fn tangent_with_the_backside_at_rest_is_the_derivative_of_the_wrench() {
         layers: 3,
     };
     let insert = GenericInsertShape::default().insert(meshing).unwrap();
-    let femur = GenericFemurShape::default();
-    let femur = FemoralSurface::Generic(GenericFemur::new(femur));
-    let pair = Pair::new(femur, insert, resting(0.2));
+    let counterface = GenericFemurShape::default();
+    let counterface = Counterface::Generic(GenericFemur::new(counterface));
+    let pair = Pair::new(counterface, insert, resting(0.2));
     let mut contact = pair.contact(ContactState::default());
     let gap = |y: f64| {
         let pose = Pose::new(Mat3::identity(), Vec3::new(0.5, y, 0.2));
         let gaps = pair.surface.positions.iter();
-        let gaps = gaps.map(|place| pair.femur.gap_mm(&pose.to_femur(place)));
+        let gaps = gaps.map(|place| pair.counterface.gap_mm(&pose.to_counterface(place)));
         gaps.fold(f64::INFINITY, f64::min)
     };
     let mut high = 60.0;

@@ -3,33 +3,33 @@
 use condyle::{
     Vec3,
     geometry::{
-        FemoralSurface, GenericFemur, GenericFemurShape, GenericInsertShape, Insert, Meshing,
+        Counterface, GenericFemur, GenericFemurShape, GenericInsertShape, Insert, Meshing,
         SmoothField,
     },
 };
 
 fn is_send_sync_and_clone<T: Send + Sync + Clone>() {}
 
-fn meshed_femur() -> FemoralSurface {
+fn meshed_counterface() -> Counterface {
     let mesh = GenericFemur::new(GenericFemurShape::default()).surface_mesh(3.0);
-    FemoralSurface::Mesh(SmoothField::new(&mesh, 1))
+    Counterface::Mesh(SmoothField::new(&mesh, 1))
 }
 
 #[test]
 fn bodies_can_be_cloned_and_sent() {
     is_send_sync_and_clone::<Insert>();
     is_send_sync_and_clone::<SmoothField>();
-    is_send_sync_and_clone::<FemoralSurface>();
+    is_send_sync_and_clone::<Counterface>();
 }
 
 #[test]
-fn a_femur_prepared_for_shares_leaves_the_one_it_came_from_alone() {
-    let femur = meshed_femur();
+fn a_counterface_prepared_for_shares_leaves_the_one_it_came_from_alone() {
+    let counterface = meshed_counterface();
     let point = Vec3::new(2.0, -22.0, 22.0);
-    let before_mm = femur.gap_mm(&point);
-    let prepared = femur.prepared_for(0.05);
+    let before_mm = counterface.gap_mm(&point);
+    let prepared = counterface.prepared_for(0.05);
     assert!(prepared.gap_mm(&point) > before_mm);
-    assert_eq!(femur.gap_mm(&point), before_mm);
+    assert_eq!(counterface.gap_mm(&point), before_mm);
 }
 
 #[test]

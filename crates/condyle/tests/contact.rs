@@ -7,7 +7,7 @@ use condyle::{
         PressureLaw, PressureTable, Search, Tangent, TouchedNode, confined_modulus,
     },
     geometry::{
-        ArticulatingSurface, FemoralSurface, GenericFemur, GenericFemurShape, GenericInsertShape,
+        ArticulatingSurface, Counterface, GenericFemur, GenericFemurShape, GenericInsertShape,
         Insert, Meshing, SmoothField, flat_insert,
     },
     spatial::{Mat6, Pose, RelativeMotion, Twist, Vec6, Wrench, body},
@@ -21,16 +21,16 @@ fn rubbing(pressure: PressureLaw) -> Foundation {
 
 /// Two bodies that contacts are made of.
 struct Pair<'a> {
-    femur: &'a FemoralSurface,
+    counterface: &'a Counterface,
     insert: &'a Insert,
     surface: ArticulatingSurface,
 }
 
 impl<'a> Pair<'a> {
-    fn new(femur: &'a FemoralSurface, insert: &'a Insert) -> Self {
+    fn new(counterface: &'a Counterface, insert: &'a Insert) -> Self {
         let surface = insert.surface();
         Self {
-            femur,
+            counterface,
             insert,
             surface,
         }
@@ -48,7 +48,7 @@ impl<'a> Pair<'a> {
         law: &'b Foundation,
     ) -> Box<dyn ContactModel + 'b> {
         let bodies = Bodies {
-            femur: self.femur,
+            counterface: self.counterface,
             insert: self.insert,
             surface: &self.surface,
         };
@@ -106,7 +106,7 @@ fn rotation(turn: &Vec3) -> Mat3 {
     nalgebra::Rotation3::new(*turn).into_inner()
 }
 
-/// The pose after a small turn and translation of the femur, in the insert frame.
+/// The pose after a small turn and translation of the counterface, in the insert frame.
 fn moved(pose: &Pose, small: &Vec6) -> Pose {
     let turn = rotation(&small.fixed_rows::<3>(0).into());
     let shift: Vec3 = small.fixed_rows::<3>(3).into();
@@ -151,7 +151,7 @@ fn random_motion(numbers: &mut Numbers, translation: Vec3) -> RelativeMotion {
 
 #[test]
 fn tangent_is_the_derivative_over_random_poses_of_the_generic_pair() {
-    let femur = FemoralSurface::Generic(GenericFemur::new(GenericFemurShape::default()));
+    let counterface = Counterface::Generic(GenericFemur::new(GenericFemurShape::default()));
     let insert = default_insert();
     let table =
         PressureTable::new(vec![(0.0, 0.0), (0.1, 20.0), (0.5, 150.0), (2.0, 900.0)]).unwrap();
@@ -170,10 +170,10 @@ fn tangent_is_the_derivative_over_random_poses_of_the_generic_pair() {
         },
     ] {
         let law = rubbing(law);
-        let pair = Pair::new(&femur, &insert);
+        let pair = Pair::new(&counterface, &insert);
         let mut contact = pair.contact(&law);
         for _ in 0..10 {
-            // The distal arc's lowest point is 22.96 mm below the femur's origin.
+            // The distal arc's lowest point is 22.96 mm below the counterface's origin.
             let motion = random_motion(&mut numbers, Vec3::new(-5.5, 22.4, 0.0));
             check_tangent(contact.as_mut(), &motion, 1e-5);
         }
@@ -206,17 +206,17 @@ fn ball_mesh(edge_mm: f64) -> condyle::geometry::TriangleMesh {
     mesh
 }
 
-fn mesh_femur(insert: &Insert) -> FemoralSurface {
+fn mesh_counterface(insert: &Insert) -> Counterface {
     let field = SmoothField::new(&ball_mesh(1.0), 1);
-    FemoralSurface::Mesh(field).prepared_for(insert.surface().mean_spread_mm2())
+    Counterface::Mesh(field).prepared_for(insert.surface().mean_spread_mm2())
 }
 
 #[test]
 fn tangent_is_the_derivative_for_a_mesh() {
     let insert = default_insert();
-    let femur = mesh_femur(&insert);
+    let counterface = mesh_counterface(&insert);
     let law = linear();
-    let pair = Pair::new(&femur, &insert);
+    let pair = Pair::new(&counterface, &insert);
     let mut contact = pair.contact(&law);
     let mut numbers = Numbers(11);
     for _ in 0..10 {
@@ -262,8 +262,8 @@ fn verify_ball_on_a_softening_foundation() {
     let integral = peak * overclosure - 9.0 / MODULUS_MPA * complement;
     let exact = std::f64::consts::TAU * (24.0 - overclosure) * integral;
     let law = Foundation::new(pressure, 0.0, 1.0);
-    let femur = FemoralSurface::sphere(24.0);
-    let pair = Pair::new(&femur, &insert);
+    let counterface = Counterface::sphere(24.0);
+    let pair = Pair::new(&counterface, &insert);
     let mut contact = pair.contact(&law);
     for (x, z) in [(0.0, 0.0), (0.5, 0.5), (0.23, 0.41)] {
         let motion = at(Vec3::new(x, 24.0 - overclosure, z));
@@ -278,9 +278,9 @@ fn verify_ball_on_a_flat_foundation() {
     let overclosure = overclosure_at_2000_n();
     let law = Foundation::new(linear().pressure, 0.0, 1.0);
     let radius_exact = 2.0 * 24.0 * overclosure - overclosure * overclosure;
-    let shapes = [FemoralSurface::sphere(24.0), mesh_femur(&insert)];
-    for (femur, tolerance) in shapes.iter().zip([1e-3, 3e-3]) {
-        let pair = Pair::new(femur, &insert);
+    let shapes = [Counterface::sphere(24.0), mesh_counterface(&insert)];
+    for (counterface, tolerance) in shapes.iter().zip([1e-3, 3e-3]) {
+        let pair = Pair::new(counterface, &insert);
         let mut contact = pair.contact(&law);
         for (x, z) in [(0.0, 0.0), (0.5, 0.5), (0.23, 0.41)] {
             let motion = at(Vec3::new(x, 24.0 - overclosure, z));
@@ -305,9 +305,9 @@ fn verify_ball_on_a_flat_foundation() {
 #[test]
 fn verify_highest_mean_pressure_under_a_ball_on_a_node() {
     let insert = flat_insert((24.0, 24.0), 9.0, one_millimetre()).unwrap();
-    let (femur, law) = (FemoralSurface::sphere(24.0), linear());
+    let (counterface, law) = (Counterface::sphere(24.0), linear());
     let overclosure = overclosure_at_2000_n();
-    let pair = Pair::new(&femur, &insert);
+    let pair = Pair::new(&counterface, &insert);
     let mut contact = pair.contact(&law);
     let motion = at(Vec3::new(0.0, 24.0 - overclosure, 0.0));
     contact.respond(&motion);
@@ -323,9 +323,9 @@ fn verify_highest_mean_pressure_under_a_ball_on_a_node() {
 }
 
 /// Largest and smallest force of a ball slid across the dish at constant approach.
-fn ripple(femur: &FemoralSurface, insert: &Insert) -> f64 {
+fn ripple(counterface: &Counterface, insert: &Insert) -> f64 {
     let law = Foundation::new(linear().pressure, 0.0, 1.0);
-    let pair = Pair::new(femur, insert);
+    let pair = Pair::new(counterface, insert);
     let mut contact = pair.contact(&law);
     let shape = GenericInsertShape::default();
     // The force changes as the dish does; the rest besides a smooth curve is ripple.
@@ -350,16 +350,16 @@ fn ripple(femur: &FemoralSurface, insert: &Insert) -> f64 {
 #[test]
 fn verify_force_ripple_of_a_sliding_ball_is_below_half_a_percent() {
     let insert = default_insert();
-    assert!(ripple(&FemoralSurface::sphere(24.0), &insert) < 5e-3);
-    assert!(ripple(&mesh_femur(&insert), &insert) < 5e-3);
+    assert!(ripple(&Counterface::sphere(24.0), &insert) < 5e-3);
+    assert!(ripple(&mesh_counterface(&insert), &insert) < 5e-3);
 }
 
 #[test]
 fn verify_a_rolling_ball_does_not_slide() {
     let insert = flat_insert((24.0, 24.0), 9.0, one_millimetre()).unwrap();
-    let femur = FemoralSurface::sphere(24.0);
+    let counterface = Counterface::sphere(24.0);
     let law = linear();
-    let pair = Pair::new(&femur, &insert);
+    let pair = Pair::new(&counterface, &insert);
     let mut contact = pair.contact(&law);
     // Rolls along x without slip: the material at the insert's plane stands still.
     let (speed, overclosure) = (3.0, 0.2);
@@ -379,10 +379,10 @@ fn verify_a_rolling_ball_does_not_slide() {
 
 #[test]
 fn force_does_not_depend_on_the_calls_before() {
-    let femur = FemoralSurface::Generic(GenericFemur::new(GenericFemurShape::default()));
+    let counterface = Counterface::Generic(GenericFemur::new(GenericFemurShape::default()));
     let insert = default_insert();
     let law = linear();
-    let pair = Pair::new(&femur, &insert);
+    let pair = Pair::new(&counterface, &insert);
     let mut walked = pair.contact(&law);
     let mut numbers = Numbers(3);
     for _ in 0..50 {
@@ -395,8 +395,8 @@ fn force_does_not_depend_on_the_calls_before() {
 fn what_was_far_away_is_found_when_it_comes_near() {
     let insert = default_insert();
     let law = linear();
-    for femur in [FemoralSurface::sphere(24.0), mesh_femur(&insert)] {
-        let pair = Pair::new(&femur, &insert);
+    for counterface in [Counterface::sphere(24.0), mesh_counterface(&insert)] {
+        let pair = Pair::new(&counterface, &insert);
         let mut walked = pair.contact(&law);
         // In the air, beyond the rim, and from one dish to the other, in long steps and short ones.
         for i in 0..120 {
@@ -457,12 +457,12 @@ fn answer(
 #[test]
 fn what_is_known_of_the_cycle_before_changes_no_answer() {
     let (law, plain) = (linear(), brute_force());
-    let generic = FemoralSurface::Generic(GenericFemur::new(GenericFemurShape::default()));
-    for (femur, z_mm) in [(generic, 0.0), (mesh_femur(&default_insert()), 23.0)] {
+    let generic = Counterface::Generic(GenericFemur::new(GenericFemurShape::default()));
+    for (counterface, z_mm) in [(generic, 0.0), (mesh_counterface(&default_insert()), 23.0)] {
         let (mut insert, mut cache, mut touched) = (default_insert(), ContactCache::default(), 0);
         for round in 0..4 {
             let surface = insert.surface();
-            let pair = Pair::new(&femur, &insert);
+            let pair = Pair::new(&counterface, &insert);
             let mut knowing = pair.contact_after(cache, &law);
             let (mut untold, mut brute) = (pair.contact(&law), pair.contact(&plain));
             for increment in 0..24 {
@@ -502,8 +502,8 @@ fn samples_that_are_not_reused_are_those_of_a_fresh_contact() {
     let mut law = linear();
     law.settings.sample_reuse_mm = 0.0;
     let insert = default_insert();
-    let femur = mesh_femur(&insert);
-    let pair = Pair::new(&femur, &insert);
+    let counterface = mesh_counterface(&insert);
+    let pair = Pair::new(&counterface, &insert);
     let mut walked = pair.contact(&law);
     for step in 0..20 {
         let motion = at(Vec3::new(0.001 * f64::from(step), 23.8, 23.0));
@@ -515,17 +515,17 @@ fn samples_that_are_not_reused_are_those_of_a_fresh_contact() {
 fn a_sample_from_before_the_wear_is_not_extrapolated() {
     let law = linear();
     let mut insert = default_insert();
-    let femur = mesh_femur(&insert);
+    let counterface = mesh_counterface(&insert);
     let place = |shift_mm: f64| at(Vec3::new(shift_mm, 23.8, 23.0));
     let (cache, surface) = {
-        let pair = Pair::new(&femur, &insert);
+        let pair = Pair::new(&counterface, &insert);
         let mut contact = pair.contact(&law);
         contact.respond(&place(0.0));
         (contact.into_memory().cache, insert.surface())
     };
     insert.wear_down(&surface, &vec![0.001; surface.positions.len()]);
     let near = place(0.01);
-    let pair = Pair::new(&femur, &insert);
+    let pair = Pair::new(&counterface, &insert);
     let found = answer(pair.contact_after(cache, &law).as_mut(), &near);
     assert!(found.2.len() > 20);
     assert_eq!(found, answer(pair.contact(&law).as_mut(), &near));
@@ -533,27 +533,27 @@ fn a_sample_from_before_the_wear_is_not_extrapolated() {
 
 #[test]
 fn what_is_known_of_another_insert_is_forgotten() {
-    let (law, femur) = (linear(), FemoralSurface::sphere(24.0));
+    let (law, counterface) = (linear(), Counterface::sphere(24.0));
     let (insert, flat) = (
         default_insert(),
         flat_insert((24.0, 24.0), 9.0, one_millimetre()).unwrap(),
     );
-    let dished = Pair::new(&femur, &insert);
+    let dished = Pair::new(&counterface, &insert);
     let mut contact = dished.contact(&law);
     contact.respond(&at(Vec3::new(0.0, 60.0, 0.0)));
     let cache = contact.into_memory().cache;
     let motion = at(Vec3::new(0.0, 23.9, 0.0));
-    let pair = Pair::new(&femur, &flat);
+    let pair = Pair::new(&counterface, &flat);
     let found = pair.contact_after(cache, &law).respond(&motion).wrench;
     assert_eq!(found, pair.fresh(&law, &motion));
 }
 
 #[test]
 fn verify_wrench_is_the_sum_of_the_nodes_forces() {
-    let femur = FemoralSurface::Generic(GenericFemur::new(GenericFemurShape::default()));
+    let counterface = Counterface::Generic(GenericFemur::new(GenericFemurShape::default()));
     let insert = default_insert();
     let law = linear();
-    let pair = Pair::new(&femur, &insert);
+    let pair = Pair::new(&counterface, &insert);
     let mut contact = pair.contact(&law);
     let motion = random_motion(&mut Numbers(5), Vec3::new(-5.5, 22.4, 0.0));
     let wrench = contact.respond(&motion).wrench;
@@ -571,7 +571,7 @@ fn verify_wrench_is_the_sum_of_the_nodes_forces() {
     assert!((confined_modulus(463.0, 0.46) - MODULUS_MPA).abs() < 2.0);
 }
 
-/// A femur's pose on the way through a gait, pressed on the insert by about a thousand newtons.
+/// A counterface's pose on the way through a gait, pressed on the insert by about a thousand newtons.
 fn on_the_way(part: f64, z_mm: f64, mut force_n: impl FnMut(&Pose) -> f64) -> Pose {
     let angle = std::f64::consts::TAU * part;
     let turn = Vec3::new(0.02 * angle.sin(), 0.06 * angle.cos(), 0.3 * angle.sin());
@@ -604,9 +604,9 @@ fn towards(from: &Pose, to: &Pose, step_mm: f64) -> Pose {
 
 /// Largest difference of the force of a foundation that walked to a pose from that of one made
 /// there, as a fraction of it, in small steps from many places of a gait.
-fn walked_astray(femur: &FemoralSurface, z_mm: f64) -> f64 {
+fn walked_astray(counterface: &Counterface, z_mm: f64) -> f64 {
     let (insert, law) = (default_insert(), linear());
-    let pair = Pair::new(femur, &insert);
+    let pair = Pair::new(counterface, &insert);
     let fresh = |motion: &RelativeMotion| pair.fresh(&law, motion).force;
     let still_n = |pose: &Pose| fresh(&RelativeMotion::at_rest(*pose)).norm();
     let mut walked = pair.contact(&law);
@@ -630,13 +630,13 @@ fn walked_astray(femur: &FemoralSurface, z_mm: f64) -> f64 {
 #[test]
 fn samples_extrapolated_in_small_steps_change_the_force_by_a_hundred_thousandth() {
     let insert = default_insert();
-    let generic = FemoralSurface::Generic(GenericFemur::new(GenericFemurShape::default()));
-    for (name, femur, z_mm) in [
+    let generic = Counterface::Generic(GenericFemur::new(GenericFemurShape::default()));
+    for (name, counterface, z_mm) in [
         ("generic", generic, 0.0),
-        ("ball", FemoralSurface::sphere(24.0), 23.0),
-        ("mesh", mesh_femur(&insert), 23.0),
+        ("ball", Counterface::sphere(24.0), 23.0),
+        ("mesh", mesh_counterface(&insert), 23.0),
     ] {
-        let astray = walked_astray(&femur, z_mm);
+        let astray = walked_astray(&counterface, z_mm);
         println!("{name}: {astray:.1e}");
         assert!(astray < 1e-5, "{name}: {astray:e}");
     }

@@ -11,7 +11,7 @@ use condyle::{
         Deformable, Foundation, FrictionModel, PressureLaw, confined_modulus,
     },
     geometry::{
-        ArticulatingSurface, Cylinder, FemoralSurface, GenericFemur, GenericFemurShape,
+        ArticulatingSurface, Counterface, Cylinder, GenericFemur, GenericFemurShape,
         GenericInsertShape, Insert, Meshing, flat_insert,
     },
     spatial::{Mat6, Pose, RelativeMotion, Twist, Vec6},
@@ -30,23 +30,23 @@ fn law(insert: &Insert, friction: f64) -> Deformable {
 
 /// Two bodies that contacts are made of.
 struct Pair {
-    femur: FemoralSurface,
+    counterface: Counterface,
     insert: Insert,
     surface: ArticulatingSurface,
 }
 
 impl Pair {
-    fn new(femur: FemoralSurface, insert: Insert) -> Self {
+    fn new(counterface: Counterface, insert: Insert) -> Self {
         Self {
             surface: insert.surface(),
-            femur,
+            counterface,
             insert,
         }
     }
 
     fn bodies(&self) -> Bodies<'_> {
         Bodies {
-            femur: &self.femur,
+            counterface: &self.counterface,
             insert: &self.insert,
             surface: &self.surface,
         }
@@ -65,7 +65,7 @@ fn down_n(contact: &mut dyn ContactModel, motion: &RelativeMotion) -> f64 {
     -contact.respond(motion).wrench.force.y
 }
 
-/// The height between two others at which the force is so much, with the femur `at` a height, by bisection.
+/// The height between two others at which the force is so much, with the counterface `at` a height, by bisection.
 fn height_mm(
     contact: &mut dyn ContactModel,
     [mut low, mut high]: [f64; 2],
@@ -103,7 +103,7 @@ fn covered_mm2(evaluated: &ContactResult) -> f64 {
 
 #[test]
 fn verify_hertz_on_a_half_space_of_the_default_elements() {
-    let pair = Pair::new(FemoralSurface::sphere(RADIUS_MM), half_space(1.05, 15));
+    let pair = Pair::new(Counterface::sphere(RADIUS_MM), half_space(1.05, 15));
     let law = law(&pair.insert, 0.0);
     let mut contact = pair.contact(&law);
     for (x, z) in [(0.0, 0.0), (0.3, 0.1), (0.5, 0.5), (0.2, -0.4)] {
@@ -136,7 +136,7 @@ fn off_an_even_pressure(aside_mm: f64) -> (f64, Vec<f64>) {
         let by = Vec3::new((3.1 * node.z + node.y).sin(), 0.0, (2.3 * node.x).cos());
         node + most_mm * by
     });
-    let pair = Pair::new(FemoralSurface::sphere(radius_mm), insert);
+    let pair = Pair::new(Counterface::sphere(radius_mm), insert);
     let elastic = Elastic::new(MODULUS_MPA, 0.0).unwrap();
     let law = Deformable::new(elastic, 0.0, 1.0, Backside::Bonded, &pair.insert).unwrap();
     let mut contact = pair.contact(&law);
@@ -151,7 +151,7 @@ fn off_an_even_pressure(aside_mm: f64) -> (f64, Vec<f64>) {
 }
 
 #[test]
-fn verify_a_flat_femur_presses_evenly_on_nodes_that_lie_anyhow() {
+fn verify_a_flat_counterface_presses_evenly_on_nodes_that_lie_anyhow() {
     // A third of an edge aside, a share is not what the element shares a pressure out by: that is what is left there.
     for (aside_mm, accepted) in [(0.0, 1e-3), (0.5, 0.03)] {
         let (force, off) = off_an_even_pressure(aside_mm);
@@ -187,7 +187,7 @@ fn verify_a_cylinder_on_a_thick_block_against_hertz() {
     // Where the block is long nothing moves along it: contact of a line, with the load of the middle.
     let (radius_mm, length_mm) = (RADIUS_MM, 400.0);
     let pair = Pair::new(
-        FemoralSurface::Cylinder(Cylinder { radius_mm }),
+        Counterface::Cylinder(Cylinder { radius_mm }),
         long_half_space(0.5, length_mm),
     );
     let law = law(&pair.insert, 0.0);
@@ -218,11 +218,11 @@ fn generic() -> Pair {
     let insert = GenericInsertShape::default()
         .insert(Meshing::default())
         .unwrap();
-    let femur = FemoralSurface::Generic(GenericFemur::new(GenericFemurShape::default()));
-    Pair::new(femur, insert)
+    let counterface = Counterface::Generic(GenericFemur::new(GenericFemurShape::default()));
+    Pair::new(counterface, insert)
 }
 
-/// The pose after a small turn and translation of the femur, in the insert frame.
+/// The pose after a small turn and translation of the counterface, in the insert frame.
 fn moved(pose: &Pose, small: &Vec6) -> Pose {
     let turn: Vec3 = small.fixed_rows::<3>(0).into();
     let turn = nalgebra::Rotation3::new(turn).into_inner();
@@ -241,7 +241,7 @@ fn sliding(pair: &Pair, law: &dyn ContactLaw) -> RelativeMotion {
     };
     let nearest_mm = |y: f64| {
         let pose = at(y).pose;
-        let gap = |position: &Vec3| pair.femur.gap_mm(&pose.to_femur(position));
+        let gap = |position: &Vec3| pair.counterface.gap_mm(&pose.to_counterface(position));
         pair.surface
             .positions
             .iter()
@@ -304,7 +304,7 @@ fn on_a_layer(radius_mm: f64) -> Pair {
         layers: 6,
     };
     let layer = flat_insert((40.0, 40.0), 9.0, meshing).unwrap();
-    Pair::new(FemoralSurface::sphere(radius_mm), layer)
+    Pair::new(Counterface::sphere(radius_mm), layer)
 }
 
 #[test]
@@ -318,7 +318,7 @@ fn verify_a_ball_on_bonded_layers_from_thick_to_thin() {
             thickness_mm,
             Meshing { edge_mm, layers },
         );
-        let pair = Pair::new(FemoralSurface::sphere(radius_mm), layer.unwrap());
+        let pair = Pair::new(Counterface::sphere(radius_mm), layer.unwrap());
         let law = law(&pair.insert, 0.0);
         let mut contact = pair.contact(&law);
         let rows = ON_BONDED_LAYERS.iter();
@@ -434,7 +434,7 @@ fn verify_stick_and_slip_on_a_thick_block_against_mindlin() {
     let (mu, depth_mm) = (0.07, 0.408);
     // On coarse hexahedra the nodes that press cover more than the contact, and less of it is at its edge.
     for (edge_mm, within) in [(1.05, 0.1), (0.6, 0.05)] {
-        let pair = Pair::new(FemoralSurface::sphere(RADIUS_MM), half_space(edge_mm, 15));
+        let pair = Pair::new(Counterface::sphere(RADIUS_MM), half_space(edge_mm, 15));
         let law = sticking_law(&pair.insert, mu);
         let mut contact = pair.contact(&law);
         let at = |x: f64| over([x, RADIUS_MM - depth_mm, 0.0]);

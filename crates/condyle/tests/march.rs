@@ -9,7 +9,7 @@ use condyle::{
     },
     creep::LeePienkowski,
     evolve::{Activity, March, MarchState, Schedule, WearTest},
-    geometry::{FemoralSurface, Insert, Meshing, flat_insert},
+    geometry::{Counterface, Insert, Meshing, flat_insert},
     machine::{
         Drive, Interpolation, JointIndex, Knot, Machine, TimeSettings, Waveform,
         knee::{self, KNEE},
@@ -119,7 +119,7 @@ fn test() -> WearTest {
         layers: 1,
     };
     WearTest {
-        femur: Arc::new(FemoralSurface::sphere(24.0)),
+        counterface: Arc::new(Counterface::sphere(24.0)),
         flexion_axis_mm: (0.0, 0.0),
         start_mm: (0.0, 0.0),
         start_height_mm: None,

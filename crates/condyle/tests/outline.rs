@@ -3,7 +3,7 @@
 use condyle::{
     Mat3, Vec3,
     contact::{Bodies, ContactLaw, ContactMemory, Foundation, PressureLaw},
-    geometry::{FemoralSurface, Insert, InsertError, Meshing, TriangleMesh},
+    geometry::{Counterface, Insert, InsertError, Meshing, TriangleMesh},
     spatial::{Pose, RelativeMotion},
 };
 use condyle_mesh::columns::ColumnError;
@@ -138,9 +138,9 @@ fn pressed(insert: &Insert, degrees: f64, centre: Vec3) -> [f64; 2] {
     };
     let law = Foundation::new(law, 0.0, 1.0);
     let surface = &insert.surface();
-    let femur = FemoralSurface::sphere(BALL_MM).prepared_for(surface.mean_spread_mm2());
+    let counterface = Counterface::sphere(BALL_MM).prepared_for(surface.mean_spread_mm2());
     let bodies = Bodies {
-        femur: &femur,
+        counterface: &counterface,
         insert,
         surface,
     };

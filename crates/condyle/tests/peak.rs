@@ -4,7 +4,7 @@ use condyle::{
     Mat3, Vec3,
     contact::{Bodies, ContactLaw, ContactMemory, Foundation, PressureLaw, PressureTable},
     geometry::{
-        Cylinder, FemoralSurface, GenericFemur, GenericFemurShape, GenericInsertShape, Insert,
+        Counterface, Cylinder, GenericFemur, GenericFemurShape, GenericInsertShape, Insert,
         Meshing, SmoothField, TriangleMesh, flat_insert,
     },
     spatial::{Pose, RelativeMotion},
@@ -40,10 +40,10 @@ fn layer(edge_mm: f64) -> Insert {
     flat_insert((24.0 * edge_mm, 24.0 * edge_mm), THICKNESS_MM, meshing).unwrap()
 }
 
-/// Highest mean over a node's share, and highest pressure, with the femur turned about the vertical.
+/// Highest mean over a node's share, and highest pressure, with the counterface turned about the vertical.
 fn mean_and_peak(
     law: &PressureLaw,
-    femur: &FemoralSurface,
+    counterface: &Counterface,
     insert: &Insert,
     place: Vec3,
     turn_rad: f64,
@@ -51,7 +51,7 @@ fn mean_and_peak(
     let law = Foundation::new(law.clone(), 0.07, 1.0);
     let surface = &insert.surface();
     let bodies = Bodies {
-        femur,
+        counterface,
         insert,
         surface,
     };
@@ -67,7 +67,7 @@ fn mean_and_peak(
 /// Peak pressure under a ball `deep_mm` deep, offset by [x, z] from a node.
 fn under_ball(law: &PressureLaw, insert: &Insert, deep_mm: f64, [x, z]: [f64; 2]) -> f64 {
     let place = Vec3::new(x, RADIUS_MM - deep_mm, z);
-    mean_and_peak(law, &FemoralSurface::sphere(RADIUS_MM), insert, place, 0.0)[1]
+    mean_and_peak(law, &Counterface::sphere(RADIUS_MM), insert, place, 0.0)[1]
 }
 
 fn assert_near(peak: f64, exact: f64, part: f64, what: &str) {
@@ -114,14 +114,14 @@ fn verify_peak_under_a_ball_that_hardly_touches() {
 fn verify_peak_under_a_cylinder_at_any_angle() {
     let insert = layer(1.05);
     let radius_mm = 20.0;
-    let femur = FemoralSurface::Cylinder(Cylinder { radius_mm });
+    let counterface = Counterface::Cylinder(Cylinder { radius_mm });
     for law in laws() {
         let exact = law.pressure(0.2, THICKNESS_MM).0;
         for turn_deg in [0.0_f64, 7.0, 26.6, 45.0, 90.0] {
             for part in [0.0, 0.2, 0.5] {
                 let place = Vec3::new(1.05 * part, radius_mm - 0.2, 1.05 * part);
                 let turn = turn_deg.to_radians();
-                let [mean, peak] = mean_and_peak(&law, &femur, &insert, place, turn);
+                let [mean, peak] = mean_and_peak(&law, &counterface, &insert, place, turn);
                 assert!(mean <= peak);
                 assert_near(peak, exact, 1e-3, &format!("{turn_deg} deg, {part}"));
             }
@@ -163,11 +163,17 @@ fn peak_is_the_same_in_the_mirror_and_whichever_of_equal_nodes_leads() {
 #[test]
 fn peak_of_a_knee_hardly_depends_on_the_mesh_and_is_no_less_than_a_mean() {
     let [law, ..] = laws();
-    let femur = FemoralSurface::Generic(GenericFemur::new(GenericFemurShape::default()));
+    let counterface = Counterface::Generic(GenericFemur::new(GenericFemurShape::default()));
     let shape = GenericInsertShape::default();
     let peaks = [2.0, 1.0, 0.5].map(|edge_mm| {
         let insert = shape.insert(Meshing { edge_mm, layers: 1 }).unwrap();
-        let [mean, peak] = mean_and_peak(&law, &femur, &insert, at_rest(&femur, &insert), 0.02);
+        let [mean, peak] = mean_and_peak(
+            &law,
+            &counterface,
+            &insert,
+            at_rest(&counterface, &insert),
+            0.02,
+        );
         assert!(mean <= peak, "{mean} {peak}");
         peak
     });
@@ -175,15 +181,15 @@ fn peak_of_a_knee_hardly_depends_on_the_mesh_and_is_no_less_than_a_mean() {
     assert_near(peaks[1], peaks[2], 0.002, "1 mm");
 }
 
-/// The femur lowered over the middle until it presses by 0.3 mm.
-fn at_rest(femur: &FemoralSurface, insert: &Insert) -> Vec3 {
+/// The counterface lowered over the middle until it presses by 0.3 mm.
+fn at_rest(counterface: &Counterface, insert: &Insert) -> Vec3 {
     let surface = insert.surface();
     let least = |height: f64| {
-        let to_femur = |node: &Vec3| node - Vec3::new(0.0, height, 0.0);
+        let to_counterface = |node: &Vec3| node - Vec3::new(0.0, height, 0.0);
         let gaps = surface
             .positions
             .iter()
-            .map(|node| femur.gap_mm(&to_femur(node)));
+            .map(|node| counterface.gap_mm(&to_counterface(node)));
         gaps.fold(f64::INFINITY, f64::min)
     };
     let (mut low, mut high) = (0.0, 60.0);
@@ -204,7 +210,7 @@ const EDGE_MM: f64 = 1.5;
 const SLOPE: f64 = 0.004;
 
 /// A condyle that is flat across and rounded at its edges, as an open surface that faces down.
-fn flat_condyle() -> FemoralSurface {
+fn flat_condyle() -> Counterface {
     const STEP_MM: f64 = 0.25;
     let columns = 76;
     let place = |i: u32, k: u32| {
@@ -223,23 +229,23 @@ fn flat_condyle() -> FemoralSurface {
             mesh.triangles.extend([[a, a + 1, b + 1], [a, b + 1, b]]);
         }
     }
-    FemoralSurface::Mesh(SmoothField::new(&mesh, 1))
+    Counterface::Mesh(SmoothField::new(&mesh, 1))
 }
 
 #[test]
-fn a_peak_at_an_edge_of_the_femur_is_not_made_up() {
+fn a_peak_at_an_edge_of_the_counterface_is_not_made_up() {
     const DEEP_MM: f64 = 0.05;
-    let femur = flat_condyle();
+    let counterface = flat_condyle();
     let insert = layer(1.05);
     let law = &laws()[0];
     let along = (0..=2000).map(|i| f64::from(i) / 100.0 - 10.0);
-    let deepest_mm = along.map(|x| -femur.gap_mm(&Vec3::new(x, DEEP_MM, 0.0)));
+    let deepest_mm = along.map(|x| -counterface.gap_mm(&Vec3::new(x, DEEP_MM, 0.0)));
     let deepest_mm = deepest_mm.fold(0.0, f64::max);
     let exact = law.pressure(deepest_mm, THICKNESS_MM).0;
-    let femur = femur.prepared_for(insert.surface().mean_spread_mm2());
+    let counterface = counterface.prepared_for(insert.surface().mean_spread_mm2());
     for part in [0.0, 0.15, 0.3, 0.45, 0.6, 0.75, 0.9] {
         let place = Vec3::new(part * 1.05, -DEEP_MM, 0.3);
-        let [mean, peak] = mean_and_peak(law, &femur, &insert, place, 0.0);
+        let [mean, peak] = mean_and_peak(law, &counterface, &insert, place, 0.0);
         assert!(mean <= peak, "{mean} {peak}");
         let part_of_exact = peak / exact;
         assert!(

@@ -49,24 +49,24 @@ const X: [f64; 3] = [1.0, 0.0, 0.0];
 const Y: [f64; 3] = [0.0, 1.0, 0.0];
 const Z: [f64; 3] = [0.0, 0.0, 1.0];
 
-/// The disc (the insert) turns on a gimbal; the pin (the femur) is pressed on it and orbits.
+/// The disc (the insert) turns on a gimbal; the pin (the counterface) is pressed on it and orbits.
 const JOINTS: [JointDescription; 6] = [
     joint("turn", "turn_deg", Axis::About(Y)),
     joint("tilt", "tilt_deg", Axis::About(X)),
     joint("roll", "roll_deg", Axis::About(Z)),
     JointDescription {
-        moves: MovedBody::Femur,
+        moves: MovedBody::Counterface,
         settling: Settling::Driven,
         is_zeroed: true,
         load: Loading::By(&LOAD),
         ..joint("press", "press_mm", Axis::Along(Y))
     },
     JointDescription {
-        moves: MovedBody::Femur,
+        moves: MovedBody::Counterface,
         ..joint("fore", "fore_mm", Axis::Along(X))
     },
     JointDescription {
-        moves: MovedBody::Femur,
+        moves: MovedBody::Counterface,
         ..joint("aside", "aside_mm", Axis::Along(Z))
     },
 ];

@@ -11,7 +11,7 @@ use condyle::{
         Backside, Bodies, ContactLaw, ContactMemory, ContactModel, ContactResult, ContactState,
         Deformable, Settled,
     },
-    geometry::{ArticulatingSurface, FemoralSurface, Insert},
+    geometry::{ArticulatingSurface, Counterface, Insert},
     spatial::{Pose, RelativeMotion},
 };
 use condyle_fem::{Elastic, ElasticPlastic, Hardening};
@@ -24,7 +24,7 @@ const YIELD_MPA: f64 = 14.0;
 const EDGE_MM: f64 = 0.3;
 
 struct Pair {
-    femur: FemoralSurface,
+    counterface: Counterface,
     insert: Insert,
     surface: ArticulatingSurface,
     law: Deformable,
@@ -39,7 +39,7 @@ impl Pair {
             law = law.with_material(ElasticPlastic { elastic, hardening });
         }
         Self {
-            femur: FemoralSurface::sphere(RADIUS_MM),
+            counterface: Counterface::sphere(RADIUS_MM),
             surface: insert.surface(),
             insert,
             law,
@@ -52,7 +52,7 @@ impl Pair {
             ..ContactMemory::default()
         };
         let bodies = Bodies {
-            femur: &self.femur,
+            counterface: &self.counterface,
             insert: &self.insert,
             surface: &self.surface,
         };

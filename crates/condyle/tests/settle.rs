@@ -1,4 +1,4 @@
-//! A femur that settles where its load rests on few nodes of a coarse mesh.
+//! A counterface that settles where its load rests on few nodes of a coarse mesh.
 
 use std::sync::Arc;
 
@@ -6,7 +6,7 @@ use condyle::{
     Vec3,
     contact::{Foundation, PressureLaw, confined_modulus},
     evolve::{Activity, March, PlacementError, Schedule, WearTest},
-    geometry::{FemoralSurface, GenericFemur, GenericFemurShape, GenericInsertShape, Meshing},
+    geometry::{Counterface, GenericFemur, GenericFemurShape, GenericInsertShape, Meshing},
     machine::{
         Drive, Machine, TimeSettings, Waveform,
         knee::{self, KNEE},
@@ -28,9 +28,9 @@ fn machine(low_point_mm: Vec3) -> Machine {
     machine
 }
 
-/// Found among random designs: the femur comes to rest where one arc of it passes into the next.
+/// Found among random designs: the counterface comes to rest where one arc of it passes into the next.
 fn test(edge_mm: f64) -> WearTest {
-    let femur = GenericFemurShape {
+    let counterface = GenericFemurShape {
         distal_radius_mm: 16.723,
         posterior_radius_mm: 12.443,
         transition_deg: 16.31,
@@ -48,7 +48,7 @@ fn test(edge_mm: f64) -> WearTest {
     let low_point_mm = insert.dish_low_point_mm();
     let modulus_mpa = confined_modulus(463.0, 0.46);
     WearTest {
-        femur: Arc::new(FemoralSurface::Generic(GenericFemur::new(femur))),
+        counterface: Arc::new(Counterface::Generic(GenericFemur::new(counterface))),
         flexion_axis_mm: (0.0, 0.0),
         start_mm: (low_point_mm.x, 0.0),
         start_height_mm: None,
@@ -71,9 +71,9 @@ fn test(edge_mm: f64) -> WearTest {
     }
 }
 
-/// The force jumps where a share passes from one arc of the femur to the next, by as much as it spreads.
+/// The force jumps where a share passes from one arc of the counterface to the next, by as much as it spreads.
 #[test]
-fn a_femur_that_rests_where_the_force_jumps_is_told_to_take_a_finer_mesh() {
+fn a_counterface_that_rests_where_the_force_jumps_is_told_to_take_a_finer_mesh() {
     let error = March::start(test(2.375))
         .err()
         .expect("there is no balance");
@@ -84,6 +84,6 @@ fn a_femur_that_rests_where_the_force_jumps_is_told_to_take_a_finer_mesh() {
 }
 
 #[test]
-fn the_same_femur_settles_on_a_finer_mesh() {
+fn the_same_counterface_settles_on_a_finer_mesh() {
     March::start(test(1.2)).unwrap_or_else(|error| panic!("{error}"));
 }

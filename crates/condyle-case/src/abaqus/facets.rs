@@ -3,7 +3,7 @@
 use std::collections::HashSet;
 
 use condyle::Vec3;
-use condyle::geometry::{FemoralSurface, TriangleMesh};
+use condyle::geometry::{Counterface, TriangleMesh};
 use condyle::spatial::Pose;
 
 /// Gap below which a node of the insert may come into contact, mm.
@@ -18,7 +18,7 @@ const MAX_HALVINGS: usize = 3;
 /// Returns the triangles near `nodes` (insert frame) with the femur at any of `poses`, refined and moved onto `femur`; in
 /// the femoral frame, anticlockwise seen from outside.
 pub(super) fn facets(
-    femur: &FemoralSurface,
+    femur: &Counterface,
     triangles: &TriangleMesh,
     nodes: &[Vec3],
     poses: &[Pose],
@@ -39,12 +39,12 @@ pub(super) fn facets(
 }
 
 /// Returns the same corners moved inward by `thickness_mm`.
-pub(super) fn inside(femur: &FemoralSurface, corners: &[Vec3], thickness_mm: f64) -> Vec<Vec3> {
+pub(super) fn inside(femur: &Counterface, corners: &[Vec3], thickness_mm: f64) -> Vec<Vec3> {
     let inward = |corner: &Vec3| corner - thickness_mm * femur.sample(corner, 0.0).gap_gradient;
     corners.iter().map(inward).collect()
 }
 
-fn on_surface(femur: &FemoralSurface, point: &Vec3) -> Vec3 {
+fn on_surface(femur: &Counterface, point: &Vec3) -> Vec3 {
     // The gap is a distance only near the surface, so one projection along its gradient is not enough.
     const ROUNDS: usize = 3;
     let nearer = |point: Vec3, _| {
@@ -61,10 +61,10 @@ fn cell(point: &Vec3) -> Cell {
 }
 
 /// Returns the cells of the femoral frame in which the femur is near a node, and their neighbours.
-fn cells(femur: &FemoralSurface, nodes: &[Vec3], poses: &[Pose]) -> HashSet<Cell> {
+fn cells(femur: &Counterface, nodes: &[Vec3], poses: &[Pose]) -> HashSet<Cell> {
     let seen = poses
         .iter()
-        .flat_map(|pose| nodes.iter().map(|node| pose.to_femur(node)));
+        .flat_map(|pose| nodes.iter().map(|node| pose.to_counterface(node)));
     let touching = seen.filter(|node| femur.gap_mm(node) < NEAR_MM);
     let mut cells = HashSet::new();
     for node in touching {

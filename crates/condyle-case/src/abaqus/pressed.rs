@@ -118,12 +118,16 @@ impl Pressed<'_> {
     fn lift_mm(&self) -> f64 {
         const MAX_STEPS: usize = 100;
         const MIN_STEP_MM: f64 = 1e-4;
-        let Bodies { femur, surface, .. } = self.bodies;
+        let Bodies {
+            counterface: femur,
+            surface,
+            ..
+        } = self.bodies;
         let mut lift_mm = 0.0;
         for _ in 0..MAX_STEPS {
             let pose = shifted(&self.pose, Vec3::new(0.0, lift_mm, 0.0));
             let gaps = surface.positions.iter();
-            let gaps = gaps.map(|node| femur.gap_mm(&pose.to_femur(node)));
+            let gaps = gaps.map(|node| femur.gap_mm(&pose.to_counterface(node)));
             let nearest_mm = gaps.fold(f64::INFINITY, f64::min);
             if nearest_mm >= CLEARANCE_MM {
                 break;
@@ -151,7 +155,7 @@ impl Pressed<'_> {
 
     fn femur<W: Write>(&self, lift_mm: f64, inp: &mut InpWriter<W>) -> io::Result<()> {
         let Bodies {
-            femur,
+            counterface: femur,
             insert,
             surface,
         } = self.bodies;

@@ -106,7 +106,7 @@ impl<'a> PressedCase<'a> {
             title: &case.heading.title.replace(['\n', '\r'], " "),
             note: &note(case, &row),
             bodies: Bodies {
-                femur: self.unworn.femur(),
+                counterface: self.unworn.counterface(),
                 insert,
                 surface: &insert.surface(),
             },

@@ -30,7 +30,7 @@ words! {
     }
 
     MovedBody {
-        Femur = "counterface",
+        Counterface = "counterface",
         Insert = "bearing",
     }
 
@@ -66,7 +66,7 @@ settings! {
         /// Direction of its axis in the bearing frame: the load acts along y, and the counterface lies above the bearing.
         axis: [f64; 3], in within(-1.0, 1.0);
         /// Body that it moves, which determines the sign.
-        moves: MovedBody = MovedBody::Femur;
+        moves: MovedBody = MovedBody::Counterface;
         /// Point of a rotation's axis in the bearing frame; through the centre of the counterface if not given.
         point_mm: Option<[f64; 3]> = None, in within(-1000.0, 1000.0);
         /// Its drive.
@@ -234,7 +234,7 @@ impl RigJoint {
         match (self.keys.kind, self.keys.point_mm) {
             (JointKind::Translation, _) => Axis::Along(direction),
             (JointKind::Rotation, Some(_)) => Axis::About(direction),
-            (JointKind::Rotation, None) => Axis::AboutFemur(direction),
+            (JointKind::Rotation, None) => Axis::AboutCounterface(direction),
         }
     }
 

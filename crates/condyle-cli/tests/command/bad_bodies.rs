@@ -152,7 +152,11 @@ fn two_bodies_apart() {
     let femur = shapes::moved(shapes::femur(), false, far);
     let text = format!("{MESH_INSERT}{MESH_FEMUR}length_unit = \"mm\"\n");
     let bench = knee(&text, &shapes::insert(), &femur);
-    assert_refused(&bench, 2, &["femur and insert are apart", "case.toml:8:15"]);
+    assert_refused(
+        &bench,
+        2,
+        &["counterface and insert are apart", "case.toml:8:15"],
+    );
 }
 
 #[test]
@@ -168,7 +172,7 @@ fn two_bodies_deeply_overlapped_at_the_start() {
     );
     let soft = format!("[material]\nyoungs_modulus_mpa = 1.0\n{heavy}{flat}");
     let words = [
-        "femur and insert overlap by",
+        "counterface and insert overlap by",
         "the material",
         "case.toml:2:22",
     ];
@@ -179,7 +183,7 @@ fn two_bodies_deeply_overlapped_at_the_start() {
 fn a_femur_that_slides_off_is_physics() {
     let text = format!("[femur]\nshape = \"sphere\"\nstart_mm = [22.0, 0.0]\n{SMALL}");
     let words = [
-        "the femur does not settle",
+        "the counterface does not settle",
         "check axes and start_mm",
         "case.toml:3:12",
     ];
@@ -254,12 +258,12 @@ fn a_femur_that_falls_off_in_the_cycle_is_physics() {
     said.assert_refused(
         3,
         &[
-            "update 1: the femur touches the insert nowhere",
+            "update 1: the counterface touches the insert nowhere",
             "it was lowered at x ",
             "ends at AP ",
             " mm, ML ",
             " deg, VV ",
-            "the AP force and its sign, and the springs",
+            "the loads and their signs, and the springs",
             "vv_axis_medial_mm",
             "kept in out",
         ],

@@ -52,3 +52,56 @@ fn no_file_is_larger_than_a_reader_can_use() {
         assert!(size <= LARGEST_BYTES, "{}: {size} bytes", file.path);
     }
 }
+
+/// Files of the library about one joint of the body: the preset, and shapes and landmarks of knees.
+const OF_ONE_JOINT: [&str; 6] = [
+    "machine/knee.rs",
+    "anatomy/",
+    "geometry/construct.rs",
+    "geometry/generic_femur.rs",
+    "geometry/generic_insert.rs",
+    "geometry/landmarks.rs",
+];
+
+/// Lines that list such files, their items and the joints of the body.
+const LISTS: [&str; 5] = [
+    "lib.rs",
+    "prelude.rs",
+    "geometry/mod.rs",
+    "geometry/counterface.rs",
+    "machine/mod.rs",
+];
+
+#[test]
+fn the_library_speaks_of_counterface_and_bearing() {
+    let mut found = Vec::new();
+    for file in text_files() {
+        let Some(path) = file.path.strip_prefix("crates/condyle/src/") else {
+            continue;
+        };
+        let is_exempt = |names: &[&str]| names.iter().any(|name| path.starts_with(name));
+        if is_exempt(&OF_ONE_JOINT) || is_exempt(&LISTS) || path.contains("test") {
+            continue;
+        }
+        let production = file.text.split("#[cfg(test)]").next().unwrap_or_default();
+        for (number, line) in production.lines().enumerate() {
+            let is_stored_name = line.contains("femur_pose_and_loads");
+            let is_joint_of_body = line.contains("Knee");
+            if !is_stored_name
+                && !is_joint_of_body
+                && line.split(|c: char| !c.is_alphabetic()).any(is_of_knees)
+            {
+                found.push(format!("{path}:{}: {}", number + 1, line.trim()));
+            }
+        }
+    }
+    assert!(found.is_empty(), "{}", found.join("\n"));
+}
+
+fn is_of_knees(word: &str) -> bool {
+    let lower = word.to_lowercase();
+    ["femur", "femoral", "tibia", "knee"]
+        .iter()
+        .any(|of_knees| lower.contains(of_knees))
+        || ["AP", "IE"].contains(&word)
+}

@@ -197,7 +197,7 @@ pub(crate) fn femur_mesh(finished: &Finished<'_>) -> Option<PlausibilityWarning>
             .map(|(worn, pressed)| worn + pressed > 0.0)
             .collect()
     };
-    let femur = finished.march.femur();
+    let femur = finished.march.counterface();
     let (mut whole, mut doubtful, mut largest_mm): (f64, f64, f64) = (0.0, 0.0, 0.0);
     for pose in finished.cycles().flat_map(|cycle| poses(finished, &cycle)) {
         let nodes = touched
@@ -205,7 +205,7 @@ pub(crate) fn femur_mesh(finished: &Finished<'_>) -> Option<PlausibilityWarning>
             .enumerate()
             .filter(|(_, is_touched)| **is_touched);
         for (node, _) in nodes {
-            let place = pose.to_femur(&finished.surface.positions[node]);
+            let place = pose.to_counterface(&finished.surface.positions[node]);
             // The overclosure is a measure of the pressure in every model.
             let pressed = (-femur.gap_mm(&place)).max(0.0) * finished.surface.shares[node].area_mm2;
             let deviation_mm = femur.deviation_mm(&place);
@@ -292,8 +292,15 @@ fn is_at_rim(finished: &Finished<'_>, pose: &Pose, side: usize) -> bool {
     let regions = finished.march.insert().regions();
     let nodes = finished.surface.positions.iter().enumerate();
     let of_side = nodes.filter(|(node, _)| regions.of_node(*node) == side);
-    let gaps =
-        of_side.map(|(node, place)| (finished.march.femur().gap_mm(&pose.to_femur(place)), node));
+    let gaps = of_side.map(|(node, place)| {
+        (
+            finished
+                .march
+                .counterface()
+                .gap_mm(&pose.to_counterface(place)),
+            node,
+        )
+    });
     let nearest = gaps.min_by(|a, b| a.0.total_cmp(&b.0));
     nearest.is_some_and(|(gap_mm, node)| gap_mm < NEAR_MM && finished.is_on_rim(node))
 }

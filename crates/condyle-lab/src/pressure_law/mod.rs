@@ -197,7 +197,7 @@ fn fitted(
 ) -> (PressureTable, Vec<FittedIncrement>) {
     let surface = insert.surface();
     let bodies = Bodies {
-        femur: march.femur(),
+        counterface: march.counterface(),
         insert,
         surface: &surface,
     };

@@ -4,7 +4,7 @@ use std::path::Path;
 
 use condyle::{
     evolve::{March, WearTest},
-    geometry::FemoralSurface,
+    geometry::Counterface,
     machine::Drive,
 };
 use condyle_case::{
@@ -137,8 +137,8 @@ fn memory_mb_touching(case: &Case, march: &March, nodes_touched: f64, nodes_near
         1.0
     };
     let touches = nodes_touched * march.test().time.increments as f64;
-    let field_nodes = match march.femur() {
-        FemoralSurface::Mesh(field) => field.nodes() as f64,
+    let field_nodes = match march.counterface() {
+        Counterface::Mesh(field) => field.nodes() as f64,
         _ => 0.0,
     };
     let law = &march.test().contact;

@@ -7,7 +7,7 @@ use std::ops::Range;
 pub struct Moment {
     /// Mean pressure on the node's share of the surface, MPa.
     pub pressure_mpa: f64,
-    /// Slip of the femur past the insert over the increment, mm, in the surface's own directions: anterior along the
+    /// Slip of the counterface past the insert over the increment, mm, in the surface's own directions: anterior along the
     /// surface, then lateral.
     pub slip_mm: [f64; 2],
 }

@@ -8,13 +8,13 @@ use super::{
     broad_phase::Search,
     model::{ContactMemory, ContactModel, ContactState},
 };
-use crate::geometry::{ArticulatingSurface, FemoralSurface, Insert};
+use crate::geometry::{ArticulatingSurface, Counterface, Insert};
 
 /// The bodies of a contact as they are now.
 #[derive(Clone, Copy)]
 pub struct Bodies<'a> {
-    /// The femoral surface, prepared for the insert's shares.
-    pub femur: &'a FemoralSurface,
+    /// The counterface, prepared for the insert's shares.
+    pub counterface: &'a Counterface,
     /// The insert, worn or not.
     pub insert: &'a Insert,
     /// The insert's articulating surface.
@@ -33,7 +33,7 @@ pub struct ContactSettings {
     pub slip_tolerance_mm_per_s: f64,
     /// The search for the nodes that may touch; no result depends on it.
     pub search: Search,
-    /// Motion up to which a sample of the femur is extrapolated to second order rather than recomputed, mm; with 0 every
+    /// Motion up to which a sample of the counterface is extrapolated to second order rather than recomputed, mm; with 0 every
     /// sample is recomputed.
     ///
     /// This is the only approximation of the search. The second derivatives of a mesh's field vary by about 0.003/mm
@@ -72,7 +72,7 @@ pub trait ContactLaw: Debug + Send + Sync {
     fn stiffness_mpa_per_mm(&self, insert: &Insert, node: usize) -> f64;
 
     /// Estimates the memory that the law keeps for an insert in addition to that of a contact, bytes, from the number
-    /// of nodes that come near the femur.
+    /// of nodes that come near the counterface.
     fn memory_bytes(&self, _insert: &Insert, _nodes_near: f64) -> f64 {
         0.0
     }

@@ -1,4 +1,4 @@
-//! Contact between femur and insert: one interface, several laws.
+//! Contact between counterface and insert: one interface, several laws.
 //!
 //! A [`ContactLaw`] belongs to a test and creates a [`ContactModel`] of the bodies as they are now. The machine sees only
 //! that.
@@ -10,7 +10,7 @@
 //! | `history` | pressure and slip of every surface node over a cycle, and their work by direction |
 //! | `pressure_law` | pressure from overclosure of an elastic layer |
 //! | `foundation` | the elastic foundation: rigid bodies, and pressure from local overclosure |
-//! | `deformable` | the deformable insert: the pressure under which an elastic body just touches the femur |
+//! | `deformable` | the deformable insert: the pressure under which an elastic body just touches the counterface |
 //! | `contact_patch` | the shares under pressure, their tractions and sums, for all laws |
 //! | `broad_phase` | the blocks of nodes that may touch, by brute force or coherently |
 

@@ -10,15 +10,15 @@ use crate::{
     spatial::{RelativeMotion, Wrench, WrenchByTwist},
 };
 
-/// The largest number of regions of an articulating surface with separate loads and slips: the two sides of a knee.
+/// The largest number of regions of an articulating surface with separate loads and slips: its two sides.
 pub const MAX_REGIONS: usize = 2;
 
 /// The derivatives of the wrench of the contact.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Tangent {
-    /// Derivative of the wrench on the insert by a short motion of the femur.
+    /// Derivative of the wrench on the insert by a short motion of the counterface.
     pub by_pose: WrenchByTwist,
-    /// Derivative of the wrench on the insert by the femur's twist.
+    /// Derivative of the wrench on the insert by the counterface's twist.
     pub by_twist: WrenchByTwist,
 }
 
@@ -27,7 +27,7 @@ pub struct Tangent {
 pub struct Response {
     /// Wrench on the insert about its origin, in the insert frame.
     pub wrench: Wrench,
-    /// Load-weighted mean velocity of the femur's surface past the insert's in each region, mm/s; in the femoral frame.
+    /// Load-weighted mean velocity of the counterface's surface past the insert's in each region, mm/s; in the counterface frame.
     pub mean_slip: [Vec3; MAX_REGIONS],
 }
 
@@ -44,7 +44,7 @@ pub struct TouchedNode {
     pub covered_mm2: f64,
     /// Force on the insert there, N.
     pub force_n: Vec3,
-    /// Velocity of the femur's surface past the insert's in the surface's own directions, anterior along the surface, then
+    /// Velocity of the counterface's surface past the insert's in the surface's own directions, anterior along the surface, then
     /// lateral, mm/s; 0 where they stick.
     pub sliding_mm_per_s: [f64; 2],
     /// Displacement of the insert's surface along itself since the increment before, in the same directions, mm: the part of
@@ -89,7 +89,7 @@ pub enum NotBorne {
     Tipped { moved_mm: f64 },
 }
 
-/// A contact between femur and insert, as the machine sees it: without meshes.
+/// A contact between counterface and insert, as the machine sees it: without meshes.
 ///
 /// The machine calls [`respond`](Self::respond) as often as it needs to find the end of an increment,
 /// [`accept`](Self::accept) once for every step from which it continues, and [`evaluate`](Self::evaluate) at the end of

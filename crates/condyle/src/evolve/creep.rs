@@ -5,7 +5,7 @@ use serde::{Deserialize, Serialize};
 use super::WearTest;
 use crate::{creep::LeePienkowski, geometry::Insert, machine::Cycle, number::Mixing};
 
-/// The iteration ends where no side of the femur sinks further at any instant by more than this part of the largest
+/// The iteration ends where no side of the counterface sinks further at any instant by more than this part of the largest
 /// step of a node, ...
 const SETTLED: f64 = 1e-3;
 /// ... or at this limit.
@@ -68,7 +68,7 @@ impl CreepState {
     ///
     /// The pressure during the step is the predicted pressure at its end (Euler's implicit method in the
     /// superposition of loads): a node that goes down by x, by wear and creep, loses its stiffness times x, and
-    /// gains pressure as the femur sinks, which keeps the force of each side at every instant. An explicit step would
+    /// gains pressure as the counterface sinks, which keeps the force of each side at every instant. An explicit step would
     /// take every node out of contact, since the creep of the first interval is deeper than the overclosure.
     pub(super) fn step(&mut self, step: &CreepStep<'_>) -> Vec<f64> {
         let count = step.thickness_mm.len();
@@ -145,7 +145,7 @@ impl CreepState {
 }
 
 impl Node {
-    /// Returns the depth of the step where the pressure rises by `more_mpa` as the femur sinks, mm.
+    /// Returns the depth of the step where the pressure rises by `more_mpa` as the counterface sinks, mm.
     ///
     /// Solves x = d(e) - before, e = history + c (p + more - k x), p + more - k x >= 0, with d the depth of a
     /// recoverable depth e, which is linear on either side of the deepest so far.
@@ -181,7 +181,7 @@ impl Node {
     }
 }
 
-/// Solves for the depth of the step at every node, mm, and the motion by which the femur sinks.
+/// Solves for the depth of the step at every node, mm, and the motion by which the counterface sinks.
 fn implicit(step: &CreepStep<'_>, nodes: &[Node]) -> Vec<f64> {
     let contact = step.contact;
     let add_lost_n = |node: &Node, crept_mm: f64, lost_n: &mut [f64]| {
@@ -238,7 +238,7 @@ pub(super) struct CreepContact {
 /// A loaded node at an instant.
 #[derive(Clone, Copy, Debug)]
 struct Pressing {
-    /// Number of the instant and side of the femur.
+    /// Number of the instant and side of the counterface.
     side: u32,
     pressed_mm2: f32,
 }
@@ -253,7 +253,7 @@ struct NodeStiffness {
     mpa_per_mm3: f64,
 }
 
-/// A side of the femur at an instant.
+/// A side of the counterface at an instant.
 #[derive(Clone, Copy, Debug)]
 struct Side {
     /// Part of the time that the instant represents.

@@ -28,11 +28,11 @@ pub enum MarchError {
         activity: Option<String>,
         source: CycleError,
     },
-    /// The femur left the insert.
+    /// The counterface left the insert.
     #[error(
-        "update {update}: the femur touches the insert nowhere in the whole cycle; it was lowered at x {:.1}, z \
-         {:.1} mm and ends at {readings}; where AP or ML is far, check start_mm, axes and sides, the AP force and its \
-         sign, and the springs that hold it; where VV is, vv_axis_medial_mm",
+        "update {update}: the counterface touches the insert nowhere in the whole cycle; it was lowered at x {:.1}, z \
+         {:.1} mm and ends at {readings}; where a translation is far, check start_mm, axes and sides, the loads and \
+         their signs, and the springs that hold it; where a rotation is, the point of its axis (vv_axis_medial_mm or point_mm)",
         start_mm.0,
         start_mm.1
     )]
@@ -41,11 +41,11 @@ pub enum MarchError {
         start_mm: (f64, f64),
         readings: String,
     },
-    /// Inertia that was added to stabilise explicit steps threw the femur off.
+    /// Inertia that was added to stabilise explicit steps threw the counterface off.
     #[error(
-        "update {update}: the femur touches the insert nowhere in the whole cycle: the steps of explicit_step_s are stable \
+        "update {update}: the counterface touches the insert nowhere in the whole cycle: the steps of explicit_step_s are stable \
          only with {added_inertia:.0} times the machine's inertia added to it, so steeply does friction rise with the speed, and \
-         that much throws the femur off; set a shorter explicit_step_s (0 takes the longest stable step), a larger \
+         that much throws the counterface off; set a shorter explicit_step_s (0 takes the longest stable step), a larger \
          slip_tolerance_mm_per_s, or integrator = \"implicit\""
     )]
     ThrownOff { update: usize, added_inertia: f64 },
@@ -112,34 +112,34 @@ impl MarchError {
 #[derive(Clone, Debug, PartialEq, Error)]
 #[non_exhaustive]
 pub enum PlacementError {
-    /// Nothing of the insert lies below the femur.
+    /// Nothing of the insert lies below the counterface.
     #[error(
-        "femur and insert are apart: lowered at x {:.1}, z {:.1} mm the femur passes the insert without \
+        "counterface and insert are apart: lowered at x {:.1}, z {:.1} mm the counterface passes the insert without \
          touching it; check length_unit, axes and start_mm",
         start_mm.0,
         start_mm.1
     )]
     Apart { start_mm: (f64, f64) },
-    /// The settled femur lies too deep in the insert.
+    /// The settled counterface lies too deep in the insert.
     #[error(
-        "femur and insert overlap by {overclosure_mm:.2} mm at the start, more than half the insert's thickness \
+        "counterface and insert overlap by {overclosure_mm:.2} mm at the start, more than half the insert's thickness \
          of {thickness_mm:.2} mm there; check length_unit, axes, start_mm and the material"
     )]
     DeepOverlap {
         overclosure_mm: f64,
         thickness_mm: f64,
     },
-    /// The femur slides off or tips over.
+    /// The counterface slides off or tips over.
     #[error(
-        "the femur does not settle on the insert under the axial load: {residual_n:.3e} N are left over at \
+        "the counterface does not settle on the insert under the axial load: {residual_n:.3e} N are left over at \
          {readings}; check axes and start_mm"
     )]
     NotSettled { residual_n: f64, readings: String },
-    /// The femur rests where the force jumps.
+    /// The counterface rests where the force jumps.
     #[error(
-        "the femur does not settle on the insert under the axial load: it rests at {readings}, but there the force jumps by \
+        "the counterface does not settle on the insert under the axial load: it rests at {readings}, but there the force jumps by \
          some {residual_n:.1} N as it moves by {moved_mm:.3} mm; the load rests on few nodes, each of which feels at once \
-         where the femur's curvature changes: take a smaller edge_mm"
+         where the counterface's curvature changes: take a smaller edge_mm"
     )]
     Unsteady {
         residual_n: f64,
@@ -148,9 +148,9 @@ pub enum PlacementError {
     },
 }
 
-/// A femur that moves less in an iteration rests, though its forces do not balance, mm.
+/// A counterface that moves less in an iteration rests, though its forces do not balance, mm.
 const AT_REST_MM: f64 = 0.1;
-/// A femur farther than this from its start has slid off its support, mm.
+/// A counterface farther than this from its start has slid off its support, mm.
 const SLID_OFF_MM: f64 = 20.0;
 
 impl PlacementError {

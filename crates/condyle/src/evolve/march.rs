@@ -18,7 +18,7 @@ use super::{
 use crate::{
     Vec3,
     contact::{Bodies, ContactCache, ContactMemory, ContactState, UnderSurface},
-    geometry::{ArticulatingSurface, FemoralSurface, Insert},
+    geometry::{ArticulatingSurface, Counterface, Insert},
     machine::{Chain, MachineState, SolverCounters},
     spatial::Pose,
 };
@@ -28,8 +28,8 @@ use crate::{
 /// The [`WearTest`] is never changed: the march wears its own copy of the insert.
 pub struct March {
     test: WearTest,
-    /// The femur prepared for the shares of the insert.
-    femur: FemoralSurface,
+    /// The counterface prepared for the shares of the insert.
+    counterface: Counterface,
     insert: Insert,
     /// One per activity.
     chains: Vec<Chain>,
@@ -50,15 +50,15 @@ struct Lowered {
 }
 
 impl March {
-    /// Places the femur on the unworn insert and lets it settle.
+    /// Places the counterface on the unworn insert and lets it settle.
     ///
     /// # Errors
     /// Bodies that do not meet, that overlap deeply, or that do not come to rest.
     pub fn start(test: WearTest) -> Result<Self, PlacementError> {
-        let (femur, surface) = (prepared(&test), test.insert.surface());
+        let (counterface, surface) = (prepared(&test), test.insert.surface());
         let mut counters = SolverCounters::default();
         let bodies = Bodies {
-            femur: &femur,
+            counterface: &counterface,
             insert: &test.insert,
             surface: &surface,
         };
@@ -75,13 +75,13 @@ impl March {
                 chain.zero_mm(),
             )
         };
-        Ok(Self::from_parts(test, femur, state))
+        Ok(Self::from_parts(test, counterface, state))
     }
 
     /// Continues from a state of the same test.
     pub fn resume(test: WearTest, state: MarchState) -> Self {
-        let femur = prepared(&test);
-        Self::from_parts(test, femur, state)
+        let counterface = prepared(&test);
+        Self::from_parts(test, counterface, state)
     }
 
     /// Starts a test at a step of another march with the same bodies and number of activities, as if that step
@@ -107,7 +107,7 @@ impl March {
         self
     }
 
-    fn from_parts(test: WearTest, femur: FemoralSurface, mut state: MarchState) -> Self {
+    fn from_parts(test: WearTest, counterface: Counterface, mut state: MarchState) -> Self {
         if state.updates.is_empty() {
             let nodes = test.insert.surface_nodes().len();
             let laws = test.comparison_laws.iter();
@@ -124,7 +124,7 @@ impl March {
             unworn_fields: NodeFields::unworn(&insert, &state.depths),
             last: None,
             cache: ContactCache::default(),
-            femur,
+            counterface,
             insert,
             state,
             test,
@@ -141,16 +141,16 @@ impl March {
         &self.insert
     }
 
-    /// Returns the femoral surface prepared for the shares of the insert.
-    pub fn femur(&self) -> &FemoralSurface {
-        &self.femur
+    /// Returns the counterface prepared for the shares of the insert.
+    pub fn counterface(&self) -> &Counterface {
+        &self.counterface
     }
 
     /// Returns the bodies in their present shape, for a contact outside the march; `surface` is the surface of
     /// [`March::insert`].
     pub fn bodies<'a>(&'a self, surface: &'a ArticulatingSurface) -> Bodies<'a> {
         Bodies {
-            femur: &self.femur,
+            counterface: &self.counterface,
             insert: &self.insert,
             surface,
         }
@@ -178,13 +178,13 @@ impl March {
         })
     }
 
-    /// Returns the pose of the femur in the insert frame with the joints of the first activity at `positions`,
+    /// Returns the pose of the counterface in the insert frame with the joints of the first activity at `positions`,
     /// mm and rad.
     pub fn pose_at(&self, positions: &[f64; 6]) -> Pose {
         self.chains[0].at(positions).pose
     }
 
-    /// Returns the settled pose of the femur in the insert frame, at which AP, ML and IS read zero.
+    /// Returns the settled pose of the counterface in the insert frame, at which the zeroed joints read zero.
     pub fn neutral_pose(&self) -> Pose {
         self.pose_at(&self.state.settled)
     }
@@ -490,8 +490,8 @@ impl March {
     }
 }
 
-/// Returns the femur of a test prepared for the shares of its insert.
-fn prepared(test: &WearTest) -> FemoralSurface {
+/// Returns the counterface of a test prepared for the shares of its insert.
+fn prepared(test: &WearTest) -> Counterface {
     let spread_mm2 = test.insert.surface().mean_spread_mm2();
-    test.femur.prepared_for(spread_mm2)
+    test.counterface.prepared_for(spread_mm2)
 }

@@ -3,7 +3,7 @@
 //! | file | content |
 //! | --- | --- |
 //! | `wear_test` | a whole test: bodies, laws, activities, schedule |
-//! | `placement` | lowers the femur onto the insert and lets it settle |
+//! | `placement` | lowers the counterface onto the insert and lets it settle |
 //! | `march` | the loop over updates: cycles solved, rates, a step, the new surface |
 //! | `solved_cycles` | the solution of the cycles of an update |
 //! | `rates` | the wear per cycle, the rate at which wear changes it, and a step of the march |

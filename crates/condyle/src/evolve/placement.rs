@@ -1,10 +1,10 @@
-//! The placement of the femur: it is lowered onto the insert, and settles.
+//! The placement of the counterface: it is lowered onto the insert, and settles.
 
 use super::{PlacementError, WearTest};
 use crate::{
     Vec3,
     contact::{Bodies, ContactMemory, ContactModel},
-    geometry::{ArticulatingSurface, FemoralSurface},
+    geometry::{ArticulatingSurface, Counterface},
     machine::{Chain, Drive, JointKind, Settling, SolverCounters, settle},
     spatial::{Pose, RelativeMotion},
 };
@@ -13,10 +13,10 @@ use crate::{
 const FIRST_OVERCLOSURE_MM: f64 = 0.01;
 /// Longest step down, mm: less than the reach of a mesh's distance field, beyond which the gap is a bound.
 const LONGEST_STEP_MM: f64 = 1.5;
-/// Largest overclosure of a settled femur, as a share of the thickness there.
+/// Largest overclosure of a settled counterface, as a share of the thickness there.
 const DEEPEST_SHARE: f64 = 0.5;
 
-/// Returns the machine's chain, zeroed where the femur settles, and the settled positions.
+/// Returns the machine's chain, zeroed where the counterface settles, and the settled positions.
 pub(super) fn place(
     test: &WearTest,
     bodies: Bodies<'_>,
@@ -30,7 +30,7 @@ pub(super) fn place(
         .pose;
     let start_mm = test.start_mm;
     let height_mm = test.start_height_mm.map(|height_mm| height_mm - axis_y);
-    let lowered = lowered(bodies.femur, bodies.surface, flexed, height_mm);
+    let lowered = lowered(bodies.counterface, bodies.surface, flexed, height_mm);
     let lowered = lowered.ok_or(PlacementError::Apart { start_mm })?;
     // A slight overclosure, so that the first evaluation has a stiffness.
     let down = lowered.translation.y - flexed.translation.y - FIRST_OVERCLOSURE_MM;
@@ -63,24 +63,24 @@ fn driven(test: &WearTest) -> [f64; 6] {
     })
 }
 
-/// Returns the pose lowered from a height, or from far above, until the first node touches; none if the femur passes the
+/// Returns the pose lowered from a height, or from far above, until the first node touches; none if the counterface passes the
 /// insert.
 ///
 /// The gap is a lower bound of the distance, so a step by the smallest gap cannot skip a touch.
 fn lowered(
-    femur: &FemoralSurface,
+    counterface: &Counterface,
     surface: &ArticulatingSurface,
     pose: Pose,
     height_mm: Option<f64>,
 ) -> Option<Pose> {
     const TOUCH_MM: f64 = 1e-4;
     let (low, high) = surface.height_range_mm();
-    let reach = femur.reach_mm();
+    let reach = counterface.reach_mm();
     let mut pose = pose;
-    // Far above, no part of the femur can reach the insert.
+    // Far above, no part of the counterface can reach the insert.
     pose.translation.y = height_mm.unwrap_or(high + reach);
     while pose.translation.y > low - reach {
-        let gap = |position: &Vec3| femur.gap_mm(&pose.to_femur(position));
+        let gap = |position: &Vec3| counterface.gap_mm(&pose.to_counterface(position));
         let nearest = surface
             .positions
             .iter()
@@ -105,8 +105,8 @@ fn check_depth(
     for touched in contact.evaluate(&motion).touched {
         let node = touched.node as usize;
         let overclosure_mm = -bodies
-            .femur
-            .gap_mm(&pose.to_femur(&bodies.surface.positions[node]));
+            .counterface
+            .gap_mm(&pose.to_counterface(&bodies.surface.positions[node]));
         let thickness_mm = bodies.insert.thickness_mm()[node];
         if overclosure_mm > DEEPEST_SHARE * thickness_mm {
             return Err(PlacementError::DeepOverlap {

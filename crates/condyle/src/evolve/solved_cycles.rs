@@ -35,7 +35,7 @@ pub struct SolvedCycle<'a> {
 }
 
 impl SolvedCycle<'_> {
-    /// Returns the pose of the femur in the insert frame at the end of an increment.
+    /// Returns the pose of the counterface in the insert frame at the end of an increment.
     pub fn pose(&self, increment: usize) -> Pose {
         self.chain.at(&self.rows[increment].positions).pose
     }

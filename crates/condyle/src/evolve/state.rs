@@ -122,7 +122,7 @@ pub struct MarchState {
     pub under_surface: Option<UnderSurface>,
     /// One per activity.
     pub activities: Vec<ActivityState>,
-    /// Position of the femoral frame's origin in the insert frame at neutral, mm.
+    /// Position of the counterface frame's origin in the insert frame at neutral, mm.
     pub zero_mm: Vec3,
     /// Positions of the joints at neutral, mm and rad: 0 except for those that settling does not zero. All
     /// are 0 in a march from a snapshot, which did not settle.

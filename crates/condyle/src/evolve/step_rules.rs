@@ -59,13 +59,13 @@ fn added_mm3(rates: &Rates, last: &StepRecord, interval: f64) -> f64 {
 /// Returns the depth of an interval by a rule that is exact for rates that relax exponentially.
 ///
 /// The rate r of a node falls by `k` (part of the [relaxation](Rates)) for every mm by which the wear of the node
-/// exceeds the motion of the femur: dr/dn = k (s - r), s the motion by which the femur sinks per cycle. The
+/// exceeds the motion of the counterface: dr/dn = k (s - r), s the motion by which the counterface sinks per cycle. The
 /// last step, of m cycles and w mm, gives s: r changed by k (s m - w). With that the solution over n cycles is
 ///
 /// depth = n (f r + (1 - f) s), f = (1 - exp(-k n)) / (k n).
 ///
 /// For small k n this tends to extrapolating every rate (Adams and Bashforth's method), which is
-/// unstable from relaxation x interval = 1 on. The femur's part is scaled so that the volume agrees with
+/// unstable from relaxation x interval = 1 on. The counterface's part is scaled so that the volume agrees with
 /// a volume per cycle that continues to change as it did.
 pub(super) fn exponential(rates: &Rates, last: Option<&StepRecord>, interval: f64) -> Vec<f64> {
     let mut depth_mm = euler(rates, interval);
@@ -74,7 +74,7 @@ pub(super) fn exponential(rates: &Rates, last: Option<&StepRecord>, interval: f6
     };
     let volume = |depth_mm: &[f64]| volume_mm3(&rates.area_mm2, depth_mm);
     let wanted_mm3 = volume(&depth_mm) + added_mm3(rates, last, interval);
-    // The depth at a node by the sinking of the femur: n (1 - f) s.
+    // The depth at a node by the sinking of the counterface: n (1 - f) s.
     let sunk = |node: usize| {
         let counted = counted(rates, node);
         if counted == 0.0 {
@@ -89,7 +89,7 @@ pub(super) fn exponential(rates: &Rates, last: Option<&StepRecord>, interval: f6
         *depth *= mean_decay(counted(rates, node) * interval);
     }
     let sunk_mm3 = volume(&sunk_mm);
-    // A negative scale would let the femur rise, and depths become negative.
+    // A negative scale would let the counterface rise, and depths become negative.
     let scale = if sunk_mm3 > 0.0 {
         ((wanted_mm3 - volume(&depth_mm)) / sunk_mm3).max(0.0)
     } else {
@@ -163,7 +163,7 @@ impl AccumulatedError {
 
 /// Returns the depth of the exact march less this one at every node now, mm.
 ///
-/// The exact wear of the last step follows from the motion by which the femur sank, by the
+/// The exact wear of the last step follows from the motion by which the counterface sank, by the
 /// equation of [`exponential`]. By the same equation earlier errors decay.
 pub(super) fn accumulated_error_mm(start: StepStart<'_>) -> Vec<f64> {
     let nodes = 0..start.worn_mm.len();
@@ -233,13 +233,13 @@ mod tests {
         assert_eq!(extrapolated(&rates_of(&[5.0, 2.0]), None, 3.0), [15.0, 6.0]);
     }
 
-    /// How fast the rate of a node falls as it is worn more than the femur sinks.
+    /// How fast the rate of a node falls as it is worn more than the counterface sinks.
     const RELAXATION: f64 = 1.0;
 
-    /// Nodes of equal areas that wear as the femur sinks on them: r = k (sunk - worn).
+    /// Nodes of equal areas that wear as the counterface sinks on them: r = k (sunk - worn).
     struct Bed<S: Fn(usize, f64, f64) -> f64> {
         nodes: usize,
-        /// How far the femur has sunk at a node after so many cycles and so much mean depth, mm.
+        /// How far the counterface has sunk at a node after so many cycles and so much mean depth, mm.
         sunk_mm: S,
     }
 
@@ -310,7 +310,7 @@ mod tests {
 
     #[test]
     fn verify_a_moving_scar_is_met_to_second_order() {
-        // The femur sinks most in a hollow that moves from node 3 to node 8.
+        // The counterface sinks most in a hollow that moves from node 3 to node 8.
         let bump = |node: usize, cycles: f64| {
             let place = 3.0 + cycles - node as f64;
             1.0 + 0.5 * (1.0 + (place / 2.0).tanh())
@@ -421,7 +421,7 @@ mod error_tests {
 
     #[test]
     fn verify_what_a_step_missed_where_the_rate_relaxes() {
-        // The femur does not sink, so the rate of 3 falls by k for every mm: after Euler's 6 mm to
+        // The counterface does not sink, so the rate of 3 falls by k for every mm: after Euler's 6 mm to
         // 3 - 6 k, where the exact depth is 3 (1 - exp(-2 k))/k.
         let counted = 0.2_f64;
         let last = last(6.0, 0.0);
@@ -432,7 +432,7 @@ mod error_tests {
 
     #[test]
     fn what_was_missed_fades_as_the_node_relaxes() {
-        // This step errs by nothing: the rate stays, and so the femur sinks as it wears.
+        // This step errs by nothing: the rate stays, and so the counterface sinks as it wears.
         let relaxation = 0.7;
         let (now, last) = (rates(3.0, relaxation), last(6.0, 1.0));
         let error_mm = accumulated_error_mm(start(&now, &last))[0];

@@ -5,20 +5,20 @@ use std::sync::Arc;
 use crate::{
     contact::ContactLaw,
     creep::LeePienkowski,
-    geometry::{FemoralSurface, Insert},
+    geometry::{Counterface, Insert},
     machine::{Machine, TimeSettings},
     wear::{NamedLaw, WearLaw},
 };
 
-/// Bodies, activities and laws of a wear test; a right knee, mm N s MPa tonne rad.
+/// Bodies, activities and laws of a wear test; a right joint, mm N s MPa tonne rad.
 ///
 /// A test is a value: to vary it, clone it and change the clone. Bodies and laws are shared between clones, and a
 /// march does not change them. Tests can be sent to other threads and run in parallel.
 #[derive(Clone, Debug)]
 pub struct WearTest {
-    /// The femoral component.
-    pub femur: Arc<FemoralSurface>,
-    /// Flexion axis, (x, y) in the femoral frame, mm.
+    /// The counterface.
+    pub counterface: Arc<Counterface>,
+    /// Flexion axis, (x, y) in the counterface frame, mm.
     pub flexion_axis_mm: (f64, f64),
     /// Position of the flexion axis over the insert before it settles, (x, z), mm.
     pub start_mm: (f64, f64),
@@ -27,9 +27,9 @@ pub struct WearTest {
     pub start_height_mm: Option<f64>,
     /// The unworn insert.
     pub insert: Arc<Insert>,
-    /// The law of contact between femur and insert.
+    /// The law of contact between counterface and insert.
     pub contact: Arc<dyn ContactLaw>,
-    /// The activities, one or more; the femur settles in the machine of the first.
+    /// The activities, one or more; the counterface settles in the machine of the first.
     pub activities: Vec<Activity>,
     /// The law of wear.
     pub wear: Arc<dyn WearLaw>,
@@ -80,7 +80,7 @@ impl WearTest {
         self.activities.iter().map(Activity::seconds).sum()
     }
 
-    /// Returns the machine of the first activity, in which the femur settles.
+    /// Returns the machine of the first activity, in which the counterface settles.
     ///
     /// # Panics
     /// A test without an activity.

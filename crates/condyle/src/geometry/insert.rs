@@ -1,4 +1,4 @@
-//! The tibial insert: a hexahedral mesh, its articulating surface, and how it wears away.
+//! The insert: a hexahedral mesh, its articulating surface, and how it wears away.
 
 mod unworn;
 
@@ -21,7 +21,7 @@ use crate::Vec3;
 /// A side wall that leans more than 60 degrees from the normal at its rim does not guide the rim.
 const MIN_COSINE_OF_WALL: f64 = 0.5;
 
-/// A tibial insert, unworn or worn.
+/// The bearing, unworn or worn: an insert, a cup, a pin.
 ///
 /// Clones share the data that wear does not change; a clone copies the positions of the nodes, and two
 /// numbers per surface node.
@@ -48,7 +48,7 @@ impl fmt::Debug for Insert {
 
 impl Insert {
     /// Creates an insert from its mesh, the outward quads of its articulating surface, and those of its backside; its
-    /// regions are the sides of a knee.
+    /// regions are its medial and its lateral side.
     ///
     /// # Errors
     /// An empty mesh or surface, an inverted element, or a node without thickness below it.
@@ -305,7 +305,7 @@ impl SurfaceRegions {
         }
     }
 
-    /// Creates the regions of the two sides of a right knee, split at z = 0: 0 is medial, where z < 0, and 1 is
+    /// Creates the regions of the two sides of a right joint, split at z = 0: 0 is medial, where z < 0, and 1 is
     /// lateral.
     pub(crate) fn medial_and_lateral(positions: impl IntoIterator<Item = Vec3>) -> Self {
         Self::split(&["medial", "lateral"], positions, |position| {

@@ -5,8 +5,8 @@
 //! 1. **Input is a shape or a triangle mesh.** [`TriangleMesh`] holds the content of a file;
 //!    [`condyle_mesh::repair`] checks that it is a surface, and orients it.
 //!    [`CurvedMesh`] interprets its facets as samples of a curved surface.
-//! 2. **The femur becomes a surface** that gives gap, normal and curvature at any point, a
-//!    [`SurfaceSample`], and bounds on the curvature around it. [`FemoralSurface`] is one of several:
+//! 2. **The counterface becomes a surface** that gives gap, normal and curvature at any point, a
+//!    [`SurfaceSample`], and bounds on the curvature around it. [`Counterface`] is one of several:
 //!    [`GenericFemur`] of pieces of [`Torus`], the same rotated and shifted ([`PlacedFemur`]), a ball, a
 //!    [`Cylinder`], or the [`SmoothField`] of a mesh: gaps at the nodes of a grid and a
 //!    spline through them.
@@ -22,7 +22,7 @@
 mod articulating_surface;
 mod connectivity;
 mod construct;
-mod femoral_surface;
+mod counterface;
 mod generic_femur;
 mod generic_insert;
 mod insert;
@@ -41,7 +41,7 @@ pub use condyle_mesh::{CurvedMesh, TriangleMesh, bounds, columns::Meshing};
 
 pub use articulating_surface::{ArticulatingSurface, Share};
 pub use construct::Underside;
-pub use femoral_surface::FemoralSurface;
+pub use counterface::Counterface;
 pub use generic_femur::{GenericFemur, GenericFemurShape, PlacedFemur};
 pub use generic_insert::{GenericInsertShape, flat_insert};
 pub use insert::{Insert, InsertError, SurfaceRegions};

@@ -101,7 +101,7 @@ impl SmoothField {
         bounds
     }
 
-    /// Returns the largest distance of the grid from the femoral frame's origin, mm.
+    /// Returns the largest distance of the grid from the counterface frame's origin, mm.
     pub fn reach_mm(&self) -> f64 {
         self.gap.grid.reach_mm()
     }

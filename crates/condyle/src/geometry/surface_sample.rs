@@ -35,14 +35,14 @@ impl<T: Number> Curvature<T> {
     }
 }
 
-/// The femoral surface around a point of the femoral frame.
+/// The counterface around a point of the counterface frame.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SurfaceSample<T> {
     /// Mean gap over the share of the surface around the point, mm; > 0 apart.
     pub gap_mm: T,
     /// Derivative of `gap_mm` by the point, without unit.
     pub gap_gradient: Vector<T>,
-    /// Unit normal of the femur, outwards.
+    /// Unit normal of the counterface, outwards.
     pub normal: Vector<T>,
     /// Symmetric; its part along the surface is the derivative of `normal` by the point, 1/mm: the
     /// curvature of the level surface, > 0 convex.
@@ -114,7 +114,7 @@ const SHARPER_INSIDE: f64 = 1.2;
 /// curvature of a convex surface.
 const CONCAVITY_OF_MEANS: f64 = 0.01;
 
-/// Bounds on the femoral surface around a point.
+/// Bounds on the counterface around a point.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct CurvatureBounds {
     /// Distance from the point within which they hold, mm; negative where nothing is known, which is possible

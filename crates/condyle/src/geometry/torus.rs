@@ -54,7 +54,7 @@ impl<T: Number> Torus<T> {
     }
 
     /// Returns gap, normal and curvature at a point, the gap averaged as in
-    /// [`FemoralSurface::sample`](super::FemoralSurface::sample).
+    /// [`Counterface::sample`](super::Counterface::sample).
     ///
     /// With $t$ the distance from the circle of tube centres, $\rho$ that from the axis, $\rho_0$ the
     /// ring's, $n$ the normal and $e$ along the ring, the curvature is
@@ -95,7 +95,7 @@ impl<T: Number> Torus<T> {
     }
 }
 
-/// An infinite cylinder about the z axis of the femoral frame.
+/// An infinite cylinder about the z axis of the counterface frame.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Cylinder {
     /// Radius, mm.
@@ -110,7 +110,7 @@ impl Cylinder {
     }
 
     /// Returns gap, normal and curvature at a point, the gap averaged as in
-    /// [`FemoralSurface::sample`](super::FemoralSurface::sample).
+    /// [`Counterface::sample`](super::Counterface::sample).
     ///
     /// With rho the distance from the axis and t = (-n_y, n_x, 0): K = t t'/rho, div n = 1/rho.
     #[inline(always)]

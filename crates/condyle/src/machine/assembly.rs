@@ -8,7 +8,7 @@ use crate::{
 
 /// Lever on which a moment counts as a force and a rotation as a motion, mm.
 ///
-/// It is shorter than the distance of any of a knee's axes from the contact, about 20 to 30 mm, so that a moment
+/// It is shorter than the distance of any of a machine's axes from the contact, about 20 to 30 mm, so that a moment
 /// within the tolerance causes less force at the contact than the tolerance on forces.
 const MOMENT_LEVER_MM: f64 = 10.0;
 
@@ -87,7 +87,7 @@ impl Joint {
     }
 }
 
-/// A machine between insert and femur: six joints, springs, and the frequency of its cycles.
+/// A machine between insert and counterface: six joints, springs, and the frequency of its cycles.
 ///
 /// All positions are in the insert frame with the machine at zero.
 #[derive(Clone, Debug, PartialEq)]

@@ -50,15 +50,15 @@ impl<'a> Balance<'a> {
     /// Returns the residual r = M a + C v + springs - contact - load of every loaded joint, N or N mm; 0 on the
     /// others.
     ///
-    /// The contact does work on joint j through its screw s_j, the motion of the femur past the
-    /// insert: its load there is W . s_j, W the wrench on the femur.
+    /// The contact does work on joint j through its screw s_j, the motion of the counterface past the
+    /// insert: its load there is W . s_j, W the wrench on the counterface.
     pub fn residual(&self, loads: &Vec6) -> Vec6 {
-        let on_femur = self.response.wrench.reaction();
+        let on_counterface = self.response.wrench.reaction();
         let mut residual = Vec6::zeros();
         for (j, joint) in self.machine.joints.iter().enumerate() {
             residual[j] = joint.inertia * self.kinematics.accelerations[j]
                 + joint.damping * self.kinematics.rates[j]
-                - on_femur.power(&self.configuration.screws[j])
+                - on_counterface.power(&self.configuration.screws[j])
                 - loads[j];
         }
         for spring in &self.machine.springs {
@@ -70,12 +70,12 @@ impl<'a> Balance<'a> {
         residual
     }
 
-    /// Returns the femur's motion past the insert at the balance's positions and other rates.
+    /// Returns the counterface's motion past the insert at the balance's positions and other rates.
     pub fn motion_at(&self, rates: &[f64; 6]) -> RelativeMotion {
         self.configuration.motion(rates)
     }
 
-    /// Returns the femur's motion past the insert to which the contact has responded.
+    /// Returns the counterface's motion past the insert to which the contact has responded.
     pub fn motion(&self) -> RelativeMotion {
         self.motion_at(&self.kinematics.rates)
     }
@@ -103,7 +103,7 @@ impl<'a> Balance<'a> {
     /// Returns the derivative of the contact's part of the residual, -W . s_j, by the position of every joint k.
     fn contact_tangent(&self, by_rate: f64) -> Mat6 {
         let contact = self.contact.tangent();
-        let on_femur = self.response.wrench.reaction();
+        let on_counterface = self.response.wrench.reaction();
         let screws = &self.configuration.screws;
         let carried = self.configuration.carried_twists(&self.kinematics.rates);
         let mut tangent = Mat6::zeros();
@@ -118,7 +118,7 @@ impl<'a> Balance<'a> {
                 tangent[(j, k)] = -change.power(&screws[j]);
             }
             // The product rule of W . s_j: the wrench changes, and s_j turns where k carries it.
-            let on_carried = on_femur.on_bracket_with(&screws[k]);
+            let on_carried = on_counterface.on_bracket_with(&screws[k]);
             for j in k + 1..6 {
                 tangent[(j, k)] -= on_carried.power(&screws[j]);
             }

@@ -1,4 +1,4 @@
-//! The machine as a chain of six screw joints from the insert to the femur.
+//! The machine as a chain of six screw joints from the insert to the counterface.
 
 use super::{Axis, Joint, Machine, MovedBody};
 use crate::{
@@ -8,13 +8,13 @@ use crate::{
 
 /// The kinematics of the machine.
 ///
-/// With the joints' screws e_j in the insert frame at zero, the femur's pose in the insert is the
+/// With the joints' screws e_j in the insert frame at zero, the counterface's pose in the insert is the
 /// product of exponentials exp(e_1 q_1) ... exp(e_6 q_6) T_0 (Brockett 1984). Joints that move the insert
-/// enter with a minus sign, since they move the insert and not the femur.
+/// enter with a minus sign, since they move the insert and not the counterface.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Chain {
     screws: [Twist; 6],
-    /// Position of the femoral frame's origin in the insert frame with all joints at zero, mm.
+    /// Position of the counterface frame's origin in the insert frame with all joints at zero, mm.
     zero_mm: Vec3,
     flexion_axis_mm: (f64, f64),
 }
@@ -22,15 +22,15 @@ pub struct Chain {
 /// The chain at given positions.
 #[derive(Clone, Debug)]
 pub struct Configuration {
-    /// Pose of the femur in the insert frame.
+    /// Pose of the counterface in the insert frame.
     pub pose: Pose,
-    /// Motion of the femur relative to the insert per unit rate of each joint.
+    /// Motion of the counterface relative to the insert per unit rate of each joint.
     pub screws: [Twist; 6],
 }
 
 impl Chain {
-    /// Creates the chain of a machine whose femur, with all joints at zero, has its frame's origin at `zero_mm` in
-    /// the insert frame and turns about the point (x, y, 0) of the femoral frame.
+    /// Creates the chain of a machine whose counterface, with all joints at zero, has its frame's origin at `zero_mm` in
+    /// the insert frame and turns about the point (x, y, 0) of the counterface frame.
     pub fn new(machine: &Machine, zero_mm: Vec3, flexion_axis_mm: (f64, f64)) -> Self {
         let pivot_mm = zero_mm + Vec3::new(flexion_axis_mm.0, flexion_axis_mm.1, 0.0);
         Self {
@@ -58,7 +58,7 @@ impl Chain {
         (zeroed, positions)
     }
 
-    /// Returns the position of the femoral frame's origin in the insert frame with all joints at zero, mm.
+    /// Returns the position of the counterface frame's origin in the insert frame with all joints at zero, mm.
     pub fn zero_mm(&self) -> Vec3 {
         self.zero_mm
     }
@@ -77,21 +77,21 @@ impl Chain {
     }
 }
 
-/// Returns the screw of a joint at zero, as the femur's motion past the insert; the femur rotates about `pivot_mm`.
+/// Returns the screw of a joint at zero, as the counterface's motion past the insert; the counterface rotates about `pivot_mm`.
 fn screw(joint: &Joint, pivot_mm: Vec3) -> Twist {
     let directed = |direction: [f64; 3]| match joint.description.moves {
         MovedBody::Insert => -Vec3::from(direction),
-        MovedBody::Femur => Vec3::from(direction),
+        MovedBody::Counterface => Vec3::from(direction),
     };
     match joint.description.axis {
         Axis::Along(direction) => Twist::along(directed(direction)),
         Axis::About(direction) => Twist::about(directed(direction), joint.axis_point_mm),
-        Axis::AboutFemur(direction) => Twist::about(directed(direction), pivot_mm),
+        Axis::AboutCounterface(direction) => Twist::about(directed(direction), pivot_mm),
     }
 }
 
 impl Configuration {
-    /// Returns pose and twist of the femur relative to the insert at given rates.
+    /// Returns pose and twist of the counterface relative to the insert at given rates.
     pub fn motion(&self, rates: &[f64; 6]) -> RelativeMotion {
         RelativeMotion {
             pose: self.pose,
@@ -99,7 +99,7 @@ impl Configuration {
         }
     }
 
-    /// Returns the twist of the femur relative to the insert at given rates, in the insert frame.
+    /// Returns the twist of the counterface relative to the insert at given rates, in the insert frame.
     pub fn twist(&self, rates: &[f64; 6]) -> Twist {
         self.screws
             .iter()
@@ -114,7 +114,7 @@ impl Configuration {
     /// Joint k turns the screws that it carries by their Lie bracket with its own, and so their twist too.
     pub(super) fn carried_twists(&self, rates: &[f64; 6]) -> [Twist; 6] {
         let mut carried = [Twist::zero(); 6];
-        // From the femur inwards, so that every sum is built from the next one.
+        // From the counterface inwards, so that every sum is built from the next one.
         for k in (0..5).rev() {
             carried[k] = carried[k + 1] + self.screws[k + 1] * rates[k + 1];
         }
@@ -145,22 +145,22 @@ mod tests {
 
     #[test]
     fn verify_signs_of_every_joint() {
-        let femur_origin = |joint: JointIndex, position: f64| {
+        let counterface_origin = |joint: JointIndex, position: f64| {
             let mut positions = [0.0; 6];
             positions[joint.place()] = position;
             chain().at(&positions).pose
         };
         let zero = Vec3::new(-5.0, 22.0, 0.0);
-        // The insert moves anterior, lateral: the femur falls behind, medial of it.
-        assert!((femur_origin(AP, 2.0).translation - zero + Vec3::x() * 2.0).norm() < 1e-12);
-        assert!((femur_origin(ML, 2.0).translation - zero + Vec3::z() * 2.0).norm() < 1e-12);
-        assert!((femur_origin(IS, 2.0).translation - zero - Vec3::y() * 2.0).norm() < 1e-12);
-        // Flexion brings the back of the femur down.
-        assert!((femur_origin(FLEXION, 0.5).rotation * -Vec3::x()).y < 0.0);
-        // Internal rotation turns the insert's front medially: the femur's front looks lateral.
-        assert!((femur_origin(IE, 0.5).rotation * Vec3::x()).z > 0.0);
-        // Varus lowers the insert's lateral side: the femur rises over it.
-        assert!((femur_origin(VV, 0.1).rotation * Vec3::z()).y > 0.0);
+        // The insert moves anterior, lateral: the counterface falls behind, medial of it.
+        assert!((counterface_origin(AP, 2.0).translation - zero + Vec3::x() * 2.0).norm() < 1e-12);
+        assert!((counterface_origin(ML, 2.0).translation - zero + Vec3::z() * 2.0).norm() < 1e-12);
+        assert!((counterface_origin(IS, 2.0).translation - zero - Vec3::y() * 2.0).norm() < 1e-12);
+        // Flexion brings the back of the counterface down.
+        assert!((counterface_origin(FLEXION, 0.5).rotation * -Vec3::x()).y < 0.0);
+        // Internal rotation turns the insert's front medially: the counterface's front looks lateral.
+        assert!((counterface_origin(IE, 0.5).rotation * Vec3::x()).z > 0.0);
+        // Varus lowers the insert's lateral side: the counterface rises over it.
+        assert!((counterface_origin(VV, 0.1).rotation * Vec3::z()).y > 0.0);
     }
 
     #[test]

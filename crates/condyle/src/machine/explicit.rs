@@ -73,7 +73,7 @@ impl Simulator<'_> {
         }
     }
 
-    /// One step of `step` of the cycle that ends at `phase`, and the femur's motion there.
+    /// One step of `step` of the cycle that ends at `phase`, and the counterface's motion there.
     ///
     /// v' = v + h/2 a, q1 = q + h v', a1 = a(q1, v' + h/2 a), v1 = v' + h/2 a1: leapfrog with the rates
     /// at whole steps; the contact sees rates that are second order too.
@@ -198,7 +198,7 @@ mod tests {
 
     const MASS: f64 = 0.005;
 
-    /// A spring and a dashpot under the femur, along y.
+    /// A spring and a dashpot under the counterface, along y.
     struct Support {
         stiffness: f64,
         drag: f64,
@@ -312,7 +312,7 @@ mod tests {
     }
 
     #[test]
-    fn a_femur_that_flies_off_ends_the_run_where_it_leaves() {
+    fn a_counterface_that_flies_off_ends_the_run_where_it_leaves() {
         let mut machine = machine(MASS);
         machine.joint_mut(IS).drive = Drive::Loaded(Waveform::constant(1000.0));
         let mut start = MachineState::at_rest(&machine, [0.0; 6]);

@@ -172,7 +172,7 @@ const JOINTS: [JointDescription; 6] = [
         positive: "superior",
         least_span: 0.1,
         axis: Axis::Along(Y),
-        moves: MovedBody::Femur,
+        moves: MovedBody::Counterface,
         settling: Settling::Driven,
         load: Loading::By(&AXIAL_FORCE),
         ..CARRIAGE
@@ -186,8 +186,8 @@ const JOINTS: [JointDescription; 6] = [
         positive: "flexion",
         decimals: 2,
         least_span: 1.0,
-        axis: Axis::AboutFemur(Z),
-        moves: MovedBody::Femur,
+        axis: Axis::AboutCounterface(Z),
+        moves: MovedBody::Counterface,
         settling: Settling::Driven,
         motion: Some(&FLEXION_MOTION),
         load: Loading::None,
@@ -300,7 +300,7 @@ mod tests {
     #[test]
     fn axes_are_unit_vectors() {
         for joint in &KNEE.joints {
-            let (Axis::Along(axis) | Axis::About(axis) | Axis::AboutFemur(axis)) = joint.axis;
+            let (Axis::Along(axis) | Axis::About(axis) | Axis::AboutCounterface(axis)) = joint.axis;
             assert_eq!(axis.iter().map(|x| x * x).sum::<f64>(), 1.0);
         }
     }

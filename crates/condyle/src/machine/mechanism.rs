@@ -45,7 +45,7 @@ impl JointKind {
 pub struct JointIndex(usize);
 
 impl JointIndex {
-    /// The six places, from the insert to the femur.
+    /// The six places, from the insert to the counterface.
     pub const ALL: [Self; 6] = [Self(0), Self(1), Self(2), Self(3), Self(4), Self(5)];
 
     /// Returns the place as a number, from 0 at the insert.
@@ -122,17 +122,17 @@ pub enum Axis {
     /// About a direction, through the point of the insert frame that the machine sets in
     /// [`Joint::axis_point_mm`](super::Joint).
     About([f64; 3]),
-    /// About a direction, through the femur's own axis point; the joints nearer to the insert carry it.
-    AboutFemur([f64; 3]),
+    /// About a direction, through the counterface's own axis point; the joints nearer to the insert carry it.
+    AboutCounterface([f64; 3]),
 }
 
-/// The body that a joint moves. A joint of the insert moves the femur the opposite way relative to it.
+/// The body that a joint moves. A joint of the insert moves the counterface the opposite way relative to it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum MovedBody {
     /// The insert.
     Insert,
-    /// The femur.
-    Femur,
+    /// The counterface.
+    Counterface,
 }
 
 /// The state of a joint while the machine settles under the load at the start of the cycle.
@@ -166,7 +166,7 @@ pub struct JointDescription {
     pub name: &'static str,
     /// Column in files of motions: the name and the unit.
     pub column: &'static str,
-    /// Short name in messages, such as `AP`.
+    /// Short name in messages.
     pub symbol: &'static str,
     /// Long name in messages, such as `AnteroPosterior`.
     pub long_name: &'static str,
@@ -201,7 +201,7 @@ impl JointDescription {
     pub const fn kind(&self) -> JointKind {
         match self.axis {
             Axis::Along(_) => JointKind::Translation,
-            Axis::About(_) | Axis::AboutFemur(_) => JointKind::Rotation,
+            Axis::About(_) | Axis::AboutCounterface(_) => JointKind::Rotation,
         }
     }
 
@@ -255,7 +255,7 @@ pub enum CycleQuantity {
 /// A joint of the body whose replacement a machine tests.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum TestedJoint {
-    /// A knee.
+    /// Knee.
     Knee,
     /// A hip.
     Hip,
@@ -289,16 +289,16 @@ impl TestedJoint {
     }
 }
 
-/// The description of six joints between insert and femur, of the regions and of the columns of results.
+/// The description of six joints between insert and counterface, of the regions and of the columns of results.
 ///
-/// The joints stand in the order of the chain: the first carries the insert itself, the last the femur. A
+/// The joints stand in the order of the chain: the first carries the insert itself, the last the counterface. A
 /// joint about an axis that is fixed in the insert frame stands before every joint that is zeroed where the
 /// machine settles, so that the axis stays where it is.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Mechanism {
     /// The joint of the body whose replacement it tests.
     pub tests: TestedJoint,
-    /// The joints, from the insert to the femur.
+    /// The joints, from the insert to the counterface.
     pub joints: [JointDescription; 6],
     /// The joints in the order in which files list them.
     pub in_files: &'static [JointIndex],

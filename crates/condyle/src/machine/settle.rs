@@ -1,4 +1,4 @@
-//! The neutral position of a machine: where the extended femur settles under the vertical load.
+//! The neutral position of a machine: where the extended counterface settles under the vertical load.
 
 use super::{
     Chain, Drive, Joint, JointKind, Kinematics, Machine, Settling, SolverCounters, Waveform,
@@ -17,7 +17,7 @@ const DAMPING_CHANGE: (f64, f64) = (0.3, 2.0);
 /// the position.
 const TURNING_LEVER_MM: f64 = 30.0;
 
-/// The femur did not come to rest.
+/// The counterface did not come to rest.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct NotSettled {
     /// Positions at the last iteration, mm and rad, in the order of the chain.
@@ -35,7 +35,7 @@ pub struct NotSettled {
 /// continuation) also converges from a first touch on one side.
 ///
 /// # Errors
-/// If the femur does not come to rest, for instance because it slides off.
+/// If the counterface does not come to rest, for instance because it slides off.
 pub fn settle(
     machine: &Machine,
     chain: &Chain,

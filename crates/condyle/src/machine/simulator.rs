@@ -18,7 +18,7 @@ const MAX_TURNS: u32 = 20;
 
 pub(super) struct Stepped {
     pub state: MachineState,
-    /// The femur's motion past the insert.
+    /// The counterface's motion past the insert.
     pub motion: RelativeMotion,
     /// The solution, if it was one implicit step.
     pub warm_start: Option<WarmStart>,

@@ -20,9 +20,9 @@ pub(super) const KIND: WearLawKind = WearLawKind {
 };
 
 /// Archard's law: $\text{depth per cycle} = K_w \sum p |\Delta s|$, with $p$ the pressure and $\Delta s$ the
-/// slip of the femur past the node in each increment.
+/// slip of the counterface past the node in each increment.
 ///
-/// Source: Archard 1953; for knees Knight 2007 with $K_w$ = 2.64e-7 mm3/(N m).
+/// Source: Archard 1953; for inserts Knight 2007 with $K_w$ = 2.64e-7 mm3/(N m).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Archard {
     /// Wear factor Kw, mm3 of wear for each newton and metre of sliding.

@@ -30,7 +30,7 @@ impl CrossLinked {
         source: "abdelgaied2013",
         known: Known::Read,
     };
-    /// About 100 kGy: the middle of 0.14 to 0.27, measured on knees of two designs in simulators (Haider 2012).
+    /// About 100 kGy: the middle of 0.14 to 0.27, measured on inserts of two designs in simulators (Haider 2012).
     pub const HIGH: Parameter = Parameter {
         name: NAME,
         about: ABOUT,

@@ -1,4 +1,4 @@
-//! Powers of pressure and cross-shear, calibrated on pins, hips and knees.
+//! Powers of pressure and cross-shear, calibrated on tests in laboratories.
 
 use std::sync::Arc;
 
@@ -82,7 +82,7 @@ pub(super) const KIND: WearLawKind = WearLawKind {
 };
 
 /// The values that its fitted constants share: defaults are rounded medians of the posterior that the book documents
-/// under "One law for pins, hips and knees".
+/// with the prediction.
 const FITTED: Parameter = Parameter {
     name: "",
     about: "",

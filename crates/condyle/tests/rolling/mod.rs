@@ -8,7 +8,7 @@ use condyle::{
         Backside, Bodies, ContactLaw, ContactMemory, ContactModel, ContactState, Deformable,
         Settled,
     },
-    geometry::{ArticulatingSurface, Cylinder, FemoralSurface, Insert, Meshing, flat_insert},
+    geometry::{ArticulatingSurface, Counterface, Cylinder, Insert, Meshing, flat_insert},
     spatial::{Pose, RelativeMotion},
 };
 use condyle_fem::{Elastic, ElasticPlastic, Hardening};
@@ -48,7 +48,7 @@ fn rolled_on() -> Insert {
 
 /// A cylinder that rolls over a block again and again.
 pub struct Rolling {
-    femur: FemoralSurface,
+    counterface: Counterface,
     insert: Insert,
     surface: ArticulatingSurface,
     law: Deformable,
@@ -61,7 +61,7 @@ impl Rolling {
         let elastic = Elastic::new(MODULUS_MPA, POISSON).unwrap();
         let modulus_mpa = MODULUS_MPA / (1.0 - POISSON * POISSON);
         Self {
-            femur: FemoralSurface::Cylinder(Cylinder {
+            counterface: Counterface::Cylinder(Cylinder {
                 radius_mm: RADIUS_MM,
             }),
             surface: insert.surface(),
@@ -106,7 +106,7 @@ impl Rolling {
 
     fn pass(&self, state: ContactState) -> ContactState {
         let bodies = Bodies {
-            femur: &self.femur,
+            counterface: &self.counterface,
             insert: &self.insert,
             surface: &self.surface,
         };

@@ -7,7 +7,7 @@ use std::{fs, io, path::Path};
 use condyle::{
     Mat3, Vec3,
     contact::Bodies,
-    geometry::{FemoralSurface, Meshing, TriangleMesh, flat_insert},
+    geometry::{Counterface, Meshing, TriangleMesh, flat_insert},
     spatial::Pose,
 };
 use condyle_fem::{Elastic, HexMesh};
@@ -90,7 +90,7 @@ fn cross_the_prescribed_facets_lie_on_the_femur_and_face_outwards() {
     let (pressed, deck) = pressed(&case);
     let (row, pose) = pressed.at(PERCENT).unwrap();
     assert!((row.percent - PERCENT).abs() < 1.0);
-    let (femur, insert) = (pressed.unworn().femur(), pressed.unworn().insert());
+    let (femur, insert) = (pressed.unworn().counterface(), pressed.unworn().insert());
     let (written, mesh) = (hexahedra(&deck), insert.mesh());
     assert!(written.hexes == mesh.hexes && written.nodes.len() == mesh.nodes.len());
     // A field has room for thirteen digits at least.
@@ -108,7 +108,7 @@ fn cross_the_prescribed_facets_lie_on_the_femur_and_face_outwards() {
         // The outer face, S2 of a wedge, is 4-6-5.
         let outer = [corners[3], corners[5], corners[4]];
         for corner in outer {
-            let gap_mm = femur.gap_mm(&pose.to_femur(&(corner + way)));
+            let gap_mm = femur.gap_mm(&pose.to_counterface(&(corner + way)));
             assert!(gap_mm.abs() < 1e-5, "{gap_mm}");
         }
         let inward = (outer[1] - outer[0]).cross(&(outer[2] - outer[0]));
@@ -119,10 +119,9 @@ fn cross_the_prescribed_facets_lie_on_the_femur_and_face_outwards() {
             "inside out"
         );
     }
-    let nearest = insert
-        .surface_nodes()
-        .iter()
-        .map(|&node| femur.gap_mm(&pose.to_femur(&(insert.mesh().nodes[node as usize] + way))));
+    let nearest = insert.surface_nodes().iter().map(|&node| {
+        femur.gap_mm(&pose.to_counterface(&(insert.mesh().nodes[node as usize] + way)))
+    });
     // Before it comes down nothing touches: the insert seen from the femur where that begins.
     assert!(nearest.fold(f64::INFINITY, f64::min) > 0.0);
 }
@@ -132,12 +131,12 @@ fn nodes_in_contact_have_facets_over_them() {
     let case = deformable("");
     let (pressed, deck) = pressed(&case);
     let (_, pose) = pressed.at(PERCENT).unwrap();
-    let (femur, insert) = (pressed.unworn().femur(), pressed.unworn().insert());
+    let (femur, insert) = (pressed.unworn().counterface(), pressed.unworn().insert());
     let way = way_mm(&deck);
     let facets = deck.corners("FEMUR");
     let nodes = insert.surface_nodes().iter();
     let nodes = nodes.map(|&node| insert.mesh().nodes[node as usize]);
-    let touching = nodes.filter(|node| femur.gap_mm(&pose.to_femur(node)) < 0.0);
+    let touching = nodes.filter(|node| femur.gap_mm(&pose.to_counterface(node)) < 0.0);
     let mut count = 0;
     for node in touching {
         let near = |corners: &Vec<Vec3>| (corners[3] + way - node).norm() < 0.5;
@@ -196,13 +195,13 @@ fn slid(by_mm: Vec3) -> Deck {
         layers: 2,
     };
     let insert = flat_insert((8.0, 8.0), 4.0, meshing).unwrap();
-    let femur = FemoralSurface::sphere(24.0);
+    let femur = Counterface::sphere(24.0);
     let surface = insert.surface();
     let pressed = Pressed {
         title: "Ball on a block",
         note: "",
         bodies: Bodies {
-            femur: &femur,
+            counterface: &femur,
             insert: &insert,
             surface: &surface,
         },

@@ -66,7 +66,7 @@ impl Case {
         let comparison_laws = self.wear.comparison_laws().into_iter().map(as_linked);
         let test = WearTest {
             contact: self.contact_law(&insert, keep, bodies)?,
-            femur: Arc::clone(&femur.surface),
+            counterface: Arc::clone(&femur.surface),
             flexion_axis_mm: femur.flexion_axis_mm,
             start_mm: femur.start_mm,
             start_height_mm: match &self.insert.shape {

@@ -6,8 +6,8 @@ use std::sync::Arc;
 use condyle::Vec3;
 use condyle::evolve::WearTest;
 use condyle::geometry::{
-    Cylinder, FemoralSurface, GenericFemur, GenericFemurShape, PlacedFemur, SmoothField,
-    TriangleMesh, posterior_arc_centre_mm,
+    Counterface, Cylinder, GenericFemur, GenericFemurShape, PlacedFemur, SmoothField, TriangleMesh,
+    posterior_arc_centre_mm,
 };
 use condyle_mesh::formats::surface_bytes;
 use condyle_mesh::repair::CheckedMesh;
@@ -24,7 +24,7 @@ use crate::case::run_options::Limits;
 
 /// A femoral surface with its flexion axis and the start of that axis over the insert.
 pub(super) struct BuiltFemur {
-    pub surface: Arc<FemoralSurface>,
+    pub surface: Arc<Counterface>,
     /// (x, y) in the femoral frame.
     pub flexion_axis_mm: (f64, f64),
     /// (x, z) of the flexion axis in the insert frame.
@@ -57,26 +57,26 @@ impl Case {
             FemurShape::Generic(femur) => {
                 let generic = GenericFemur::new(femur.shape);
                 let surface = match placement.motion((0.0, 0.0)) {
-                    Some(motion) => FemoralSurface::Placed(PlacedFemur::new(
+                    Some(motion) => Counterface::Placed(PlacedFemur::new(
                         generic,
                         motion.rotation,
                         motion.shift_mm,
                     )),
-                    None => FemoralSurface::Generic(generic),
+                    None => Counterface::Generic(generic),
                 };
                 let over_the_dish_mm = over_the_dish(&femur.shape, flexion_rad);
                 at_origin(surface, femur.start_mm, over_the_dish_mm)
             }
             FemurShape::Sphere(femur) => {
-                let surface = FemoralSurface::sphere(femur.radius_mm);
+                let surface = Counterface::sphere(femur.radius_mm);
                 at_origin(surface, femur.start_mm, (0.0, 0.0))
             }
             FemurShape::Cylinder(femur) => {
                 let radius_mm = femur.radius_mm;
-                let surface = FemoralSurface::Cylinder(Cylinder { radius_mm });
+                let surface = Counterface::Cylinder(Cylinder { radius_mm });
                 at_origin(surface, femur.start_mm, (0.0, 0.0))
             }
-            FemurShape::Plane => at_origin(FemoralSurface::Plane, None, (0.0, 0.0)),
+            FemurShape::Plane => at_origin(Counterface::Plane, None, (0.0, 0.0)),
             FemurShape::Mesh(femur) => {
                 let placing = Placing::new(femur.length_unit, &femur.axes, side)?;
                 let PreparedFemur { shell, field } =
@@ -88,7 +88,7 @@ impl Case {
                 let flexion_axis_mm = femur.axis_mm(&shell.mesh);
                 let (x, z) = on_the_right(femur.start_mm.unwrap_or_default(), side);
                 BuiltFemur {
-                    surface: Arc::new(FemoralSurface::Mesh(field)),
+                    surface: Arc::new(Counterface::Mesh(field)),
                     flexion_axis_mm,
                     start_mm: (x + axis_ahead_mm(flexion_axis_mm, flexion_rad), z),
                 }
@@ -185,15 +185,15 @@ impl Case {
     /// # Errors
     /// A mesh that cannot be read again.
     pub fn femur_triangles(&self, test: &WearTest, about: f64) -> Result<TriangleMesh, BuildError> {
-        match (&self.femur.shape, test.femur.as_ref()) {
+        match (&self.femur.shape, test.counterface.as_ref()) {
             (FemurShape::Mesh(femur), _) => {
                 let placing = Placing::new(femur.length_unit, &femur.axes, self.heading.side)?;
                 let checks = checks_of(Body::Femur, None);
                 let shell = shell(&femur.file, &placing, checks, &mut Vec::new())?;
                 Ok(femur.moved(shell.mesh, &self.femur.placement))
             }
-            (_, FemoralSurface::Generic(femur)) => Ok(generic(femur, about)),
-            (_, FemoralSurface::Placed(placed)) => {
+            (_, Counterface::Generic(femur)) => Ok(generic(femur, about)),
+            (_, Counterface::Placed(placed)) => {
                 Ok(generic(placed.femur(), about).mapped(|point| placed.to_frame(point)))
             }
             (FemurShape::Sphere(ball), _) => Ok(sphere(ball.radius_mm, about)),

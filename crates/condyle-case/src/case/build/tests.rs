@@ -5,9 +5,7 @@ use std::path::Path;
 
 use condyle::Vec3;
 use condyle::evolve::Schedule;
-use condyle::geometry::{
-    FemoralSurface, GenericFemur, GenericFemurShape, SmoothField, TriangleMesh,
-};
+use condyle::geometry::{Counterface, GenericFemur, GenericFemurShape, SmoothField, TriangleMesh};
 use tempfile::TempDir;
 
 use super::assemble::Built;
@@ -158,8 +156,8 @@ fn with_mesh_femur(folder: &TempDir, side: &str) -> Case {
 }
 
 fn field(built: &Built) -> &SmoothField {
-    match built.test.femur.as_ref() {
-        FemoralSurface::Mesh(field) => field,
+    match built.test.counterface.as_ref() {
+        Counterface::Mesh(field) => field,
         other => panic!("{other:?}"),
     }
 }
@@ -330,7 +328,7 @@ fn open_femur_that_faces_up_is_turned_to_face_down() {
     )
     .unwrap();
     assert_eq!(built.warnings.len(), 1);
-    assert!(built.test.femur.gap_mm(&Vec3::new(5.4, -23.5, 23.0)) > 0.0);
+    assert!(built.test.counterface.gap_mm(&Vec3::new(5.4, -23.5, 23.0)) > 0.0);
     let (x, y) = built.test.flexion_axis_mm;
     assert!(x.abs() < 0.5 && y.abs() < 0.5, "{x} {y}");
 }

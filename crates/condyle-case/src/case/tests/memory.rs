@@ -4,7 +4,7 @@ use std::fs;
 use std::path::Path;
 
 use condyle::evolve::WearTest;
-use condyle::geometry::{FemoralSurface, GenericFemur, GenericFemurShape, TriangleMesh};
+use condyle::geometry::{Counterface, GenericFemur, GenericFemurShape, TriangleMesh};
 
 use super::assert_shows;
 use crate::case::{Built, Case, CaseReader};
@@ -83,8 +83,8 @@ fn a_case_from_memory_equals_that_from_the_disk() {
 }
 
 fn assert_same_test(here: &WearTest, there: &WearTest) {
-    let field = |test: &WearTest| match test.femur.as_ref() {
-        FemoralSurface::Mesh(field) => field.clone(),
+    let field = |test: &WearTest| match test.counterface.as_ref() {
+        Counterface::Mesh(field) => field.clone(),
         other => panic!("{other:?}"),
     };
     assert!(field(here) == field(there));

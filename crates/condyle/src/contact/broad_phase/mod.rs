@@ -1,4 +1,4 @@
-//! The broad phase: the blocks of nodes that may touch. Only under these does the contact sample the femur.
+//! The broad phase: the blocks of nodes that may touch. Only under these does the contact sample the counterface.
 
 mod separations;
 mod share_block;
@@ -16,18 +16,18 @@ use separations::{BlockPlaces, BlockWear, LastWear, Separations};
 pub enum Search {
     /// Every block is always a candidate: the plain path, and the reference.
     BruteForce,
-    /// A block is a candidate once the femur can have come near it, by bounds that are carried from pose to pose.
+    /// A block is a candidate once the counterface can have come near it, by bounds that are carried from pose to pose.
     #[default]
     Coherent,
 }
 
-/// Finds the blocks that may touch under a femur at a pose.
+/// Finds the blocks that may touch under a counterface at a pose.
 ///
-/// The candidates may include blocks that do not touch, and leave out none that does. The contact samples the femur
+/// The candidates may include blocks that do not touch, and leave out none that does. The contact samples the counterface
 /// under every candidate and reports whether it touches or is apart.
 ///
 /// By brute force every block is a candidate. The coherent search keeps a lower bound on the separation of every block
-/// at every increment of the cycle. One cycle later, and with a little wear, the femur is within tenths of a millimetre
+/// at every increment of the cycle. One cycle later, and with a little wear, the counterface is within tenths of a millimetre
 /// of where it was, so every increment starts from the bounds found there before; where these do not suffice, from those
 /// of the increment before. Hardly any block is then a candidate but those that touch.
 pub(crate) struct BroadPhase {

@@ -1,4 +1,4 @@
-//! Lower bounds on the separation of every block, updated as the femur moves.
+//! Lower bounds on the separation of every block, updated as the counterface moves.
 
 use super::share_block::ShareBlock;
 use crate::{
@@ -17,7 +17,7 @@ const FARTHEST_MM: f64 = 16.0;
 
 type Numbers = [f32; LANES_F32];
 
-/// Lower bounds on the separation of every block at a pose of the femur, in single precision, eight blocks at a time.
+/// Lower bounds on the separation of every block at a pose of the counterface, in single precision, eight blocks at a time.
 #[derive(Clone)]
 pub(crate) struct Separations {
     at: Option<Pose>,
@@ -36,18 +36,18 @@ struct Eight {
     radius_mm: Numbers,
 }
 
-/// The motion of the insert's points in the femoral frame from one pose to another.
-struct FemurStep {
+/// The motion of the insert's points in the counterface frame from one pose to another.
+struct CounterfaceStep {
     /// Change of a place by its coordinates x, y and z.
     turn: [Vector<F32x8>; 3],
     shift: Vector<F32x8>,
     turn_rad: F32x8,
 }
 
-impl FemurStep {
+impl CounterfaceStep {
     fn between(from: &Pose, to: &Pose) -> Self {
         let turn: Mat3 = (to.rotation - from.rotation).transpose();
-        let shift = to.to_femur(&Vec3::zeros()) - from.to_femur(&Vec3::zeros());
+        let shift = to.to_counterface(&Vec3::zeros()) - from.to_counterface(&Vec3::zeros());
         Self {
             turn: columns(&turn),
             shift: shift.map(F32x8::splat),
@@ -78,7 +78,7 @@ fn columns(matrix: &Mat3) -> [Vector<F32x8>; 3] {
 }
 
 impl Eight {
-    /// Blocks that touch: they stay candidates wherever the femur moves.
+    /// Blocks that touch: they stay candidates wherever the counterface moves.
     const TOUCHING: Self = Self {
         clear_mm: [f32::NEG_INFINITY; LANES_F32],
         slope: [[0.0; LANES_F32]; 3],
@@ -86,7 +86,7 @@ impl Eight {
         radius_mm: [f32::INFINITY; LANES_F32],
     };
 
-    /// Updates the bounds for a motion of the blocks' middles in the femoral frame, which may bring them nearer by a
+    /// Updates the bounds for a motion of the blocks' middles in the counterface frame, which may bring them nearer by a
     /// further `lost_mm`, and returns a bit for each block that may then touch.
     #[inline(always)]
     fn carry(&mut self, motion: &Vector<F32x8>, lost_mm: F32x8) -> u32 {
@@ -116,7 +116,7 @@ impl Separations {
         }
     }
 
-    /// Carries the bounds to another pose of the femur and to the last wear, and lists the blocks that may touch then,
+    /// Carries the bounds to another pose of the counterface and to the last wear, and lists the blocks that may touch then,
     /// ascending.
     ///
     /// If a block may touch by its own bound but is apart by the bound of another increment, it takes the latter,
@@ -132,11 +132,11 @@ impl Separations {
         let neighbour = other.filter(|other| other.worn == last.number);
         let neighbour = neighbour.and_then(|other| {
             let at = other.at.as_ref()?;
-            Some((&other.eights, FemurStep::between(at, to)))
+            Some((&other.eights, CounterfaceStep::between(at, to)))
         });
         // Before the first pose there are no bounds to carry, and the step is none.
         let from = self.at.replace(*to).unwrap_or(*to);
-        let step = FemurStep::between(&from, to);
+        let step = CounterfaceStep::between(&from, to);
         let axes = columns(&from.rotation);
         let wear = (self.worn < last.number).then_some(&last.eights);
         self.worn = last.number;
@@ -190,7 +190,7 @@ impl Separations {
         eight.radius_mm[i] = bound.radius_mm as f32;
     }
 
-    /// Marks a block as touching: it stays a candidate wherever the femur moves.
+    /// Marks a block as touching: it stays a candidate wherever the counterface moves.
     #[inline(always)]
     pub fn touches(&mut self, block: u32) {
         let (eight, i) = self.place_of(block);
@@ -205,11 +205,11 @@ impl Separations {
     }
 }
 
-/// The places of eight blocks, as far as the change of their separation with a motion of the femur depends on them.
+/// The places of eight blocks, as far as the change of their separation with a motion of the counterface depends on them.
 pub(crate) struct BlockPlaces {
     /// The means of each block's four centres, mm.
     pub middles: Vector<F32x8>,
-    /// The loss of separation by a turn of the femur, mm/rad: the distance of a centre from the middle and the half
+    /// The loss of separation by a turn of the counterface, mm/rad: the distance of a centre from the middle and the half
     /// edges.
     pub levers_mm: F32x8,
 }
@@ -302,17 +302,17 @@ const HOLDS_MM: f64 = 1.0;
 /// Error bound of an extrapolated sample, for gap and reach together, mm.
 const EXTRAPOLATED_MM: f64 = 1e-4;
 
-/// A bound on how far a block of shares is from touching, as a function of how the femur moves on.
+/// A bound on how far a block of shares is from touching, as a function of how the counterface moves on.
 ///
 /// A gap g with gradient G and no second derivative below -h is, a motion d on, at least g + G . d - h d^2/2. The
 /// reach of a share, the overclosure that its highest corner has above its middle, grows by its half edges times the
-/// turn of the normal: K d on the femur, and the femur's own turn. One bound serves all shares of the block: it uses
+/// turn of the normal: K d on the counterface, and the counterface's own turn. One bound serves all shares of the block: it uses
 /// the mean of their gradients, for the motion of their middle.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct SeparationBound {
     /// Gap less reach, less the largest jump of the mean over a share between two arcs, mm.
     pub clear_mm: f64,
-    /// Gradient of the gap by the middle's place in the femoral frame.
+    /// Gradient of the gap by the middle's place in the counterface frame.
     pub slope: Vec3,
     /// The further loss with each millimetre of motion.
     pub loss: f64,
@@ -321,7 +321,7 @@ pub(crate) struct SeparationBound {
 }
 
 impl SeparationBound {
-    /// Creates the bound for shares with a reach of `reach_mm` under a femur sampled as `sample`, whose gaps are
+    /// Creates the bound for shares with a reach of `reach_mm` under a counterface sampled as `sample`, whose gaps are
     /// larger than the reach.
     #[inline(always)]
     pub fn new(

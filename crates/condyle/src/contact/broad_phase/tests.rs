@@ -6,14 +6,14 @@ use crate::{
     Mat3, Vec3, Vector,
     contact::{broad_phase::ShareBlock, contact_patch::CachedSample, foundation::EdgeSlopes},
     geometry::{
-        FemoralSurface, GenericFemur, GenericFemurShape, GenericInsertShape, Insert, Meshing,
+        Counterface, GenericFemur, GenericFemurShape, GenericInsertShape, Insert, Meshing,
         SmoothField, TriangleMesh, flat_insert,
     },
     number::{F64x4, LANES, Number, dot},
     spatial::{Pose, Pose4},
 };
 
-/// Farthest step of the femur, mm and rad.
+/// Farthest step of the counterface, mm and rad.
 const FARTHEST: (f64, f64) = (3.0, 0.1);
 
 /// Repeatable numbers in -1..1.
@@ -73,13 +73,13 @@ fn bumpy() -> TriangleMesh {
 
 /// A block as a search would find it: its sample, its reach, and whether it is apart.
 fn sampled_near(
-    femur: &FemoralSurface,
+    counterface: &Counterface,
     block: &ShareBlock,
     pose: &Pose,
 ) -> (CachedSample, F64x4, bool) {
     let pose = Pose4::new(pose);
-    let place = pose.to_femur(&block.centre);
-    let cached = CachedSample::at(femur, place, block.spread_mm2);
+    let place = pose.to_counterface(&block.centre);
+    let cached = CachedSample::at(counterface, place, block.spread_mm2);
     let normal = pose.turn_to_insert(&cached.sample.normal);
     let slopes = EdgeSlopes::new([dot(&normal, &block.edge_a), dot(&normal, &block.edge_b)]);
     let reach_mm = slopes.reach_mm();
@@ -89,10 +89,10 @@ fn sampled_near(
 
 /// Smallest gap at the corners of a block's shares, less how much the mean over a share lies above the
 /// gap in its middle.
-fn least_corner_mm(femur: &FemoralSurface, block: &ShareBlock, pose: &Pose) -> f64 {
+fn least_corner_mm(counterface: &Counterface, block: &ShareBlock, pose: &Pose) -> f64 {
     let pose4 = Pose4::new(pose);
-    let gap_at = |place: &Vector<F64x4>| femur.gap_mm(&pose4.to_femur(place));
-    let (cached, ..) = sampled_near(femur, block, pose);
+    let gap_at = |place: &Vector<F64x4>| counterface.gap_mm(&pose4.to_counterface(place));
+    let (cached, ..) = sampled_near(counterface, block, pose);
     let above_mm = cached.sample.gap_mm - gap_at(&block.centre);
     let [half_a, half_b] = [&block.edge_a, &block.edge_b].map(|edge| edge * F64x4::splat(0.5));
     let corners = [
@@ -110,7 +110,7 @@ fn turned(turn: &Vec3) -> Mat3 {
 }
 
 /// Separations after every block was sampled.
-fn searched(femur: &FemoralSurface, blocks: &[ShareBlock], pose: &Pose) -> Separations {
+fn searched(counterface: &Counterface, blocks: &[ShareBlock], pose: &Pose) -> Separations {
     let mut separations = Separations::new(blocks.len());
     let mut candidates = Vec::new();
     separations.follow(
@@ -122,9 +122,9 @@ fn searched(femur: &FemoralSurface, blocks: &[ShareBlock], pose: &Pose) -> Separ
     );
     assert_eq!(candidates.len(), blocks.len());
     for (number, shares) in (0..).zip(blocks) {
-        let (cached, reach_mm, is_apart) = sampled_near(femur, shares, pose);
+        let (cached, reach_mm, is_apart) = sampled_near(counterface, shares, pose);
         if is_apart {
-            let around = femur.curvature_bounds(&cached.place);
+            let around = counterface.curvature_bounds(&cached.place);
             separations.set(
                 number,
                 &SeparationBound::new(&cached.sample, reach_mm, shares, around),
@@ -136,10 +136,10 @@ fn searched(femur: &FemoralSurface, blocks: &[ShareBlock], pose: &Pose) -> Separ
     separations
 }
 
-/// Steps the femur at random from about `height_mm` over the insert, which wears or is restored at
+/// Steps the counterface at random from about `height_mm` over the insert, which wears or is restored at
 /// two of three steps, and compares what is no candidate then with a search, with the help of another increment
 /// near by. Gives how many blocks were no candidates.
-fn check(femur: &FemoralSurface, insert: impl Fn() -> Insert, height_mm: f64) -> usize {
+fn check(counterface: &Counterface, insert: impl Fn() -> Insert, height_mm: f64) -> usize {
     let shares = |insert: &Insert| ShareBlock::from_shares(insert, &insert.surface());
     let (unworn, worn) = (shares(&insert()), shares(&worn(insert())));
     let mut numbers = Numbers(17);
@@ -151,7 +151,7 @@ fn check(femur: &FemoralSurface, insert: impl Fn() -> Insert, height_mm: f64) ->
             1 => (&unworn, &worn),
             _ => (&worn, &unworn),
         };
-        let mut separations = searched(femur, before, &from);
+        let mut separations = searched(counterface, before, &from);
         let wear = LastWear {
             number: 1,
             eights: BlockWear::between(before, after),
@@ -165,7 +165,7 @@ fn check(femur: &FemoralSurface, insert: impl Fn() -> Insert, height_mm: f64) ->
         alone.follow(&to, &places, &wear, None, &mut candidates);
         let candidates_alone = candidates.len();
         let near_by = Pose::new(to.rotation, to.translation + numbers.vector(0.2));
-        let mut other = searched(femur, after, &near_by);
+        let mut other = searched(counterface, after, &near_by);
         let no_more_wear = LastWear {
             number: 1,
             eights: BlockWear::between(after, after),
@@ -176,8 +176,12 @@ fn check(femur: &FemoralSurface, insert: impl Fn() -> Insert, height_mm: f64) ->
         for (number, block) in (0..).zip(after) {
             if !candidates.contains(&number) {
                 sure += 1;
-                assert!(sampled_near(femur, block, &to).2, "{:?} touch", block.nodes);
-                let corner_mm = least_corner_mm(femur, block, &to);
+                assert!(
+                    sampled_near(counterface, block, &to).2,
+                    "{:?} touch",
+                    block.nodes
+                );
+                let corner_mm = least_corner_mm(counterface, block, &to);
                 assert!(corner_mm > 0.0, "{:?}: {corner_mm}", block.nodes);
             }
         }
@@ -208,10 +212,10 @@ fn what_is_no_candidate_is_apart() {
     };
     let flat = || flat_insert((24.0, 24.0), 9.0, meshing).expect("a plate");
     let spread_mm2 = flat().surface().mean_spread_mm2();
-    let bumpy = FemoralSurface::Mesh(SmoothField::new(&bumpy(), 1)).prepared_for(spread_mm2);
-    let generic = FemoralSurface::Generic(GenericFemur::new(GenericFemurShape::default()));
-    let ball = FemoralSurface::sphere(24.0);
-    // The lowest points of the femurs lie 22.96, 24 and 0.3 mm below their origins.
+    let bumpy = Counterface::Mesh(SmoothField::new(&bumpy(), 1)).prepared_for(spread_mm2);
+    let generic = Counterface::Generic(GenericFemur::new(GenericFemurShape::default()));
+    let ball = Counterface::sphere(24.0);
+    // The lowest points of the counterfaces lie 22.96, 24 and 0.3 mm below their origins.
     assert!(check(&generic, dished, 23.5) > 10 * LANES);
     assert!(check(&ball, flat, 24.5) > 10 * LANES);
     assert!(check(&bumpy, flat, 1.0) > 10 * LANES);

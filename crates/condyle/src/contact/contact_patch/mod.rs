@@ -1,6 +1,6 @@
-//! The contact patch of a rigid femur, whichever law gives the pressure: shares under pressure, their tractions and sums.
+//! The contact patch of a rigid counterface, whichever law gives the pressure: shares under pressure, their tractions and sums.
 //!
-//! `near_blocks` finds the blocks near the femur and samples it there. `traction` holds the tractions on a block and the
+//! `near_blocks` finds the blocks near the counterface and samples it there. `traction` holds the tractions on a block and the
 //! sum of their derivatives. `peak` interpolates between the nodes and looks for the highest pressure there.
 
 mod near_blocks;
@@ -40,7 +40,7 @@ pub(crate) struct ContactPatch<'a> {
 #[derive(Clone, Copy)]
 pub(crate) struct ContactNode {
     pub node: u32,
-    /// The force along the femur's normal, N, and its derivatives by a turn and a shift of the femur in its frame.
+    /// The force along the counterface's normal, N, and its derivatives by a turn and a shift of the counterface in its frame.
     pub force_n: f64,
     pub by_motion: Vec6,
 }
@@ -64,16 +64,16 @@ impl<'a> ContactPatch<'a> {
             pose: Pose::identity(),
             settings,
             directions: blocks.iter().map(directions).collect(),
-            nearby: NearBlocks::new(cache.into_inner(), bodies.femur, blocks, settings),
+            nearby: NearBlocks::new(cache.into_inner(), bodies.counterface, blocks, settings),
         }
     }
 
-    /// Evaluates the `traction` on every near block, and returns the wrench on the insert about the femur's origin, in the
-    /// femoral frame, and the load-weighted mean slip of every region.
+    /// Evaluates the `traction` on every near block, and returns the wrench on the insert about the counterface's origin, in the
+    /// counterface frame, and the load-weighted mean slip of every region.
     pub fn evaluate(
         &mut self,
         mut traction: impl FnMut(usize, &NearBlock, &ShareBlock) -> Tractions4,
-    ) -> (Wrench<body::Insert, body::Femur>, [Vec3; MAX_REGIONS]) {
+    ) -> (Wrench<body::Insert, body::Counterface>, [Vec3; MAX_REGIONS]) {
         let none = F64x4::splat(0.0);
         let mut wrench = [none; 6];
         let mut slips = [(none, zero_vector::<F64x4>()); MAX_REGIONS];
@@ -118,7 +118,7 @@ impl<'a> ContactPatch<'a> {
             sum.add(one, other.unwrap_or(nothing), self.settings.friction);
         }
         let (by_pose, by_twist) = sum.total();
-        let change = FrameChange::to_femur(&self.pose);
+        let change = FrameChange::to_counterface(&self.pose);
         Tangent {
             by_pose: change.derivative_back(&WrenchByTwist::new(by_pose)),
             by_twist: change.derivative_back(&WrenchByTwist::new(by_twist)),
@@ -129,7 +129,7 @@ impl<'a> ContactPatch<'a> {
     ///
     /// Over this short motion pressures change to first order, and covered areas stay constant.
     pub fn touched(&self, motion: &RelativeMotion) -> Vec<TouchedNode> {
-        let change = FrameChange::to_femur(&self.pose);
+        let change = FrameChange::to_counterface(&self.pose);
         let moved = Twist4::new(&change.twist(&Twist::between(&self.pose, &motion.pose)));
         let twist = Twist4::new(&change.twist(&motion.twist));
         let pose = Pose4::new(&self.pose);
@@ -172,8 +172,8 @@ impl<'a> ContactPatch<'a> {
         touched
     }
 
-    /// Returns the forces on the nodes in contact, extrapolated over a short motion of the femur since the response.
-    pub fn nodes(&self, moved: &Twist<body::Femur, body::Femur>) -> Vec<ContactNode> {
+    /// Returns the forces on the nodes in contact, extrapolated over a short motion of the counterface since the response.
+    pub fn nodes(&self, moved: &Twist<body::Counterface, body::Counterface>) -> Vec<ContactNode> {
         let mut nodes = Vec::new();
         for (near, tractions) in self.near.iter().zip(&self.tractions) {
             let shares = &self.nearby.blocks[near.block as usize];

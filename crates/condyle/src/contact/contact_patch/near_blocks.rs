@@ -1,4 +1,4 @@
-//! The blocks of shares near the femur, each with its sample of it.
+//! The blocks of shares near the counterface, each with its sample of it.
 
 use crate::{
     Vector,
@@ -6,7 +6,7 @@ use crate::{
         broad_phase::{BroadPhase, SeparationBound, ShareBlock},
         law::ContactSettings,
     },
-    geometry::{FemoralSurface, SurfaceSample},
+    geometry::{Counterface, SurfaceSample},
     number::{F64x4, Number, dot},
     spatial::{Pose, Pose4},
 };
@@ -22,35 +22,35 @@ pub(crate) struct NearCache {
     broad_phase: BroadPhase,
 }
 
-/// Finds the blocks of shares within reach of the femur.
+/// Finds the blocks of shares within reach of the counterface.
 ///
 /// Invariant: the result depends on the pose alone, except for extrapolated samples.
 pub(crate) struct NearBlocks<'a> {
-    femur: &'a FemoralSurface,
+    counterface: &'a Counterface,
     pub blocks: Vec<ShareBlock>,
     pub broad_phase: BroadPhase,
     /// Motion up to which a sample is extrapolated, mm.
     reuse_mm: f64,
-    /// The last sample of the femur under every block, and the number of the last search at which the block was near.
+    /// The last sample of the counterface under every block, and the number of the last search at which the block was near.
     cached: Vec<CachedSample>,
     near_at: Vec<u64>,
     /// The number of the last search: the first is 2, and no block was near at the one before it.
     number: u64,
-    /// The blocks that may be near, and the places of their centres in the femoral frame.
+    /// The blocks that may be near, and the places of their centres in the counterface frame.
     candidates: Vec<(u32, Vector<F64x4>)>,
 }
 
 impl<'a> NearBlocks<'a> {
     /// Prepares the search among `blocks`; faster with the cache of a contact of the same insert, less worn, under the
-    /// same femur.
+    /// same counterface.
     pub fn new(
         cache: Option<NearCache>,
-        femur: &'a FemoralSurface,
+        counterface: &'a Counterface,
         blocks: Vec<ShareBlock>,
         settings: ContactSettings,
     ) -> Self {
         Self {
-            femur,
+            counterface,
             broad_phase: match cache {
                 Some(cache) if cache.broad_phase.search == settings.search => {
                     cache.broad_phase.worn(&cache.blocks, &blocks)
@@ -87,9 +87,9 @@ impl<'a> NearBlocks<'a> {
         self.candidates.clear();
         for &block in self.broad_phase.candidates(pose) {
             let centre = &self.blocks[block as usize].centre;
-            self.candidates.push((block, pose4.to_femur(centre)));
+            self.candidates.push((block, pose4.to_counterface(centre)));
         }
-        let femur = self.femur;
+        let counterface = self.counterface;
         self.number += 1;
         for &(block, place) in &self.candidates {
             let at = block as usize;
@@ -104,12 +104,12 @@ impl<'a> NearBlocks<'a> {
                 let sample = last.sample.moved(&motion);
                 CachedSample { place, sample }
             } else {
-                CachedSample::at(femur, place, shares.spread_mm2)
+                CachedSample::at(counterface, place, shares.spread_mm2)
             };
             let (reach_mm, known) = reach(&cached, shares);
             if (cached.sample.gap_mm - reach_mm).least() > 0.0 {
                 self.broad_phase.is_apart(block, || {
-                    let curvature = femur.curvature_bounds(&place);
+                    let curvature = counterface.curvature_bounds(&place);
                     SeparationBound::new(&cached.sample, reach_mm, shares, curvature)
                 });
             } else {
@@ -126,10 +126,10 @@ impl<'a> NearBlocks<'a> {
     }
 }
 
-/// A sample of the femur under a block of shares.
+/// A sample of the counterface under a block of shares.
 #[derive(Clone, Copy)]
 pub(crate) struct CachedSample {
-    /// Places of the shares' centres in the femoral frame, p, mm.
+    /// Places of the shares' centres in the counterface frame, p, mm.
     pub place: Vector<F64x4>,
     pub sample: SurfaceSample<F64x4>,
 }
@@ -144,8 +144,8 @@ impl CachedSample {
     }
 
     #[inline(always)]
-    pub fn at(femur: &FemoralSurface, place: Vector<F64x4>, spread_mm2: F64x4) -> Self {
-        let sample = femur.sample(&place, spread_mm2);
+    pub fn at(counterface: &Counterface, place: Vector<F64x4>, spread_mm2: F64x4) -> Self {
+        let sample = counterface.sample(&place, spread_mm2);
         Self { place, sample }
     }
 }

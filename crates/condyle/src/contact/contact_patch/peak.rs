@@ -9,7 +9,7 @@ use crate::{
 };
 
 /// Relative difference up to which pressures count as equal. Otherwise round-off would decide the order of their
-/// nodes, and a mirrored knee would have a different peak.
+/// nodes, and a mirrored surface would have a different peak.
 const EQUAL: f64 = 1e-9;
 
 /// Smallest number of nodes to which a quadratic is fitted. A node inside a surface and those around it suffice; at
@@ -92,7 +92,7 @@ impl Quadratic {
     ///
     /// With a share's centre u and its spread s, the mean of the quadratic is
     /// constant + slope . u + bend : (u u'/2 + s I), in the sense of
-    /// [`FemoralSurface::sample`](crate::geometry::FemoralSurface::sample). If the means do not determine all six
+    /// [`Counterface::sample`](crate::geometry::Counterface::sample). If the means do not determine all six
     /// coefficients, these are the smallest that fit.
     pub fn fit<'a>(
         around: &Share,

@@ -14,7 +14,7 @@ use crate::{
 /// the tangent needs.
 const STANDSTILL_MM_PER_S: f64 = 1e-9;
 
-/// The tractions on a block of four shares; all vectors in the femoral frame.
+/// The tractions on a block of four shares; all vectors in the counterface frame.
 ///
 /// The force on the insert is f = L (n + mu s t1), L the area times the pressure, t1 the direction
 /// of sliding, s = v_t/w and w = sqrt(v_t^2 + v0^2).
@@ -24,18 +24,18 @@ pub(crate) struct Tractions4 {
     pub area_mm2: F64x4,
     /// Areas of the parts of the shares in contact, mm2.
     pub covered_mm2: F64x4,
-    /// Derivatives of the loads by the motion of the femur's material there, N/mm.
+    /// Derivatives of the loads by the motion of the counterface's material there, N/mm.
     pub load_by_motion: Vector<F64x4>,
-    /// Derivatives of the loads by a turn of the femur about the share, N/rad.
+    /// Derivatives of the loads by a turn of the counterface about the share, N/rad.
     pub load_by_turn: Vector<F64x4>,
     pub sliding: Sliding,
 }
 
-/// The motion of the femur's material past a share.
+/// The motion of the counterface's material past a share.
 pub(crate) struct Sliding {
     /// Velocity along the surface, mm/s; never exactly zero.
     pub velocity_mm_per_s: Vector<F64x4>,
-    /// Velocity of the femur's material out of the femur, c = n . v, mm/s.
+    /// Velocity of the counterface's material out of the counterface, c = n . v, mm/s.
     pub closing_mm_per_s: F64x4,
     /// One over the speed with the tolerance, 1/w, s/mm.
     pub per_regular: F64x4,
@@ -77,7 +77,7 @@ impl Tractions4 {
         }
     }
 
-    /// Returns the change of the loads of shares at `place` by a short motion of the femur, turn and shift in
+    /// Returns the change of the loads of shares at `place` by a short motion of the counterface, turn and shift in
     /// its frame, N.
     #[inline(always)]
     pub fn load_change_n(&self, place: &Vector<F64x4>, motion: &Twist4) -> F64x4 {
@@ -85,7 +85,7 @@ impl Tractions4 {
             + dot(&self.load_by_turn, &motion.angular)
     }
 
-    /// Returns the forces on the insert under a femur with `normal`, N.
+    /// Returns the forces on the insert under a counterface with `normal`, N.
     #[inline(always)]
     pub fn force_n(&self, normal: &Vector<F64x4>, friction: f64) -> Vector<F64x4> {
         let rub = F64x4::splat(friction) * self.sliding.per_regular;
@@ -161,9 +161,9 @@ impl TangentSum {
         }
     }
 
-    /// Adds the derivatives of two blocks of shares: of the wrench about the femur's origin, by pose and by twist.
+    /// Adds the derivatives of two blocks of shares: of the wrench about the counterface's origin, by pose and by twist.
     ///
-    /// A motion xi = (w, v) of the femur moves its material at the share by a = v + w x p and turns
+    /// A motion xi = (w, v) of the counterface moves its material at the share by a = v + w x p and turns
     /// the normal by dn = w x n - K a, which lies in the plane of t1 and t2 = n x t1. With the
     /// wrenches N, T1, T2 of unit forces along n, t1, t2, and the rows R_i xi = -t_i . dn:
     ///

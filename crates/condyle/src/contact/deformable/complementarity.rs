@@ -199,7 +199,7 @@ pub(crate) fn by_panel(
 #[derive(Clone, Copy)]
 pub(crate) struct Candidate {
     pub node: u32,
-    /// The overclosure of the rigid femur and the surface at rest, mm, < 0 if apart; then its derivatives by six motions.
+    /// The overclosure of the rigid counterface and the surface at rest, mm, < 0 if apart; then its derivatives by six motions.
     pub overclosure_mm: Eight,
 }
 
@@ -223,7 +223,7 @@ const NARROW_MM: f64 = 0.01;
 /// Bounds on the gaps of nodes that are not in contact, which make most gaps unnecessary to compute.
 ///
 /// A gap is the sum of many loads, each times its compliance. It cannot have closed since it was last computed if it was
-/// wider than all changes of load since then can have moved its node and the femur can have come nearer; the bounds on the
+/// wider than all changes of load since then can have moved its node and the counterface can have come nearer; the bounds on the
 /// former are known tile by tile. Results do not depend on when a gap was computed last.
 struct Clearances {
     /// For every surface node, its deflection when that was computed last plus the closing of its tile until then, mm.
@@ -295,7 +295,7 @@ impl Clearances {
         self.moved_mm[candidate.node as usize] - candidate.overclosed_mm() < NARROW_MM
     }
 
-    /// Returns whether a node outside the trial set overlaps the femur; `moved_mm` computes its deflection.
+    /// Returns whether a node outside the trial set overlaps the counterface; `moved_mm` computes its deflection.
     ///
     /// It may miss an overlap while a load pulls; the trial set is then wrong anyway.
     fn overlaps(
@@ -306,7 +306,7 @@ impl Clearances {
     ) -> bool {
         let (node, overclosed_mm) = (candidate.node as usize, candidate.overclosed_mm());
         let tile = &self.tiles[compliance.slot(candidate.node)];
-        // Either no load can bulge the surface as far as the femur, or the gap was wider than it can have closed since.
+        // Either no load can bulge the surface as far as the counterface, or the gap was wider than it can have closed since.
         let is_apart = overclosed_mm + tile.most_bulge_mm < 0.0
             || self.wider_mm[node] - overclosed_mm - tile.closed_mm > 0.0;
         if is_apart {

@@ -1,4 +1,4 @@
-//! The contact of a rigid femur with a deformable insert: one evaluation for elastic, yielding, sticking and resting inserts.
+//! The contact of a rigid counterface with a deformable insert: one evaluation for elastic, yielding, sticking and resting inserts.
 //!
 //! To follow an evaluation, start at `respond` of [`DeformableContact`]: candidates and their gaps along the insert's normals,
 //! the loads that keep the bodies just in touch (`complementarity`), and the wrench of these. `settle`, `accept` and
@@ -32,7 +32,7 @@ use crate::{
 /// hundredths of its deflection.
 const MAX_BULGE_MM: f64 = 0.1;
 
-/// The contact of a femur with an elastic insert as it is now.
+/// The contact of a counterface with an elastic insert as it is now.
 ///
 /// Invariant: a response depends on the motion alone, except for extrapolated samples and the tolerance of the
 /// complementarity. The tangent is the derivative of the response as long as no node comes into contact or leaves it,
@@ -43,12 +43,12 @@ pub(crate) struct DeformableContact<'a> {
     patch: ContactPatch<'a>,
     compliance: Arc<Compliance>,
     contact_set: ContactSet,
-    /// The blocks near the femur, the nodes that may touch, and the place of each of these: number among the blocks, and
+    /// The blocks near the counterface, the nodes that may touch, and the place of each of these: number among the blocks, and
     /// lane.
     near: Vec<NearBlock>,
     candidates: Vec<Candidate>,
     lanes: Vec<(usize, usize)>,
-    /// The inward normals of the nodes of every block; for blocks near the femur the change of the gaps along them.
+    /// The inward normals of the nodes of every block; for blocks near the counterface the change of the gaps along them.
     inward: Vec<Vector<F64x4>>,
     along: Vec<AlongNormal>,
     /// Fields of the state that belong to no history, kept for the next contact.
@@ -102,7 +102,7 @@ impl<'a> DeformableContact<'a> {
         let most_mm = MAX_BULGE_MM + lifts_mm.fold(0.0, f64::max);
         let (near, most) = (&mut self.near, F64x4::splat(most_mm));
         // A mesh's field is smoothed over a share; the gap is needed at the node.
-        let prepared_mm2 = F64x4::splat(self.bodies.femur.prepared_spread_mm2());
+        let prepared_mm2 = F64x4::splat(self.bodies.counterface.prepared_spread_mm2());
         near.clear();
         let nearby = &mut self.patch.nearby;
         nearby.find(pose, pose4, |_, _| (most, ()), |block, ()| near.push(block));
@@ -112,7 +112,7 @@ impl<'a> DeformableContact<'a> {
         for (number, near) in self.near.iter().enumerate() {
             let shares = &nearby.blocks[near.block as usize];
             let gap_mm = near.cached.sample.gap_at_point_mm(prepared_mm2);
-            let inward = pose4.turn_to_femur(&self.inward[near.block as usize]);
+            let inward = pose4.turn_to_counterface(&self.inward[near.block as usize]);
             let along = AlongNormal::new(near, &inward);
             let overclosures = along.overclosures_mm(near, gap_mm);
             self.along.push(along);
@@ -181,7 +181,7 @@ impl ContactModel for DeformableContact<'_> {
 
     fn respond(&mut self, motion: &RelativeMotion) -> Response {
         self.patch.pose = motion.pose;
-        let change = FrameChange::to_femur(&motion.pose);
+        let change = FrameChange::to_counterface(&motion.pose);
         let pose = Pose4::new(&motion.pose);
         let twist = Twist4::new(&change.twist(&motion.twist));
         self.find_candidates(&motion.pose, &pose);
@@ -203,7 +203,7 @@ impl ContactModel for DeformableContact<'_> {
         let mut tangent = self.patch.tangent();
         let histories = self.histories.iter();
         for along_surface in histories.filter_map(|history| history.tangent()) {
-            let change = FrameChange::to_femur(&self.patch.pose);
+            let change = FrameChange::to_counterface(&self.patch.pose);
             let by_pose = change.derivative_back(&WrenchByTwist::new(along_surface));
             tangent.by_pose.matrix += by_pose.matrix;
         }
@@ -274,7 +274,7 @@ impl ContactModel for DeformableContact<'_> {
     }
 }
 
-/// Smaller slopes of the gap along the normal are replaced by this one: the femur stands on edge there, and a division by a
+/// Smaller slopes of the gap along the normal are replaced by this one: the counterface stands on edge there, and a division by a
 /// slope near zero would exaggerate the gap.
 const MIN_SLOPE: f64 = 0.3;
 
@@ -282,20 +282,20 @@ const MIN_SLOPE: f64 = 0.3;
 ///
 /// A node that deflects by w along its inward normal m opens the gap g of the bodies at rest to g + s w, with
 /// s = G . m and G the gradient of the gap. So the bodies touch if the node deflects by the overclosure -g/s, and a load
-/// N along m is the component of a force N/s along the femur's normal: both do the same work.
+/// N along m is the component of a force N/s along the counterface's normal: both do the same work.
 struct AlongNormal {
     slope: F64x4,
-    /// Derivatives of the slope by a turn and a shift of the femur.
+    /// Derivatives of the slope by a turn and a shift of the counterface.
     by_motion: [F64x4; 6],
 }
 
 impl AlongNormal {
-    /// From the inward normals of the nodes, in the femoral frame.
+    /// From the inward normals of the nodes, in the counterface frame.
     fn new(near: &NearBlock, inward: &Vector<F64x4>) -> Self {
         let sample = &near.cached.sample;
         let gradient = &sample.gap_gradient;
         let slope = dot(gradient, inward);
-        // A motion a + w x p of the femur's material moves the node by its opposite, and turns m by -w.
+        // A motion a + w x p of the counterface's material moves the node by its opposite, and turns m by -w.
         let bent = sample.curvature.times(inward);
         let turn = cross(&near.cached.place, &bent) + cross(inward, gradient);
         // A slope that is replaced does not depend on the motion.
@@ -308,7 +308,7 @@ impl AlongNormal {
         }
     }
 
-    /// Returns the overclosure of every node, and its derivatives by a turn and a shift of the femur: a motion a + w x p of
+    /// Returns the overclosure of every node, and its derivatives by a turn and a shift of the counterface: a motion a + w x p of
     /// its material changes the gap by -G . (a + w x p).
     fn overclosures_mm(&self, near: &NearBlock, gap_mm: F64x4) -> [Eight; LANES] {
         let gradient = &near.cached.sample.gap_gradient;

@@ -25,7 +25,7 @@ use crate::{
 /// Coulomb friction with stick and slip on an elastic surface.
 ///
 /// A node under the normal load F carries a load T along the surface, |T| <= mu F. While an increment moves the
-/// femur's material past it by D, the surface moves along itself by the change of C T, with the compliance C along
+/// counterface's material past it by D, the surface moves along itself by the change of C T, with the compliance C along
 /// it; D less this motion is the slip. Where there is slip, T has its limit and the direction of the slip. So T
 /// depends on the loads at the start of the increment. The loads of an increment are a trial state, committed once a
 /// step is accepted.
@@ -45,12 +45,12 @@ pub(crate) struct ElasticFriction<'a> {
     start_mm: Vec<f64>,
     /// The loads at the end of the increment before.
     last_end: LoadsAlong,
-    /// The last response: the femur's pose, the nodes in contact, and the loads along the surface.
+    /// The last response: the counterface's pose, the nodes in contact, and the loads along the surface.
     pose: Pose,
     contact: Vec<ContactNode>,
     loaded_nodes: Vec<u32>,
     loads: StickSlip,
-    /// The derivatives of those loads by a motion of the femur in its frame, once the tangent was requested.
+    /// The derivatives of those loads by a motion of the counterface in its frame, once the tangent was requested.
     by_motion: RefCell<Vec<[Eight; 2]>>,
     /// The loads of every node of the surface, and whether it sticks.
     loads_n: Vec<Pair>,
@@ -104,7 +104,7 @@ impl<'a> ElasticFriction<'a> {
         }
     }
 
-    /// Solves for the loads along the surface with the femur at a pose.
+    /// Solves for the loads along the surface with the counterface at a pose.
     fn solve(&mut self, pose: &Pose, contact: Vec<ContactNode>) {
         self.by_motion.get_mut().clear();
         self.set_contact(pose, contact);
@@ -150,7 +150,7 @@ impl<'a> ElasticFriction<'a> {
         contact.chain(held).flat_map(along_surface)
     }
 
-    /// Returns the nodes in contact, each with its limit and the motion of the femur past it since it carried no load;
+    /// Returns the nodes in contact, each with its limit and the motion of the counterface past it since it carried no load;
     /// none before the first accepted step, since there is no motion yet.
     fn friction_nodes(&mut self, compliance: &NearMatrix) -> Vec<FrictionNode> {
         let Some(start) = self.start.pose else {
@@ -168,8 +168,8 @@ impl<'a> ElasticFriction<'a> {
         let friction_node = |touched: &ContactNode| {
             let node = touched.node as usize;
             let place = &self.surface.positions[node];
-            // The material of the femur that is at the node now, and where it was at the start.
-            let moved = place - start.to_insert(&self.pose.to_femur(place));
+            // The material of the counterface that is at the node now, and where it was at the start.
+            let moved = place - start.to_insert(&self.pose.to_counterface(place));
             let along = self.surface.directions(node).map(|along| along.dot(&moved));
             let before = along_surface(touched.node).map(&mut start_mm);
             FrictionNode {
@@ -182,13 +182,13 @@ impl<'a> ElasticFriction<'a> {
         self.contact.iter().map(friction_node).collect()
     }
 
-    /// Returns the screws of the two directions of a node in the femoral frame, the directions turned there by the transpose
+    /// Returns the screws of the two directions of a node in the counterface frame, the directions turned there by the transpose
     /// of `rotation`.
     ///
-    /// A screw is the wrench of a unit load along its direction; its product with a motion of the femur is the motion of the
-    /// femur's material along that direction.
+    /// A screw is the wrench of a unit load along its direction; its product with a motion of the counterface is the motion of the
+    /// counterface's material along that direction.
     fn screws(&self, node: usize, rotation: &Mat3) -> [Vec6; 2] {
-        let place = self.pose.to_femur(&self.surface.positions[node]);
+        let place = self.pose.to_counterface(&self.surface.positions[node]);
         self.surface.directions(node).map(|along| {
             let along = rotation.tr_mul(&along);
             let moment = place.cross(&along);
@@ -204,7 +204,10 @@ impl LoadHistory for ElasticFriction<'_> {
         self.resume(start);
     }
 
-    fn respond(&mut self, patch: &ContactPatch<'_>) -> Option<Wrench<body::Insert, body::Femur>> {
+    fn respond(
+        &mut self,
+        patch: &ContactPatch<'_>,
+    ) -> Option<Wrench<body::Insert, body::Counterface>> {
         let pose = &patch.pose;
         self.solve(pose, patch.nodes(&Twist::zero()));
         let mut total = Wrench::zero();
@@ -247,7 +250,7 @@ impl LoadHistory for ElasticFriction<'_> {
     /// the tangent was requested there; otherwise they are solved again.
     fn accept(&mut self, motion: &RelativeMotion, patch: &ContactPatch<'_>) {
         let (from, pose) = (&patch.pose, &motion.pose);
-        let moved = FrameChange::to_femur(from).twist(&Twist::between(from, pose));
+        let moved = FrameChange::to_counterface(from).twist(&Twist::between(from, pose));
         let contact = patch.nodes(&moved);
         let by_motion = self.by_motion.take();
         if by_motion.is_empty() {
@@ -356,7 +359,7 @@ fn eight(six: &Vec6) -> Eight {
     numbers
 }
 
-/// The fields of the contact's state with what each activity left: the femur's pose, rotation by columns and then
+/// The fields of the contact's state with what each activity left: the counterface's pose, rotation by columns and then
 /// translation in mm, and of every node that carries a load along the surface its number and that load.
 const FRICTION_FIELD: &str = "femur_pose_and_loads_along_surface_n";
 
@@ -369,7 +372,7 @@ type LoadsAlong = Vec<(u32, Pair)>;
 /// The state at the start of an increment.
 #[derive(Clone, Debug, Default, PartialEq)]
 struct Held {
-    /// The pose of the femur; none before the first step.
+    /// The pose of the counterface; none before the first step.
     pose: Option<Pose>,
     loads: LoadsAlong,
 }

@@ -8,7 +8,7 @@ use crate::{
     },
     spatial::{
         Mat6, RelativeMotion, Wrench,
-        body::{Femur, Insert},
+        body::{Counterface, Insert},
     },
 };
 
@@ -36,17 +36,17 @@ pub(crate) trait LoadHistory {
     /// Subtracts from the overclosures of the candidates the displacement of the surface in the trial state.
     fn displace(&mut self, _candidates: &mut [Candidate]) {}
 
-    /// Returns how much nearer to the femur the trial state can bring the surface, mm.
+    /// Returns how much nearer to the counterface the trial state can bring the surface, mm.
     fn lift_mm(&self) -> f64 {
         0.0
     }
 
-    /// Returns the wrench on the insert of the loads along its surface about the femur's origin, in the femoral frame.
-    fn respond(&mut self, _patch: &ContactPatch<'_>) -> Option<Wrench<Insert, Femur>> {
+    /// Returns the wrench on the insert of the loads along its surface about the counterface's origin, in the counterface frame.
+    fn respond(&mut self, _patch: &ContactPatch<'_>) -> Option<Wrench<Insert, Counterface>> {
         None
     }
 
-    /// Returns the derivative of that wrench by a motion of the femur.
+    /// Returns the derivative of that wrench by a motion of the counterface.
     fn tangent(&self) -> Option<Mat6> {
         None
     }

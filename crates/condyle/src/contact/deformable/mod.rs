@@ -1,4 +1,4 @@
-//! The deformable insert: a rigid femur on an elastic body, without penalty.
+//! The deformable insert: a rigid counterface on an elastic body, without penalty.
 //!
 //! | file | content |
 //! | --- | --- |
@@ -49,7 +49,7 @@ use friction::ElasticFriction;
 use history::{LoadHistory, field};
 use plastic::{Eigenstrains, InsertMaterial};
 
-/// Memory for the compliances of inserts that are kept, bytes: enough for those of a knee insert and its coarser twin,
+/// Memory for the compliances of inserts that are kept, bytes: enough for those of an insert and its coarser twin,
 /// unworn and worn.
 const MAX_KEPT_BYTES: f64 = 3e8;
 
@@ -80,7 +80,7 @@ pub enum Backside {
     },
 }
 
-/// The law of an elastic insert under a rigid femur.
+/// The law of an elastic insert under a rigid counterface.
 ///
 /// Small displacements: the surface deflects along its inward normals by the normal compliance C of the insert,
 /// computed by finite elements. The loads N at the nodes hold the bodies just in touch where they are in contact,
@@ -88,7 +88,7 @@ pub enum Backside {
 /// $$ N \ge 0, \quad g + C N \ge 0, \quad N \cdot (g + C N) = 0, $$
 ///
 /// with the gaps g of the bodies at rest: nothing is tuned. Every node's share of the surface is under a pressure along the
-/// femur's normal and under Coulomb friction, regularised or with stick and slip. Wear goes into the gap; C is that of the
+/// counterface's normal and under Coulomb friction, regularised or with stick and slip. Wear goes into the gap; C is that of the
 /// unworn insert, and recomputed once an insert has become thinner by more than a twentieth. An insert of a material that
 /// yields flows below its surface, and the permanent set of that goes into the gap; the stiffness stays.
 ///

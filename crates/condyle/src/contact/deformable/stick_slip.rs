@@ -29,9 +29,9 @@ const SWEEPS_BETWEEN: u32 = 3;
 /// Steps after which the residual is round-off.
 const MAX_STEPS: u32 = 500;
 
-/// The loads along a surface under a femur that moves past it.
+/// The loads along a surface under a counterface that moves past it.
 ///
-/// A node i in contact may carry a load T_i along the surface up to its limit g_i = mu F_i. Without deflection the femur
+/// A node i in contact may carry a load T_i along the surface up to its limit g_i = mu F_i. Without deflection the counterface
 /// would have moved past it by b_i; the surface deflects by its compliance C along itself, so that the node slips by
 /// s_i = b_i - sum_j C_ij T_j. It sticks, or slips in the direction of its load,
 ///
@@ -55,7 +55,7 @@ pub(crate) struct StickSlip {
 pub(crate) struct FrictionNode {
     pub node: u32,
     pub limit_n: f64,
-    /// The motion of the femur past it since it carried no load, b, mm.
+    /// The motion of the counterface past it since it carried no load, b, mm.
     pub reach_mm: Pair,
     /// The load, N; initially the start value of the search.
     pub load_n: Pair,
@@ -130,7 +130,7 @@ impl StickSlip {
         self.nodes[place].moved_mm()
     }
 
-    /// Extrapolates the loads over a short motion of the femur by their changes, to other limits and motions past the nodes.
+    /// Extrapolates the loads over a short motion of the counterface by their changes, to other limits and motions past the nodes.
     pub fn extrapolate(
         &mut self,
         nodes: &[FrictionNode],

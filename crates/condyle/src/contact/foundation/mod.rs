@@ -28,10 +28,10 @@ pub(crate) use mean_overclosure::EdgeSlopes;
 use mean_overclosure::mean_overclosure;
 use peak::PeakSearch;
 
-/// The law of an elastic layer on a rigid base under a rigid femur.
+/// The law of an elastic layer on a rigid base under a rigid counterface.
 ///
 /// Every node's share of the articulating surface is under the law's pressure at its mean overclosure, along the
-/// femur's normal there, and under regularised Coulomb friction,
+/// counterface's normal there, and under regularised Coulomb friction,
 ///
 /// $$ \mathbf f = p A \left( \mathbf n + \mu \frac{\mathbf v_t}{\sqrt{v_t^2 + v_0^2}} \right). $$
 ///
@@ -79,7 +79,7 @@ impl ContactLaw for Foundation {
     }
 }
 
-/// The contact of a femur with an insert as it is now, by a [`Foundation`].
+/// The contact of a counterface with an insert as it is now, by a [`Foundation`].
 ///
 /// Invariant: a response depends on the motion alone, except for extrapolated samples
 /// ([`ContactSettings::sample_reuse_mm`]), which change the force by less than a hundred-thousandth. The tangent is the
@@ -104,7 +104,7 @@ impl ContactModel for FoundationContact<'_> {
 
     fn respond(&mut self, motion: &RelativeMotion) -> Response {
         self.patch.pose = motion.pose;
-        let change = FrameChange::to_femur(&motion.pose);
+        let change = FrameChange::to_counterface(&motion.pose);
         let pose = Pose4::new(&motion.pose);
         let twist = Twist4::new(&change.twist(&motion.twist));
         let (ContactPatch { nearby, near, .. }, slopes) = (&mut self.patch, &mut self.slopes);
@@ -161,8 +161,8 @@ impl ContactModel for FoundationContact<'_> {
 impl Foundation {
     /// Returns the tractions on a block of shares.
     ///
-    /// With n the femur's normal, K its curvature, G the gradient of the gap, e_k the share's edges and W
-    /// the mean overclosure of the share, a motion a and a turn w of the femur change the middle's
+    /// With n the counterface's normal, K its curvature, G the gradient of the gap, e_k the share's edges and W
+    /// the mean overclosure of the share, a motion a and a turn w of the counterface change the middle's
     /// overclosure by G . a, the normal by w x n - K a, and each edge slope n . e_k with the normal.
     #[inline(always)]
     fn tractions(
@@ -183,7 +183,7 @@ impl Foundation {
         if let Some(by_slope) = mean.by_slope {
             let (by_a, by_b) = (by_slope[0] * stiffness, by_slope[1] * stiffness);
             let by_normal = scale_add(&shares.edge_a, by_a, &(shares.edge_b * by_b));
-            let by_normal = pose.turn_to_femur(&by_normal);
+            let by_normal = pose.turn_to_counterface(&by_normal);
             let along_surface = tangential_part(&by_normal, &sample.normal);
             load_by_motion -= sample.curvature.times(&along_surface);
             load_by_turn = cross(&sample.normal, &by_normal);

@@ -72,7 +72,7 @@ impl PeakSearch<'_> {
 
     /// Returns the maximum of a quadratic over a patch that contains the edge of contact; never more than that of the fit.
     ///
-    /// At an edge of the femur the surface falls away, which bends the fit more than the surface inside is bent. The fit then
+    /// At an edge of the counterface the surface falls away, which bends the fit more than the surface inside is bent. The fit then
     /// misses nodes in contact farther inside, and is replaced by one over these alone.
     fn limited(&self, fit: &Quadratic, patch: Vec<PatchNode>) -> f64 {
         let top = patch[0].node;
@@ -115,7 +115,7 @@ impl PeakSearch<'_> {
         let top = &patch[0];
         let is_surface = move |at: &&PatchNode| {
             let distance2_mm2 = (share(at).centre - share(top).centre).norm_squared();
-            // No gap changes faster along a surface: such a node lies under another part of the femur, or under none.
+            // No gap changes faster along a surface: such a node lies under another part of the counterface, or under none.
             let change = (at.gap_mm - top.gap_mm) / MAX_GAP_SLOPE;
             change * change <= distance2_mm2
         };
@@ -146,8 +146,8 @@ impl PeakSearch<'_> {
         let share =
             |lane: usize| &self.bodies.surface.shares[nodes[lane.min(nodes.len() - 1)] as usize];
         let centres = vector_from_lanes(|lane| &share(lane).centre);
-        let place = self.pose.to_femur(&centres);
+        let place = self.pose.to_counterface(&centres);
         let spread_mm2 = F64x4::from_lanes(|lane| share(lane).spread_mm2);
-        self.bodies.femur.sample(&place, spread_mm2).gap_mm
+        self.bodies.counterface.sample(&place, spread_mm2).gap_mm
     }
 }

@@ -28,7 +28,7 @@ const CELLS_AROUND: usize = 1;
 /// Bounds on the curvature in every cell of a field's grid near the surface and in the cells around it:
 /// the extremes of eight samples per cell.
 ///
-/// A cell lies around a node of the grid. Deeper than contact reaches, a femoral component has an
+/// A cell lies around a node of the grid. Deeper than contact reaches, a counterface has an
 /// inside with its own edges, whose curvature does not matter.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct CurvatureGrid {

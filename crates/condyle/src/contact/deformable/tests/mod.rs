@@ -17,7 +17,7 @@ use crate::{
         law::{Bodies, ContactSettings},
         model::{ContactMemory, ContactModel, TouchedNode},
     },
-    geometry::{ArticulatingSurface, FemoralSurface, Insert, Meshing, flat_insert},
+    geometry::{ArticulatingSurface, Counterface, Insert, Meshing, flat_insert},
     spatial::{Mat6, Pose, RelativeMotion, Twist, Vec6},
 };
 use half_space::HalfSpace;
@@ -30,9 +30,9 @@ fn contact_modulus_mpa() -> f64 {
     MODULUS_MPA / (1.0 - POISSON * POISSON)
 }
 
-/// A femur over a flat half-space whose surface is cut into squares.
+/// A counterface over a flat half-space whose surface is cut into squares.
 struct Plane {
-    femur: FemoralSurface,
+    counterface: Counterface,
     insert: Insert,
     surface: ArticulatingSurface,
     half_space: Arc<HalfSpace>,
@@ -40,7 +40,7 @@ struct Plane {
 }
 
 impl Plane {
-    fn new(femur: FemoralSurface, size_mm: (f64, f64), edge_mm: f64) -> Self {
+    fn new(counterface: Counterface, size_mm: (f64, f64), edge_mm: f64) -> Self {
         let insert = flat_insert(size_mm, 10.0, Meshing { edge_mm, layers: 1 }).unwrap();
         let surface = insert.surface();
         let half_space = Arc::new(HalfSpace::under(&surface, contact_modulus_mpa()));
@@ -48,14 +48,14 @@ impl Plane {
         Self {
             half_space,
             compliance: Arc::new(Compliance::new(source)),
-            femur,
+            counterface,
             insert,
             surface,
         }
     }
 
     fn under_sphere(edge_mm: f64) -> Self {
-        Self::new(FemoralSurface::sphere(RADIUS_MM), (12.0, 12.0), edge_mm)
+        Self::new(Counterface::sphere(RADIUS_MM), (12.0, 12.0), edge_mm)
     }
 
     fn contact(&self, friction: f64) -> DeformableContact<'_> {
@@ -69,7 +69,7 @@ impl Plane {
         histories: Vec<Box<dyn LoadHistory + 'a>>,
     ) -> DeformableContact<'a> {
         let bodies = Bodies {
-            femur: &self.femur,
+            counterface: &self.counterface,
             insert: &self.insert,
             surface: &self.surface,
         };
@@ -146,7 +146,7 @@ fn verify_hertz_on_a_half_space() {
     }
 }
 
-/// The pose after a small turn and translation of the femur, in the insert frame.
+/// The pose after a small turn and translation of the counterface, in the insert frame.
 fn moved(pose: &Pose, small: &Vec6) -> Pose {
     let turn: Vec3 = small.fixed_rows::<3>(0).into();
     let turn = nalgebra::Rotation3::new(turn).into_inner();
@@ -163,7 +163,7 @@ fn by_differences(step: f64, mut wrench: impl FnMut(&Vec6) -> Vec6) -> Mat6 {
     matrix
 }
 
-/// By how much the wrench changes with a motion of the femur.
+/// By how much the wrench changes with a motion of the counterface.
 fn by_pose_differences(step: f64, contact: &mut dyn ContactModel, motion: &RelativeMotion) -> Mat6 {
     by_differences(step, |small| {
         let pose = moved(&motion.pose, small);
@@ -229,7 +229,7 @@ fn elastic_energy(plane: &Plane, touched: &[TouchedNode]) -> f64 {
 }
 
 #[test]
-fn the_work_of_the_femur_is_kept_in_the_surface() {
+fn the_work_of_the_counterface_is_kept_in_the_surface() {
     let plane = Plane::under_sphere(1.0);
     let mut contact = plane.contact(0.0);
     let steps = 400;
@@ -240,14 +240,14 @@ fn the_work_of_the_femur_is_kept_in_the_surface() {
     for step in 0..=steps {
         let so_far = f64::from(step);
         let motion = pressed(down_mm * so_far, along_mm * so_far, 0.0);
-        let on_femur = contact.respond(&motion).wrench.reaction().force;
+        let on_counterface = contact.respond(&motion).wrench.reaction().force;
         let way = Vec3::new(along_mm, -down_mm, 0.0);
         work -= if step == 0 {
             0.0
         } else {
-            (last + on_femur).dot(&way) / 2.0
+            (last + on_counterface).dot(&way) / 2.0
         };
-        last = on_femur;
+        last = on_counterface;
         touched = contact.evaluate(&motion).touched;
     }
     let energy = elastic_energy(&plane, &touched);
@@ -269,8 +269,8 @@ fn what_presses_is_not_above_the_plane_and_does_not_pull() {
         };
         let down_mm: f64 = touched.iter().map(deflection).sum();
         // The gap at rest, along the normal of the plane.
-        let seen = motion.pose.to_femur(position);
-        let gap_mm = plane.femur.gap_mm(&seen) / (-seen.y / seen.norm()) + down_mm;
+        let seen = motion.pose.to_counterface(position);
+        let gap_mm = plane.counterface.gap_mm(&seen) / (-seen.y / seen.norm()) + down_mm;
         let presses = touched.iter().any(|on| on.node as usize == node);
         assert!(
             gap_mm > -1e-9 && (!presses || gap_mm < 1e-9),

@@ -1,4 +1,4 @@
-//! The femoral surface as the contact sees it: one of several shapes.
+//! The counterface as the contact sees it: one of several shapes.
 
 use super::{
     generic_femur::{GenericFemur, PlacedFemur},
@@ -8,26 +8,26 @@ use super::{
 };
 use crate::{Vec3, Vector, number::Number};
 
-/// A femoral surface that gives gap, normal and curvature anywhere near it, smoothly.
+/// A counterface that gives gap, normal and curvature anywhere near it, smoothly.
 ///
 /// Clones share large arrays.
 #[derive(Clone, Debug)]
-pub enum FemoralSurface {
+pub enum Counterface {
     /// A pair of condyles made of pieces of torus.
     Generic(GenericFemur),
-    /// A generic pair, rotated and shifted in the femoral frame.
+    /// A generic pair, rotated and shifted in the counterface frame.
     Placed(PlacedFemur),
     /// One ball, for verification.
     Sphere(Torus),
     /// One cylinder about the z axis, for verification.
     Cylinder(Cylinder),
-    /// The plane y = 0 of the femoral frame with the body above it: the disc of a pin-on-disc machine.
+    /// The plane y = 0 of the counterface frame with the body above it: the disc of a pin-on-disc machine.
     Plane,
     /// The smooth distance field of a triangle mesh.
     Mesh(SmoothField),
 }
 
-impl FemoralSurface {
+impl Counterface {
     /// Creates a ball of radius `radius_mm` about the origin.
     pub fn sphere(radius_mm: f64) -> Self {
         Self::Sphere(Torus::sphere(Vec3::zeros(), radius_mm))
@@ -37,8 +37,8 @@ impl FemoralSurface {
     #[inline(always)]
     pub fn gap_mm<T: Number>(&self, point: &Vector<T>) -> T {
         match self {
-            Self::Generic(femur) => femur.gap_mm(point),
-            Self::Placed(femur) => femur.gap_mm(point),
+            Self::Generic(counterface) => counterface.gap_mm(point),
+            Self::Placed(counterface) => counterface.gap_mm(point),
             Self::Sphere(sphere) => sphere.splat().gap_mm(point),
             Self::Cylinder(cylinder) => cylinder.gap_mm(point),
             Self::Plane => -point.y,
@@ -55,8 +55,8 @@ impl FemoralSurface {
     #[inline(always)]
     pub fn sample<T: Number>(&self, point: &Vector<T>, spread_mm2: T) -> SurfaceSample<T> {
         match self {
-            Self::Generic(femur) => femur.sample(point, spread_mm2),
-            Self::Placed(femur) => femur.sample(point, spread_mm2),
+            Self::Generic(counterface) => counterface.sample(point, spread_mm2),
+            Self::Placed(counterface) => counterface.sample(point, spread_mm2),
             Self::Sphere(sphere) => sphere.splat().sample(point, spread_mm2),
             Self::Cylinder(cylinder) => cylinder.sample(point, spread_mm2),
             Self::Plane => SurfaceSample::of_plane(-point.y),
@@ -64,7 +64,7 @@ impl FemoralSurface {
         }
     }
 
-    /// Returns the spread over which all its samples are averaged, mm2; see [`FemoralSurface::prepared_for`].
+    /// Returns the spread over which all its samples are averaged, mm2; see [`Counterface::prepared_for`].
     pub(crate) fn prepared_spread_mm2(&self) -> f64 {
         match self {
             Self::Mesh(field) => field.spread_mm2,
@@ -76,12 +76,12 @@ impl FemoralSurface {
         }
     }
 
-    /// Returns the largest distance of the femur from the femoral frame's origin, mm; of a cylinder,
+    /// Returns the largest distance of the counterface from the counterface frame's origin, mm; of a cylinder,
     /// across its axis.
     pub fn reach_mm(&self) -> f64 {
         match self {
-            Self::Generic(femur) => femur.reach_mm(),
-            Self::Placed(femur) => femur.reach_mm(),
+            Self::Generic(counterface) => counterface.reach_mm(),
+            Self::Placed(counterface) => counterface.reach_mm(),
             Self::Sphere(ball) => ball.centre.norm() + ball.tube_radius_mm,
             Self::Cylinder(cylinder) => cylinder.radius_mm,
             // It has no end; the approach starts this far above the highest node.
@@ -107,8 +107,8 @@ impl FemoralSurface {
     #[inline(always)]
     pub(crate) fn curvature_bounds<T: Number>(&self, points: &Vector<T>) -> CurvatureBounds {
         match self {
-            Self::Generic(femur) => femur.curvature_bounds(points),
-            Self::Placed(femur) => femur.curvature_bounds(points),
+            Self::Generic(counterface) => counterface.curvature_bounds(points),
+            Self::Placed(counterface) => counterface.curvature_bounds(points),
             Self::Sphere(ball) => {
                 CurvatureBounds::convex(1.0 / ball.tube_radius_mm, CurvatureBounds::FARTHEST_MM)
             }
