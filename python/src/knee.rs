@@ -42,7 +42,7 @@ impl RawKnee {
         let (mut gaps, mut normals) = (Vec::new(), Vec::new());
         for point in points.rows() {
             let point = Vec3::new(point[0], point[1], point[2]);
-            let sample = self.march.femur().sample(&point, 0.0);
+            let sample = self.march.counterface().sample(&point, 0.0);
             gaps.push(sample.gap_mm);
             normals.extend([sample.normal.x, sample.normal.y, sample.normal.z]);
         }
