@@ -11,7 +11,8 @@ const PACKED = [
 ];
 
 const server = createServer((request, response) => {
-  const { pathname } = new URL(request.url, "http://localhost");
+  // A path such as `//` is no URL, not even after a host.
+  const pathname = request.url.split("?")[0];
   // All files are in one folder: paths into others are refused.
   const name = pathname === "/" ? "index.html" : basename(pathname);
   const type = TYPES[extname(name)];

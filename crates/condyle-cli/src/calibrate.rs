@@ -6,6 +6,7 @@ use condyle_lab::{
     measured::{Calibration, Interval, Trial, calibrate as find_constants},
     pressure_law::calibrate as fit,
 };
+use condyle_results::replace_file;
 
 use crate::{
     arguments::{Calibrate, CalibrateWear},
@@ -20,22 +21,22 @@ pub fn calibrate(arguments: &Calibrate) -> Done {
     let unwritten = |error: io::Error| {
         Failure::bad_input(format_args!("{} cannot be written: {error}", out.display()))
     };
-    fs::create_dir(out).map_err(unwritten)?;
+    // A folder that cannot be made is reported before the long search; a killed search leaves none.
+    fs::create_dir(out)
+        .and_then(|()| fs::remove_dir(out))
+        .map_err(unwritten)?;
     let (case, changes, held_out) = (&arguments.case, &arguments.changes.set, &arguments.hold_out);
     let law = fit(case, changes, held_out, &mut |step| {
         note(format_args!("solving: {step}"));
-    });
-    let law = law.inspect_err(|_| {
-        // The folder is still empty.
-        let _ = fs::remove_dir(out);
     })?;
+    fs::create_dir(out).map_err(unwritten)?;
     for (name, text) in [
         ("pressure_table.csv", law.to_csv()),
         (CASE, law.case.to_toml_in(out)),
         (PAGE, law.markdown()),
         ("calibration.json", output::json(&law)),
     ] {
-        fs::write(out.join(name), text).map_err(unwritten)?;
+        replace_file(&out.join(name), text.as_bytes()).map_err(unwritten)?;
     }
     if arguments.json {
         return output::print(&output::json(&law));

@@ -1,8 +1,7 @@
 //! `condyle check`.
 
-use std::fs;
-
 use condyle_lab::{BodyFacts, EdgeFacts, InsertFacts, Preview};
+use condyle_results::replace_file;
 
 use crate::{
     arguments::Check,
@@ -14,7 +13,7 @@ pub fn check(arguments: &Check) -> Done {
     let preview = Preview::of(&arguments.case, &arguments.changes.set, threads)?;
     output::warn(&preview.warnings);
     if let Some(path) = &arguments.picture {
-        fs::write(path, preview.picture_svg())
+        replace_file(path, preview.picture_svg().as_bytes())
             .map_err(|error| Failure::unwritten(path, &error, "choose another name or folder"))?;
     }
     if arguments.print {

@@ -1,8 +1,7 @@
 //! `condyle new` and `condyle export`: commands that write one new file.
 
 use std::{
-    fs::{self, File},
-    io::{ErrorKind, Write},
+    io::ErrorKind,
     path::{Path, PathBuf},
     thread,
 };
@@ -12,6 +11,7 @@ use condyle_case::{
     case::{Case, DraftError, Drafted, template},
 };
 use condyle_lab::{Preview, RunError};
+use condyle_results::{create_file, replace_file};
 
 use crate::{
     arguments::{Export, New},
@@ -28,11 +28,12 @@ pub fn new(arguments: &New) -> Done {
         error => Failure::bad_input(error),
     })?;
     let text = format!("#:schema {SCHEMA}\n{text}");
-    create(path, text.as_bytes())
+    // An existing file is kept, because a user may have edited it.
+    create_file(path, text.as_bytes())
         .map_err(|error| Failure::unwritten(path, &error, "choose another name"))?;
     // For editors; a case runs without it.
     let schema = path.with_file_name(SCHEMA);
-    match create(&schema, Case::json_schema().as_bytes()) {
+    match create_file(&schema, Case::json_schema().as_bytes()) {
         Err(error) if error.kind() != ErrorKind::AlreadyExists => {
             output::warn([format_args!("{}: {error}", schema.display())]);
         }
@@ -46,11 +47,6 @@ pub fn new(arguments: &New) -> Done {
     ))
 }
 
-/// Writes a new file; an existing one is kept, because a user may have edited it.
-fn create(path: &Path, bytes: &[u8]) -> std::io::Result<()> {
-    File::create_new(path).and_then(|mut file| file.write_all(bytes))
-}
-
 /// Draws the bodies in place into a file next to the case, or warns why it cannot.
 fn drawn(case: &Path) -> Option<PathBuf> {
     let threads = thread::available_parallelism().map_or(1, usize::from);
@@ -58,7 +54,7 @@ fn drawn(case: &Path) -> Option<PathBuf> {
     let drawn = Preview::of(case, &[], threads)
         .map_err(|error| format!("the case does not start yet: {error}"))
         .and_then(|preview| {
-            fs::write(&picture, preview.picture_svg())
+            replace_file(&picture, preview.picture_svg().as_bytes())
                 .map_err(|error| format!("{}: {error}", picture.display()))
         });
     if let Err(why) = &drawn {
@@ -89,7 +85,7 @@ pub fn export(arguments: &Export) -> Done {
     });
     output::warn(written.map_err(|error| export_failure(&case, error))?);
     let path = &arguments.out;
-    create(path, &text)
+    create_file(path, &text)
         .map_err(|error| Failure::unwritten(path, &error, "choose another name or folder"))?;
     output::print(&format!("wrote {}\n", path.display()))
 }

@@ -12,7 +12,7 @@ use condyle_report::{
         write_runs,
     },
 };
-use condyle_results::PLOTTED;
+use condyle_results::{PLOTTED, replace_file};
 
 use crate::{
     arguments::{Diff, PictureFormat, Plot, Report},
@@ -85,7 +85,7 @@ pub fn plot(arguments: &Plot) -> Done {
     for (path, bytes) in files(arguments, &pictures(&results)) {
         let path = folder.join(path);
         fs::create_dir_all(&folder)
-            .and_then(|()| fs::write(&path, bytes))
+            .and_then(|()| replace_file(&path, &bytes))
             .map_err(|error| Failure::unwritten(&path, &error, "choose another folder"))?;
         lines.line(format!("wrote {}", path.display()));
     }

@@ -36,10 +36,7 @@ pub(crate) fn render(template: &str, context: &impl Serialize) -> String {
 
 /// Writes a text and returns its path.
 pub(crate) fn write_text(path: PathBuf, text: &str) -> Result<PathBuf, ReportError> {
-    // Written next to its place and renamed in one step: an interruption leaves the old file or the new one.
-    let mut part = path.clone().into_os_string();
-    part.push(".part");
-    match std::fs::write(&part, text).and_then(|()| std::fs::rename(&part, &path)) {
+    match condyle_results::replace_file(&path, text.as_bytes()) {
         Ok(()) => Ok(path),
         Err(source) => Err(ReportError::Inaccessible {
             path,

@@ -13,19 +13,50 @@ use thiserror::Error;
 
 /// Writes `bytes` next to the file and renames them into its place, so that a run stopped
 /// at any time leaves the old file or the new one, never half of one.
-pub(super) fn replace_file(path: &Path, bytes: &[u8]) -> io::Result<()> {
-    let part = part_file(path);
-    fs::write(&part, bytes)?;
-    fs::rename(&part, path)
+///
+/// # Errors
+/// The file cannot be written; the old one is left, and nothing next to it.
+pub fn replace_file(path: &Path, bytes: &[u8]) -> io::Result<()> {
+    // A device or a pipe, such as /dev/stdout, is written to, not replaced.
+    if fs::metadata(path).is_ok_and(|there| !there.is_file() && !there.is_dir()) {
+        return fs::write(path, bytes);
+    }
+    write_part(path, bytes)?;
+    fs::rename(part_file(path), path)
+}
+
+/// Writes a new file as [`replace_file`]; an existing one is kept.
+///
+/// # Errors
+/// The file exists ([`ErrorKind::AlreadyExists`]), or it cannot be written.
+pub fn create_file(path: &Path, bytes: &[u8]) -> io::Result<()> {
+    if path.symlink_metadata().is_ok() {
+        return Err(ErrorKind::AlreadyExists.into());
+    }
+    replace_file(path, bytes)
 }
 
 /// Replaces a file as [`replace_file`], and waits until it is on the disk.
 pub(super) fn replace_file_durably(path: &Path, bytes: &[u8]) -> io::Result<()> {
+    write_part(path, bytes)?.sync_data()?;
+    fs::rename(part_file(path), path)
+}
+
+/// Writes the part file of a file, and leaves none if that fails.
+fn write_part(path: &Path, bytes: &[u8]) -> io::Result<File> {
     let part = part_file(path);
-    let mut file = File::create(&part)?;
-    file.write_all(bytes)?;
-    file.sync_data()?;
-    fs::rename(&part, path)
+    // A link of that name would lead the bytes out of the folder: what is there is removed, and only a new file is
+    // written.
+    match fs::remove_file(&part) {
+        Err(error) if error.kind() != ErrorKind::NotFound => return Err(error),
+        _ => {}
+    }
+    let mut file = File::create_new(&part)?;
+    if let Err(error) = file.write_all(bytes) {
+        let _ = fs::remove_file(&part);
+        return Err(error);
+    }
+    Ok(file)
 }
 
 /// Returns the name of a file while it is written. It is always the same, so that a resumed run replaces the file of
@@ -191,6 +222,41 @@ mod tests {
             .expect_err("it is gone")
             .to_string();
         assert!(said.contains("cannot be read"), "{said}");
+    }
+
+    #[test]
+    #[cfg(unix)]
+    fn a_link_at_the_part_file_leads_no_bytes_out_of_the_folder() {
+        let folder = tempfile::tempdir().expect("a folder can be made");
+        let [foreign, file] = ["foreign", "summary.json"].map(|name| folder.path().join(name));
+        fs::write(&foreign, "mine").expect("it can be written");
+        for write in [replace_file, replace_file_durably] {
+            std::os::unix::fs::symlink(&foreign, part_file(&file)).expect("it can be linked");
+            write(&file, b"new").expect("it can be written");
+            assert_eq!(fs::read(&foreign).expect("it is there"), b"mine");
+            assert_eq!(fs::read(&file).expect("it is there"), b"new");
+            assert!(!file.is_symlink() && part_file(&file).symlink_metadata().is_err());
+        }
+    }
+
+    #[test]
+    fn a_new_file_replaces_none_and_comes_whole() {
+        let folder = tempfile::tempdir().expect("a folder can be made");
+        let file = folder.path().join("case.toml");
+        fs::write(part_file(&file), "of a killed command").expect("it can be written");
+        create_file(&file, b"first").expect("nothing is in its place");
+        let error = create_file(&file, b"second").expect_err("it is there");
+        assert_eq!(error.kind(), ErrorKind::AlreadyExists);
+        assert_eq!(fs::read(&file).expect("it is there"), b"first");
+        assert!(!part_file(&file).exists());
+    }
+
+    #[test]
+    #[cfg(target_os = "linux")]
+    fn a_device_is_written_to_and_stays() {
+        let device = Path::new("/dev/null");
+        replace_file(device, b"gone").expect("it takes everything");
+        assert!(!device.metadata().expect("it is there").is_file());
     }
 
     #[test]

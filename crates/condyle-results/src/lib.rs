@@ -42,7 +42,7 @@ pub use cycle_files::{
 pub use declared::{python_types, results_schema, typescript_types};
 pub use error_estimate::{ErrorEstimate, ErrorParts, Part, QuantityError, QuantityErrors};
 #[cfg(feature = "file-system")]
-pub use files::{DamagedFile, FolderLock, check_file};
+pub use files::{DamagedFile, FolderLock, check_file, create_file, replace_file};
 #[cfg(feature = "file-system")]
 pub use folder::{Found, ResultsError, ResultsFolder};
 pub use insert_fields::{

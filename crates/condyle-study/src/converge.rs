@@ -2,7 +2,6 @@
 
 use std::{
     collections::BTreeMap,
-    fs,
     path::{Path, PathBuf},
 };
 
@@ -117,7 +116,8 @@ pub fn converge(
         ("converge.svg", convergence.svg()),
     ] {
         let path = options.out.join(name);
-        fs::write(&path, text).map_err(StudyError::refused(&path))?;
+        condyle_results::replace_file(&path, text.as_bytes())
+            .map_err(StudyError::refused(&path))?;
     }
     Ok(convergence)
 }

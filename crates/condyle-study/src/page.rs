@@ -1,6 +1,6 @@
 //! The answers of a study as pictures and a page.
 
-use std::{fs, path::Path};
+use std::path::Path;
 
 use condyle_report::{
     Plot, plots_svg,
@@ -36,7 +36,8 @@ pub fn write_answers(plan: &Plan, folder: &Path) -> Result<Answers, StudyError> 
     store.export_csv(&folder.join("table.csv"))?;
     let json = serde_json::to_string_pretty(&answers).expect("numbers and text always serialise");
     let path = folder.join("answers.json");
-    fs::write(&path, json + "\n").map_err(StudyError::refused(&path))?;
+    condyle_results::replace_file(&path, (json + "\n").as_bytes())
+        .map_err(StudyError::refused(&path))?;
     let (kept, design) = (answers.kept, answers.design);
     let end = match answers.failed_tests() {
         0 => "none of them failed".to_owned(),

@@ -2,13 +2,13 @@
 
 use std::{
     fs,
-    io::{self, BufWriter, Write},
+    io::{self, Write},
     path::{Path, PathBuf},
     time::Duration,
 };
 
 use condyle_case::config::Level;
-use condyle_results::{FolderLock, ResultsFolder};
+use condyle_results::{FolderLock, ResultsFolder, replace_file};
 use rusqlite::{
     Connection, params_from_iter,
     types::{Value, ValueRef},
@@ -371,9 +371,9 @@ impl Store {
     /// The file cannot be written.
     pub fn export_csv(&self, path: &Path) -> Result<(), StudyError> {
         let refused = StudyError::refused(path);
-        let mut out = BufWriter::new(fs::File::create(path).map_err(&refused)?);
-        self.write_csv(&mut out)?.map_err(&refused)?;
-        out.flush().map_err(&refused)
+        let mut table = Vec::new();
+        self.write_csv(&mut table)?.map_err(&refused)?;
+        replace_file(path, &table).map_err(&refused)
     }
 }
 

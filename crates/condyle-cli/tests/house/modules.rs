@@ -191,6 +191,7 @@ const MAY_USE: &[(&str, &[&str])] = &[
     (
         "condyle_report::sheets",
         &[
+            "condyle_results::files",
             "condyle_report::error",
             "condyle_report::figure",
             "condyle_report::number",

@@ -9,7 +9,9 @@ use condyle_report::{
     SurfaceFields,
     measured::{compared_kinematics_svg, compared_surface_svg, compared_wear_svg},
 };
-use condyle_results::{COMPARED_KINEMATICS, COMPARED_NUMBERS, COMPARED_SURFACE, COMPARED_WEAR};
+use condyle_results::{
+    COMPARED_KINEMATICS, COMPARED_NUMBERS, COMPARED_SURFACE, COMPARED_WEAR, replace_file,
+};
 
 use crate::measured::{
     CompareError, Comparison, gravimetric::GravimetricComparison, kinematics::KinematicsComparison,
@@ -36,7 +38,7 @@ impl Comparison {
         let mut written = Vec::new();
         for (name, ending, text) in self.files() {
             let path = folder.join(format!("{name}.{ending}"));
-            fs::write(&path, text).map_err(failed(&path))?;
+            replace_file(&path, text.as_bytes()).map_err(failed(&path))?;
             written.push(path);
         }
         Ok(written)
