@@ -126,6 +126,12 @@ pub(crate) struct Columns<'a> {
     rows: Vec<Vec<Range<usize>>>,
 }
 
+/// Returns whether a line has a number, perhaps with a decimal comma, before a semicolon.
+fn has_semicolons(line: &str) -> bool {
+    let first = line.split_once(';').map(|(first, _)| first.trim());
+    first.is_some_and(|first| first.replacen(',', ".", 1).parse::<f64>().is_ok())
+}
+
 /// A number and its place.
 pub(crate) struct Cell {
     pub row: usize,
@@ -144,6 +150,17 @@ impl<'a> Columns<'a> {
             first.trim().parse::<f64>().is_ok()
         };
         let lines: Vec<Range<usize>> = lines(text).collect();
+        if let Some(line) = lines
+            .iter()
+            .find(|line| has_semicolons(&text[(*line).clone()]))
+        {
+            let fault = Fault::new(
+                format!("{file} has semicolons between its columns"),
+                "save it with commas between the columns and points in the numbers: spreadsheets of some languages write \
+                 semicolons and decimal commas",
+            );
+            return Err(vec![(line.clone(), fault)]);
+        }
         let start = lines.iter().position(is_data).unwrap_or(lines.len());
         let columns = lines.get(start).map_or(2, |line| cells(text, line).len());
         if columns < 2 {

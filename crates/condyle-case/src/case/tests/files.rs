@@ -84,6 +84,21 @@ fn file_that_is_not_text_cannot_be_read() {
 }
 
 #[test]
+fn csv_with_semicolons_and_decimal_commas_is_named_as_such() {
+    for rows in ["0;100,5\n100;800,2\n", "0,0;100,5\n99,5;800,2\n"] {
+        let shown = refused(&format!("percent;knee_deg\n{rows}"), "");
+        assert_shows(
+            &shown,
+            &[
+                "wave.csv has semicolons between its columns",
+                "wave.csv:2:1]",
+                "commas between the columns and points in the numbers",
+            ],
+        );
+    }
+}
+
+#[test]
 fn csv_in_another_unit_is_refused_at_its_header() {
     let shown = refused(&format!("percent,knee_rad\n{}", samples(|_| 0.0)), "");
     assert_shows(
