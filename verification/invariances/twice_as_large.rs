@@ -113,9 +113,9 @@ fn scale_machine(test: &mut WearTest, factor: f64) {
     }
     for spring in &mut machine.springs {
         spring.offset_mm *= factor;
-        spring.free_play_mm *= factor;
-        spring.positive_n_per_mm *= factor;
-        spring.negative_n_per_mm *= factor;
+        spring.free_play *= factor;
+        spring.positive_stiffness *= factor;
+        spring.negative_stiffness *= factor;
     }
     machine.joint_mut(knee::VV).axis_point_mm = Vec3::new(0.0, -20.0 * factor, -5.0 * factor);
     test.time.force_tolerance_n *= square;

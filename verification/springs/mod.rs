@@ -42,9 +42,10 @@ fn held(ie: Drive, force_n: f64) -> (f64, f64) {
         along: AP,
         about: IE,
         offset_mm,
-        positive_n_per_mm: ANTERIOR,
-        negative_n_per_mm: POSTERIOR,
-        free_play_mm: FREE_PLAY_MM,
+        positive_stiffness: ANTERIOR,
+        negative_stiffness: POSTERIOR,
+        free_play: FREE_PLAY_MM,
+        rest: 0.0,
     };
     let locked = || Drive::Locked(0.0);
     let ap = Drive::Loaded(Waveform::constant(force_n));

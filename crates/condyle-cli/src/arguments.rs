@@ -30,6 +30,9 @@ pub enum Command {
     /// Print a JSON schema of case files, with which an editor completes their keys and underlines what is wrong; or of
     /// results.
     Schema(Schema),
+    /// List the machines, print one as a file to start from, or check a machine file.
+    #[command(subcommand)]
+    Machine(Machine),
     /// Write the contact of a deformable insert at one pose as an input file of CalculiX and Abaqus.
     Export(Export),
     /// Write the report page of a results folder again; of several, one page with all of them side by side.
@@ -104,6 +107,23 @@ pub struct Check {
     /// Threads for the one-time work on a mesh; the findings are the same on any number.
     #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u16).range(1..=256))]
     pub threads: u16,
+}
+
+#[derive(Subcommand)]
+pub enum Machine {
+    /// List the machines that come with condyle.
+    List,
+    /// Print a machine as a file to start from.
+    Show {
+        /// The machine.
+        #[arg(value_name = "MACHINE", value_parser = presets())]
+        preset: Preset,
+    },
+    /// Check a machine file: its joints, drives and ligaments.
+    Check {
+        /// The machine file.
+        file: PathBuf,
+    },
 }
 
 #[derive(Args)]

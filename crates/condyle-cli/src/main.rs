@@ -4,6 +4,7 @@ mod arguments;
 mod calibrate;
 mod check;
 mod compare;
+mod machine;
 mod new;
 mod output;
 mod progress;
@@ -49,6 +50,7 @@ fn run_command() -> Done {
             output::print(&condyle_results::results_schema())
         }
         Command::Schema(_) => output::print(&Case::json_schema()),
+        Command::Machine(arguments) => machine::machine(&arguments),
         Command::Export(arguments) => new::export(&arguments),
         Command::Report(arguments) => report::report(&arguments),
         Command::Plot(arguments) => report::plot(&arguments),

@@ -6,7 +6,8 @@ use std::path::Path;
 use condyle::{
     Mat3, Vec3,
     contact::{
-        Bodies, ContactLaw, ContactMemory, Foundation, PressureLaw, confined_modulus, shell_modulus,
+        Bodies, ContactLaw, ContactMemory, Foundation, PressureLaw, confined_modulus,
+        shell_modulus, trough_modulus,
     },
     evolve::March,
     geometry::{Counterface, CupShape, Meshing},
@@ -134,6 +135,7 @@ fn verify_contact_of_a_ball_in_a_cup() {
     let shape = CupShape {
         radius_mm: CUP_MM,
         thickness_mm,
+        opening_deg: 90.0,
         inclination_deg: 15.0,
         anteversion_deg: 0.0,
     };
@@ -215,6 +217,8 @@ fn verify_a_shell_is_softer_than_a_flat_layer() {
     assert!((part(0.4) - 0.975).abs() < 0.001, "{}", part(0.4));
     assert!((part(0.46) - 0.765).abs() < 0.001, "{}", part(0.46));
     // A shell that is thin for its radius is a flat layer.
+    let thin = trough_modulus(1000.0, 0.4, 1e5, 8.0) / confined_modulus(1000.0, 0.4);
+    assert!((thin - 1.0).abs() < 1e-3, "{thin}");
     let thin = shell_modulus(1000.0, 0.4, 1e5, 8.0) / confined_modulus(1000.0, 0.4);
     assert!((thin - 1.0).abs() < 1e-3, "{thin}");
 }

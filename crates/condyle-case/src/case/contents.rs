@@ -92,37 +92,54 @@ impl Case {
         if let Some(axes) = self.insert.axes() {
             check_axes(axes, side, root.part("insert").value_span("axes"), log);
         }
-        self.check_cup(&root.part("insert"), log);
+        self.check_round_bearing(&root.part("insert"), log);
     }
 
-    /// Reports a cup on a machine for knees, without a head, or smaller than its head.
-    fn check_cup(&self, insert: &Section<'_>, log: &mut Log<'_>) {
-        let InsertShape::Cup(cup) = &self.insert.shape else {
-            return;
+    /// Reports a cup or trough on a machine for knees, without its counterface, or smaller than that.
+    fn check_round_bearing(&self, insert: &Section<'_>, log: &mut Log<'_>) {
+        let (bearing, partner, preset, radius_mm) = match &self.insert.shape {
+            InsertShape::Cup(cup) => ("cup", "sphere", "iso-14242-1-like", cup.shape.radius_mm),
+            InsertShape::Trough(trough) => (
+                "trough",
+                "cylinder",
+                "iso-22622-like",
+                trough.shape.radius_mm,
+            ),
+            _ => return,
         };
-        let mut report = |key: &str, message: String, advice: &str| {
+        let mut report = |key: &str, message: String, advice: String| {
             log.problem(insert.value_span(key), Fault::new(message, advice));
         };
         if self.machine.rig.is_none() {
-            let message = "a cup needs a machine for hips, and this case has a knee simulator";
-            let advice = "write [machine] preset = \"iso-14242-1-like\"";
-            report("shape", message.to_owned(), advice);
+            let message = format!(
+                "a {bearing} needs a machine by joints, and this case has a knee simulator"
+            );
+            report(
+                "shape",
+                message,
+                format!("write [machine] preset = \"{preset}\""),
+            );
         }
-        let radius_mm = cup.shape.radius_mm;
-        match &self.femur.shape {
-            FemurShape::Sphere(head) if head.radius_mm < radius_mm => {}
-            FemurShape::Sphere(head) => report(
+        let within = match &self.femur.shape {
+            FemurShape::Sphere(head) if bearing == "cup" => Some(head.radius_mm),
+            FemurShape::Cylinder(cylinder) if bearing == "trough" => Some(cylinder.radius_mm),
+            _ => None,
+        };
+        match within {
+            Some(inner_mm) if inner_mm < radius_mm => {}
+            Some(inner_mm) => report(
                 "radius_mm",
                 format!(
-                    "the cup of radius {radius_mm} mm is not larger than its head of {} mm",
-                    head.radius_mm
+                    "the {bearing} of radius {radius_mm} mm is not larger than its {partner} of {inner_mm} mm"
                 ),
-                "the radius of the cup is that of the head and the radial clearance, 0.02 to 0.4 mm",
+                format!(
+                    "its radius is that of the {partner} and the radial clearance, 0.02 to 0.4 mm"
+                ),
             ),
-            _ => report(
+            None => report(
                 "shape",
-                "a cup needs a head".to_owned(),
-                "write [femur] shape = \"sphere\" with its radius_mm",
+                format!("a {bearing} needs a {partner}"),
+                format!("write [femur] shape = \"{partner}\" with its radius_mm"),
             ),
         }
     }

@@ -1,6 +1,6 @@
 //! The tibial insert.
 
-use condyle::geometry::{CupShape, GenericInsertShape, Meshing};
+use condyle::geometry::{CupShape, GenericInsertShape, Meshing, TroughShape};
 
 use super::frame::{Axes, LengthUnit};
 use crate::config::*;
@@ -66,6 +66,16 @@ settings! {
         layers: u64 = 6, in within(1.0, 40.0);
     }
 
+    /// A cylindrical trough along z, such as the bearing of an ankle.
+    TroughInsert {
+        /// Its dimensions.
+        [flat] shape: TroughShape;
+        /// Edge of a hexahedron, seen from above.
+        edge_mm: f64 = 1.0, in within(0.1, 10.0);
+        /// Hexahedra through the thickness.
+        layers: u64 = 6, in within(1.0, 40.0);
+    }
+
     /// A cylindrical pin with its flat end up.
     PinInsert {
         /// Radius of the pin.
@@ -108,10 +118,25 @@ settings_of! {
         radius_mm: f64 = Self::default().radius_mm, in within(5.0, 100.0);
         /// Thickness of the wall.
         thickness_mm: f64 = Self::default().thickness_mm, in within(1.0, 50.0);
+        /// Angle between its axis and its rim, seen from the centre: 90 of a hemisphere, 20 to 50 of a shallow dish.
+        opening_deg: f64 = Self::default().opening_deg, in within(10.0, 90.0);
         /// Angle between the plane of the opening and the plane across the load, in the frontal plane: on a machine about 10 to 15 degrees less than in a patient.
         inclination_deg: f64 = Self::default().inclination_deg, in within(0.0, 90.0);
         /// Rotation of the inclined cup about the load, + turns its opening from lateral to anterior.
         anteversion_deg: f64 = Self::default().anteversion_deg, in within(-90.0, 90.0);
+    }
+}
+
+settings_of! {
+    TroughShape {
+        /// Radius of the cylinder: that of the counterface and the radial clearance.
+        radius_mm: f64 = Self::default().radius_mm, in within(5.0, 200.0);
+        /// Length along x.
+        length_mm: f64 = Self::default().length_mm, in within(5.0, 100.0);
+        /// Width along z.
+        width_mm: f64 = Self::default().width_mm, in within(5.0, 100.0);
+        /// Thickness below the lowest line.
+        thickness_mm: f64 = Self::default().thickness_mm, in within(1.0, 50.0);
     }
 }
 
@@ -128,6 +153,8 @@ variants! {
         Hexahedra(HexahedralInsert) = "hexahedra",
         /// The cup of a hip.
         Cup(CupInsert) = "cup",
+        /// A cylindrical trough, such as the bearing of an ankle.
+        Trough(TroughInsert) = "trough",
         /// A pin.
         Pin(PinInsert) = "pin",
         /// A flat block, for verification.
@@ -142,6 +169,7 @@ impl Insert {
             InsertShape::Hexahedra(mesh) => Some(&mesh.axes),
             InsertShape::Generic(_)
             | InsertShape::Cup(_)
+            | InsertShape::Trough(_)
             | InsertShape::Pin(_)
             | InsertShape::Flat(_) => None,
         }
@@ -154,6 +182,7 @@ impl Insert {
             InsertShape::Hexahedra(mesh) => Some(&mesh.file),
             InsertShape::Generic(_)
             | InsertShape::Cup(_)
+            | InsertShape::Trough(_)
             | InsertShape::Pin(_)
             | InsertShape::Flat(_) => None,
         }
@@ -166,6 +195,7 @@ impl Insert {
             InsertShape::Hexahedra(mesh) => Some(&mut mesh.file),
             InsertShape::Generic(_)
             | InsertShape::Cup(_)
+            | InsertShape::Trough(_)
             | InsertShape::Pin(_)
             | InsertShape::Flat(_) => None,
         }

@@ -49,6 +49,7 @@ impl Case {
                 ("material", &["youngs_modulus_mpa"])
             }
             PlacementError::Unsteady { .. } => ("insert", &["edge_mm"]),
+            PlacementError::TightLigament { .. } => ("machine.ligaments", &["slack_length_mm"]),
             _ => START,
         };
         let mut errors: Vec<(KeyLocation, String)> = Vec::new();

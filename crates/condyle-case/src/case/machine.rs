@@ -6,6 +6,7 @@ use condyle::machine::{Channel, JointDescription, JointIndex, JointKind, Wavefor
 use toml::de::DeTable;
 
 use super::drive::DriveWord;
+use super::ligament::Ligament;
 use super::rig::Rig;
 use super::waveform::{self, waveform_items};
 use crate::config::*;
@@ -21,6 +22,14 @@ choice! {
         Iso142421Like = "iso-14242-1-like",
         /// Hip: head on a block of 23 degrees that orbits.
         Iso142423Like = "iso-14242-3-like",
+        /// Hip: as iso-14242-1-like, with a spring that moves head and cup apart in swing, onto the rim.
+        Iso142424Like = "iso-14242-4-like",
+        /// Lumbar disc: flexion, bending and rotation, a quarter of a cycle apart.
+        Iso181921LumbarLike = "iso-18192-1-lumbar-like",
+        /// Cervical disc: as the lumbar one, with larger motions and smaller loads.
+        Iso181921CervicalLike = "iso-18192-1-cervical-like",
+        /// Ankle: flexion, AP motion and rotation prescribed.
+        Iso22622Like = "iso-22622-like",
         /// Pin on a disc along a circle.
         PinOnDisc = "pin-on-disc",
     }
@@ -83,6 +92,8 @@ pub struct Machine {
     pub freedoms: Freedoms,
     /// The waveforms that drive the freedoms.
     pub waveforms: Waveforms,
+    /// The ligaments of the knee simulator.
+    pub ligaments: Vec<Ligament>,
     /// A machine by joints, in place of the knee simulator that all other fields describe.
     pub rig: Option<Rig>,
 }
@@ -114,10 +125,18 @@ pub struct Waveforms {
 
 impl Preset {
     /// Returns the word and the text of the machine file, unless the preset is the knee simulator.
-    fn rig(self) -> Option<(&'static str, &'static str)> {
+    pub fn rig(self) -> Option<(&'static str, &'static str)> {
         let text = match self {
             Self::Iso142421Like => include_str!("../../machines/iso-14242-1-like.toml"),
             Self::Iso142423Like => include_str!("../../machines/iso-14242-3-like.toml"),
+            Self::Iso142424Like => include_str!("../../machines/iso-14242-4-like.toml"),
+            Self::Iso181921LumbarLike => {
+                include_str!("../../machines/iso-18192-1-lumbar-like.toml")
+            }
+            Self::Iso181921CervicalLike => {
+                include_str!("../../machines/iso-18192-1-cervical-like.toml")
+            }
+            Self::Iso22622Like => include_str!("../../machines/iso-22622-like.toml"),
             Self::PinOnDisc => include_str!("../../machines/pin-on-disc.toml"),
             _ => return None,
         };
@@ -370,6 +389,7 @@ impl Machine {
     ) -> Option<Self> {
         let settings = MachineSettings::read(section, log);
         let springs = Springs::read_in(section, "springs", log);
+        let ligaments = Ligament::read_list(section, log);
         let settings = settings?;
         let freedoms = Freedoms::read(section, settings.preset, log)?;
         let waveforms = waveforms(section, &freedoms, log);
@@ -378,6 +398,7 @@ impl Machine {
             springs: springs?,
             freedoms,
             waveforms: waveforms?,
+            ligaments: ligaments?,
             rig: None,
         })
     }
@@ -480,5 +501,6 @@ impl Settings for Machine {
                 freedom.write(joint, out);
             });
         }
+        Ligament::write_list(&self.ligaments, out);
     }
 }

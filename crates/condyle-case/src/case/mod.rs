@@ -15,6 +15,7 @@ mod femur;
 mod frame;
 mod insert;
 mod key_location;
+mod ligament;
 mod machine;
 mod material;
 mod pressure_table;
@@ -30,8 +31,8 @@ mod wear;
 // Only some of these items are public; the others are for the files of this module.
 pub use self::{
     activity::*, assignment::*, build::*, contact::*, contents::*, drive::*, femur::*, frame::*,
-    insert::*, machine::*, material::*, pressure_table::*, reader::*, rig::*, run_options::*,
-    wear::*,
+    insert::*, ligament::*, machine::*, material::*, pressure_table::*, reader::*, rig::*,
+    run_options::*, wear::*,
 };
 
 #[cfg(feature = "file-system")]

@@ -128,8 +128,15 @@ impl Case {
 /// Returns a case to start from: every key with its default and its meaning.
 pub fn template(preset: Preset) -> String {
     let bodies = match preset {
-        Preset::Iso142421Like | Preset::Iso142423Like => {
+        Preset::Iso142421Like | Preset::Iso142423Like | Preset::Iso142424Like => {
             "[femur]\nshape = \"sphere\"\nradius_mm = 14.0\n[insert]\nshape = \"cup\"\n"
+        }
+        Preset::Iso181921LumbarLike | Preset::Iso181921CervicalLike => {
+            "[femur]\nshape = \"sphere\"\nradius_mm = 13.0\n\
+             [insert]\nshape = \"cup\"\nradius_mm = 13.1\nthickness_mm = 5.0\nopening_deg = 50.0\ninclination_deg = 0.0\n"
+        }
+        Preset::Iso22622Like => {
+            "[femur]\nshape = \"cylinder\"\nradius_mm = 24.5\n[insert]\nshape = \"trough\"\n"
         }
         Preset::PinOnDisc => "[femur]\nshape = \"plane\"\n[insert]\nshape = \"pin\"\n",
         _ => "",

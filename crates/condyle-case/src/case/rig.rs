@@ -2,16 +2,22 @@
 //! files too.
 
 use std::collections::BTreeMap;
+#[cfg(feature = "file-system")]
+use std::path::Path;
 use std::sync::{Arc, LazyLock, Mutex, PoisonError};
 
 use condyle::Vec3;
 use condyle::machine::{
     Axis, Channel, ChannelUnit, CycleQuantity, Drive, JointDescription, JointIndex, JointKind,
-    Loading, Machine, Mechanism, MovedBody, Settling, TestedJoint, Waveform, knee,
+    Loading, Machine, Mechanism, MovedBody, Settling, Spring, TestedJoint, Waveform, knee,
 };
+#[cfg(feature = "file-system")]
+use condyle_mesh::files::{Disk, Files};
 use miette::NamedSource;
 
 use super::drive::DriveWord;
+use super::frame::Side;
+use super::ligament::Ligament;
 use super::waveform;
 use crate::config::*;
 
@@ -85,6 +91,18 @@ settings! {
         damping_n_s_per_mm: Option<f64> = None, in within(0.0, 1000.0);
         /// Viscous damping of a rotation; 0.2 N m s/rad if not given.
         damping_nm_s_per_rad: Option<f64> = None, in within(0.0, 1000.0);
+        /// A spring of a loaded translation: stiffness against positive and against negative motion. It does not act while the machine settles.
+        spring_n_per_mm: Option<[f64; 2]> = None, in within(0.0, 10_000.0);
+        /// A spring of a loaded rotation: stiffness against positive and against negative motion.
+        spring_nm_per_deg: Option<[f64; 2]> = None, in within(0.0, 1000.0);
+        /// Motion each way before the spring of a translation engages.
+        free_play_mm: f64 = 0.0, in within(0.0, 100.0);
+        /// Motion each way before the spring of a rotation engages.
+        free_play_deg: f64 = 0.0, in within(0.0, 180.0);
+        /// Position of a translation where its spring is without force.
+        spring_rest_mm: f64 = 0.0, in within(-100.0, 100.0);
+        /// Position of a rotation where its spring is without force.
+        spring_rest_deg: f64 = 0.0, in within(-180.0, 180.0);
         /// State while the machine settles at the start of the cycle, before the first cycle.
         settling: Settling = Settling::Driven;
         /// True if it reads zero where the machine has settled; true for loaded translations if not given.
@@ -117,19 +135,37 @@ impl RigJointKeys {
             }
         }
         let wrong: &[&'static str] = match self.kind {
-            JointKind::Rotation => &["locked_at_mm", "inertia_kg", "damping_n_s_per_mm"],
+            JointKind::Rotation => &[
+                "locked_at_mm",
+                "inertia_kg",
+                "damping_n_s_per_mm",
+                "spring_n_per_mm",
+                "free_play_mm",
+                "spring_rest_mm",
+            ],
             JointKind::Translation => &[
                 "locked_at_deg",
                 "inertia_kg_m2",
                 "damping_nm_s_per_rad",
                 "turns_per_cycle",
                 "point_mm",
+                "spring_nm_per_deg",
+                "free_play_deg",
+                "spring_rest_deg",
             ],
         };
         for key in wrong.iter().filter(|key| section.value(key).is_some()) {
             let kind = self.kind.text().unwrap_or_default();
             let message = format!("`{key}` does not fit the {kind} \"{name}\"");
             add(key, message, "remove it, or change `kind`");
+        }
+        let spring = match self.kind {
+            JointKind::Rotation => "spring_nm_per_deg",
+            JointKind::Translation => "spring_n_per_mm",
+        };
+        if section.value(spring).is_some() && self.drive != DriveWord::Loaded {
+            let message = format!("the joint \"{name}\" is {drive}: its spring has no effect");
+            add(spring, message, "remove it, or write drive = \"loaded\"");
         }
         let is_prescribed = self.drive == DriveWord::Prescribed;
         if self
@@ -183,6 +219,8 @@ pub struct Rig {
     pub keys: RigKeys,
     /// Its joints, from the bearing to the counterface.
     pub joints: Vec<RigJoint>,
+    /// Its ligaments.
+    pub ligaments: Vec<Ligament>,
 }
 
 /// A joint of a machine from a file.
@@ -229,6 +267,17 @@ impl RigJoint {
         }
     }
 
+    /// Returns the unit of its waveform.
+    pub fn unit(&self) -> &'static str {
+        match channel_of(self.keys.kind, self.keys.drive).map(|channel| channel.unit) {
+            Some(ChannelUnit::Newton) => "N",
+            Some(ChannelUnit::NewtonMetre) => "N m",
+            Some(ChannelUnit::Millimetre) => "mm",
+            Some(ChannelUnit::Degree) => "deg",
+            None => "",
+        }
+    }
+
     fn axis(&self) -> Axis {
         let direction = Vec3::from(self.keys.axis).normalize().into();
         match (self.keys.kind, self.keys.point_mm) {
@@ -242,6 +291,33 @@ impl RigJoint {
         let is_free =
             self.keys.kind == JointKind::Translation && self.keys.drive == DriveWord::Loaded;
         self.keys.zeroed.unwrap_or(is_free)
+    }
+
+    /// Returns the spring of this joint, if it has one, in mm, rad, N and N mm.
+    fn spring(&self, index: JointIndex) -> Option<Spring> {
+        let keys = &self.keys;
+        let unit = keys.kind.file_unit_in_solver();
+        let (given, free_play, rest) = match keys.kind {
+            // N/mm as they are; N m/deg are 1000 N mm for each degree.
+            JointKind::Translation => {
+                (keys.spring_n_per_mm, keys.free_play_mm, keys.spring_rest_mm)
+            }
+            JointKind::Rotation => (
+                keys.spring_nm_per_deg
+                    .map(|both| both.map(|one| 1e3 * one / unit)),
+                keys.free_play_deg,
+                keys.spring_rest_deg,
+            ),
+        };
+        given.map(|[positive_stiffness, negative_stiffness]| Spring {
+            along: index,
+            about: index,
+            offset_mm: 0.0,
+            positive_stiffness,
+            negative_stiffness,
+            free_play: free_play * unit,
+            rest: rest * unit,
+        })
     }
 
     /// Returns the drive in mm, rad, N or N mm.
@@ -313,6 +389,20 @@ impl RigJoint {
 }
 
 impl Rig {
+    /// Reads a machine file on the disk; paths in it are relative to its folder.
+    ///
+    /// # Errors
+    /// Every problem of the file.
+    #[cfg(feature = "file-system")]
+    pub fn from_file(path: &Path) -> Result<Self, Problems> {
+        let files: Arc<dyn Files> = Arc::new(Disk);
+        let source = read_source(files.as_ref(), path).map_err(Problems::unreadable)?;
+        read_document(&source, Base::of(&files, path), |root, log| {
+            check(root, &Self::items(), log);
+            Self::read(root, log)?.ordered(root, log)
+        })
+    }
+
     /// Returns the machine of the `[machine]` table of a case if it is one by joints: from its file, from a shipped file, or
     /// from the table itself; the outer `None` if it has problems.
     pub(super) fn read_from(
@@ -323,18 +413,22 @@ impl Rig {
     ) -> Option<Option<Self>> {
         let mut rig = if section.value("joints").is_some() {
             Self::read(section, log)?
-        } else if let Some(file) = file {
-            let source = file.source(section, "file", log)?;
-            Self::of_text(&source, Base::of(file.shared_files(), file.path()), log)?
-        } else if let Some((word, text)) = preset {
-            let source = Arc::new(NamedSource::new(
-                format!("machines/{word}.toml"),
-                text.to_owned(),
-            ));
-            let base = log.base;
-            Self::of_text(&source, base, log)?
         } else {
-            return Some(None);
+            let mut rig = if let Some(file) = file {
+                let source = file.source(section, "file", log)?;
+                Self::of_text(&source, Base::of(file.shared_files(), file.path()), log)?
+            } else if let Some((word, text)) = preset {
+                let source = Arc::new(NamedSource::new(
+                    format!("machines/{word}.toml"),
+                    text.to_owned(),
+                ));
+                let base = log.base;
+                Self::of_text(&source, base, log)?
+            } else {
+                return Some(None);
+            };
+            rig.ligaments.extend(Ligament::read_list(section, log)?);
+            rig
         };
         // The case may replace these two keys of a file.
         for key in RigKeys::keys() {
@@ -441,9 +535,12 @@ impl Rig {
     }
 
     /// Returns the machine in mm, N, s and rad.
-    pub(super) fn build(&self) -> Machine {
+    pub(super) fn build(&self, side: Side) -> Machine {
         let mut machine = Machine::new(self.mechanism());
+        let ligaments = self.ligaments.iter();
+        machine.ligaments = ligaments.map(|ligament| ligament.build(side)).collect();
         for (joint, index) in self.joints.iter().zip(JointIndex::ALL) {
+            machine.springs.extend(joint.spring(index));
             let built = machine.joint_mut(index);
             built.drive = joint.driven();
             built.axis_point_mm = joint.keys.point_mm.map_or(Vec3::zeros(), Vec3::from);
@@ -501,6 +598,7 @@ impl Rig {
         for joint in &self.joints {
             out.table_of_list("joints", |out| joint.write(out));
         }
+        Ligament::write_list(&self.ligaments, out);
     }
 
     pub(super) fn items() -> Vec<Item> {
@@ -517,7 +615,7 @@ impl Rig {
             )
         };
         let mut items = RigKeys::items();
-        items.push(Item::Table(list));
+        items.extend([Item::Table(list), Ligament::list_item()]);
         items
     }
 
@@ -557,6 +655,7 @@ impl Rig {
         Some(Self {
             keys: keys?,
             joints,
+            ligaments: Ligament::read_list(section, log)?,
         })
     }
 }

@@ -151,8 +151,11 @@ pub(crate) fn springs_far(finished: &Finished<'_>) -> Option<PlausibilityWarning
     let pulled = finished.cycles().flat_map(|cycle| {
         let machine = finished.machine(&cycle);
         let springs = machine.springs.iter();
-        // A spring has no effect on a prescribed motion.
-        let springs = springs.filter(|spring| machine.joint(spring.along).is_loaded());
+        // A spring has no effect on a prescribed motion, and the limit is a length.
+        let springs = springs.filter(|spring| {
+            let joint = machine.joint(spring.along);
+            joint.is_loaded() && joint.description.kind() == JointKind::Translation
+        });
         springs
             .flat_map(|spring| cycle.rows.iter().map(|row| pulled(spring, row, cycle.name)))
             .collect::<Vec<_>>()
@@ -167,7 +170,7 @@ fn pulled(spring: &Spring, row: &CycleRow, cycle: &'static str) -> Pulled {
     let turn = spring.about.of(&row.positions);
     let moved_mm = spring.along.of(&row.positions) + spring.offset_mm * turn.sin();
     Pulled {
-        beyond_mm: moved_mm.abs() - spring.free_play_mm,
+        beyond_mm: (moved_mm - spring.rest).abs() - spring.free_play,
         force_n: spring.force(moved_mm).0.abs(),
         at_percent: row.percent,
         cycle,
@@ -185,7 +188,7 @@ fn far(pulled: Pulled) -> PlausibilityWarning {
         "a spring is {beyond_mm:.1} mm beyond its free play and holds with {force_n:.0} N, at {at_percent:.0} % of the \
             {cycle} cycle; the model's springs have no end, a machine's come to theirs after some {FARTHEST_MM:.0} mm"
     );
-    let advice = "See the AP force and IE torque with their signs, and stiffness and free play in [machine.springs].";
+    let advice = "See the loads with their signs, and stiffness and free play of the springs.";
     let value = (beyond_mm, FARTHEST_MM, "mm");
     warning("springs_far", value, message, advice)
 }
@@ -336,9 +339,10 @@ mod loads_tests {
             along: AP,
             about: IE,
             offset_mm: 28.0,
-            positive_n_per_mm: 7.24,
-            negative_n_per_mm: 33.8,
-            free_play_mm: 2.5,
+            positive_stiffness: 7.24,
+            negative_stiffness: 33.8,
+            free_play: 2.5,
+            rest: 0.0,
         };
         let pulled = pulled(&spring, &row(10.0, 0.0, 14.0), "first");
         assert_eq!(pulled.beyond_mm, 11.5);

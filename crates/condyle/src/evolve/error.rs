@@ -135,6 +135,16 @@ pub enum PlacementError {
          {readings}; check axes and start_mm"
     )]
     NotSettled { residual_n: f64, readings: String },
+    /// A ligament is too short for its attachments.
+    #[error(
+        "the ligament \"{name}\" is strained by {percent:.0} % where the counterface settles, more than {most_percent:.0} %; check its \
+         attachments and its slack length"
+    )]
+    TightLigament {
+        name: String,
+        percent: f64,
+        most_percent: f64,
+    },
     /// The counterface rests where the force jumps.
     #[error(
         "the counterface does not settle on the insert under the axial load: it rests at {readings}, but there the force jumps by \

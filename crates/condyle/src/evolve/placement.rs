@@ -16,6 +16,9 @@ const LONGEST_STEP_MM: f64 = 1.5;
 /// Largest overclosure of a settled counterface, as a share of the thickness there.
 const DEEPEST_SHARE: f64 = 0.5;
 
+/// Largest strain of a ligament: specimens tear at about this strain; our choice.
+const MAX_STRAIN: f64 = 0.3;
+
 /// Returns the machine's chain, zeroed where the counterface settles, and the settled positions.
 pub(super) fn place(
     test: &WearTest,
@@ -45,7 +48,34 @@ pub(super) fn place(
     )
     .map_err(|failed| PlacementError::not_settled(machine, &failed))?;
     check_depth(bodies, contact.as_mut(), &chain.at(&positions).pose)?;
-    Ok(chain.zeroed_at(machine, &positions))
+    let (chain, positions) = chain.zeroed_at(machine, &positions);
+    check_ligaments(test, &chain, &positions)?;
+    Ok((chain, positions))
+}
+
+/// Refuses ligaments that would have torn where the counterface settles.
+fn check_ligaments(
+    test: &WearTest,
+    chain: &Chain,
+    positions: &[f64; 6],
+) -> Result<(), PlacementError> {
+    let at = chain.at(positions);
+    for ligament in test
+        .activities
+        .iter()
+        .flat_map(|activity| &activity.machine.ligaments)
+    {
+        let strain = ligament.strain(&chain.zero_mm(), &at);
+        // The negation includes lengths of zero, whose strain is not a number.
+        if !(strain <= MAX_STRAIN) {
+            return Err(PlacementError::TightLigament {
+                name: ligament.name.clone(),
+                percent: 100.0 * strain,
+                most_percent: 100.0 * MAX_STRAIN,
+            });
+        }
+    }
+    Ok(())
 }
 
 /// Returns the positions with the rotations at the start of the cycle and all other joints at zero.

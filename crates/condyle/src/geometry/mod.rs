@@ -46,7 +46,7 @@ pub use generic_femur::{GenericFemur, GenericFemurShape, PlacedFemur};
 pub use generic_insert::{GenericInsertShape, flat_insert};
 pub use insert::{Insert, InsertError, SurfaceRegions};
 pub use landmarks::{Dishes, posterior_arc_centre_mm};
-pub use round_bearing::{CupShape, pin};
+pub use round_bearing::{CupShape, TroughShape, pin};
 pub use smooth_field::SmoothField;
 pub use surface_sample::{Curvature, SurfaceSample};
 pub use torus::{Cylinder, Torus};

@@ -1,13 +1,11 @@
-//! Round bearings: the cup of a hip and the pin of a pin-on-disc machine.
+//! Round bearings: the cup of a hip, the trough of an ankle and the pin of a pin-on-disc machine.
 
-use std::f64::consts::FRAC_PI_2;
-
-use condyle_mesh::columns::{Meshing, Place, disc_plan};
+use condyle_mesh::columns::{ColumnGrid, Meshing, Place, disc_plan};
 
 use super::insert::{Insert, InsertError};
 use crate::{Mat3, Vec3};
 
-/// Dimensions and mounting of a hemispherical cup around the origin.
+/// Dimensions and mounting of a cup around the origin: a hemisphere, or a shallower part of a sphere.
 ///
 /// The machine presses the counterface along -y. With the cup below its head, as in many simulators, and x anterior, z is
 /// lateral for a left hip; a right hip is its mirror image.
@@ -17,6 +15,8 @@ pub struct CupShape {
     pub radius_mm: f64,
     /// Thickness of the wall.
     pub thickness_mm: f64,
+    /// Angle between its axis and its rim, seen from the centre: 90 degrees of a hemisphere.
+    pub opening_deg: f64,
     /// Angle between the plane of the opening and the plane across the load, in the frontal plane.
     pub inclination_deg: f64,
     /// Rotation of the inclined cup about the load, + turns its opening towards anterior.
@@ -28,6 +28,7 @@ impl Default for CupShape {
         Self {
             radius_mm: 14.1,
             thickness_mm: 8.0,
+            opening_deg: 90.0,
             inclination_deg: 30.0,
             anteversion_deg: 0.0,
         }
@@ -58,19 +59,65 @@ impl CupShape {
     /// # Errors
     /// Too many nodes, and the errors of [`Insert::new`] for dimensions that are not positive.
     pub fn insert(&self, meshing: Meshing) -> Result<Insert, InsertError> {
-        let mounting = self.mounting();
+        let (mounting, opening) = (self.mounting(), self.opening_deg.to_radians());
         let place = |disc: Place, outward: f64| {
-            let (sine, cosine) = (FRAC_PI_2 * disc.norm()).sin_cos();
+            let (sine, cosine) = (opening * disc.norm()).sin_cos();
             let around = disc.try_normalize(0.0).unwrap_or_default() * sine;
             let radius_mm = self.radius_mm + outward * self.thickness_mm;
             mounting * (Vec3::new(around.x, -cosine, around.y) * radius_mm)
         };
-        round_bearing(
-            FRAC_PI_2 * self.radius_mm,
-            self.thickness_mm,
-            meshing,
-            place,
-        )
+        round_bearing(opening * self.radius_mm, self.thickness_mm, meshing, place)
+    }
+}
+
+/// Dimensions of a cylindrical trough along z around the origin, its lowest line at y = -radius.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct TroughShape {
+    /// Radius of the cylinder.
+    pub radius_mm: f64,
+    /// Length along x.
+    pub length_mm: f64,
+    /// Width along z.
+    pub width_mm: f64,
+    /// Thickness below the lowest line.
+    pub thickness_mm: f64,
+}
+
+impl Default for TroughShape {
+    fn default() -> Self {
+        Self {
+            radius_mm: 25.0,
+            length_mm: 30.0,
+            width_mm: 28.0,
+            thickness_mm: 6.0,
+        }
+    }
+}
+
+impl TroughShape {
+    /// Meshes the trough in vertical columns.
+    ///
+    /// # Errors
+    /// Too many nodes, and the errors of [`Insert::new`] for dimensions that are not positive.
+    pub fn insert(&self, meshing: Meshing) -> Result<Insert, InsertError> {
+        let (x_mm, z_mm) = (self.length_mm / 2.0, self.width_mm / 2.0);
+        let grid = ColumnGrid::filling(
+            (-x_mm, -z_mm),
+            (x_mm, z_mm),
+            meshing.edge_mm,
+            meshing.layers,
+        )?;
+        let bottom_mm = -self.radius_mm - self.thickness_mm;
+        let mut columns = vec![(0.0, 0.0); grid.point_count()];
+        for i in 0..=grid.cells.0 {
+            for k in 0..=grid.cells.1 {
+                let [x, _] = grid.place_mm(i, k).into();
+                let top_mm = -(self.radius_mm * self.radius_mm - x * x).max(0.0).sqrt();
+                columns[grid.number(i, k)] = (bottom_mm, top_mm);
+            }
+        }
+        let built = grid.plan().hexahedra(&columns, meshing.layers);
+        Insert::new(built.mesh, &built.articulating, &built.backside)
     }
 }
 
@@ -156,6 +203,27 @@ mod tests {
         }
         .pole();
         assert!((turned.x + 0.5).abs() < 1e-12);
+    }
+
+    #[test]
+    fn verify_volume_of_a_trough_and_surface_of_a_shallow_cup() {
+        let trough = TroughShape::default();
+        let (layers, edge_mm) = (4, 1.0);
+        let built = trough.insert(Meshing { edge_mm, layers }).unwrap();
+        let (r, half) = (trough.radius_mm, trough.length_mm / 2.0);
+        // Area below the arc, seen from the side.
+        let segment = half * (r * r - half * half).sqrt() + r * r * (half / r).asin();
+        let area = trough.length_mm * (r + trough.thickness_mm) - segment;
+        let volume = area * trough.width_mm;
+        assert!((built.volume_mm3() / volume - 1.0).abs() < 1e-3);
+        let dish = CupShape {
+            opening_deg: 30.0,
+            ..CupShape::default()
+        };
+        let dish = dish.insert(Meshing { edge_mm, layers }).unwrap();
+        let cap = 2.0 * PI * 14.1 * 14.1 * (1.0 - 30f64.to_radians().cos());
+        assert!((dish.surface().area_mm2() / cap - 1.0).abs() < 0.01);
+        assert!(dish.mesh().worst_quality() > 0.5);
     }
 
     #[test]

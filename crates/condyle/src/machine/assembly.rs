@@ -1,6 +1,6 @@
 //! A machine: joints with their drives, springs, and its frequency.
 
-use super::{Axis, JointDescription, JointIndex, JointKind, Mechanism, Waveform};
+use super::{Axis, JointDescription, JointIndex, JointKind, Ligament, Mechanism, Waveform};
 use crate::{
     Vec3,
     spatial::{Mat6, Vec6},
@@ -87,7 +87,7 @@ impl Joint {
     }
 }
 
-/// A machine between insert and counterface: six joints, springs, and the frequency of its cycles.
+/// A machine between insert and counterface: six joints, springs, ligaments, and the frequency of its cycles.
 ///
 /// All positions are in the insert frame with the machine at zero.
 #[derive(Clone, Debug, PartialEq)]
@@ -98,6 +98,8 @@ pub struct Machine {
     pub joints: [Joint; 6],
     /// The springs between the bodies.
     pub springs: Vec<Spring>,
+    /// The ligaments between the bodies.
+    pub ligaments: Vec<Ligament>,
     /// Gait cycles per second.
     pub frequency_hz: f64,
 }
@@ -110,6 +112,7 @@ impl Machine {
             mechanism,
             joints: mechanism.joints.each_ref().map(Joint::new),
             springs: Vec::new(),
+            ligaments: Vec::new(),
             frequency_hz: 1.0,
         }
     }
@@ -174,24 +177,28 @@ impl Machine {
     }
 }
 
-/// A spring with free play along a translation of the insert, attached at an offset from the axis of a rotation.
+/// A spring with free play along a joint; along a translation, it may be attached at an offset from the axis of a
+/// rotation.
 ///
-/// It is slack inside the free play and linear beyond it, with one stiffness per direction. The displacement of its
-/// attachment is u = q_along + L sin(q_about), L the offset.
+/// It is slack inside the free play around its rest position and linear beyond it, with one stiffness per direction.
+/// The displacement of its attachment is u = q_along + L sin(q_about), L the offset.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Spring {
-    /// The translation along which it acts.
+    /// The joint along which it acts.
     pub along: JointIndex,
     /// The rotation from whose axis the offset is measured.
     pub about: JointIndex,
-    /// Offset from that axis, mm: a positive rotation moves the attachment in the positive direction.
+    /// Offset from that axis, mm: a positive rotation moves the attachment in the positive direction. A spring of one
+    /// joint alone has none.
     pub offset_mm: f64,
-    /// Stiffness against positive motion, N/mm.
-    pub positive_n_per_mm: f64,
-    /// Stiffness against negative motion, N/mm.
-    pub negative_n_per_mm: f64,
-    /// Motion in each direction before it engages, mm.
-    pub free_play_mm: f64,
+    /// Stiffness against positive motion, N/mm, or N mm/rad along a rotation.
+    pub positive_stiffness: f64,
+    /// Stiffness against negative motion, in the same unit.
+    pub negative_stiffness: f64,
+    /// Motion in each direction before it engages, mm or rad.
+    pub free_play: f64,
+    /// Middle of the free play, mm or rad.
+    pub rest: f64,
 }
 
 /// The force of a spring at given positions, and its derivatives.
@@ -206,15 +213,16 @@ struct Hold {
 }
 
 impl Spring {
-    /// Returns the force on the insert, N, positive along the joint, and its derivative, N/mm, at a displacement of the
-    /// attachment of `moved_mm` from neutral.
-    pub fn force(&self, moved_mm: f64) -> (f64, f64) {
-        if moved_mm > self.free_play_mm {
-            let k = self.positive_n_per_mm;
-            (-k * (moved_mm - self.free_play_mm), -k)
-        } else if moved_mm < -self.free_play_mm {
-            let k = self.negative_n_per_mm;
-            (-k * (moved_mm + self.free_play_mm), -k)
+    /// Returns the load on the joint, N or N mm, and its derivative at a displacement of the attachment of `moved`, mm or
+    /// rad.
+    pub fn force(&self, moved: f64) -> (f64, f64) {
+        let moved = moved - self.rest;
+        if moved > self.free_play {
+            let k = self.positive_stiffness;
+            (-k * (moved - self.free_play), -k)
+        } else if moved < -self.free_play {
+            let k = self.negative_stiffness;
+            (-k * (moved + self.free_play), -k)
         } else {
             (0.0, 0.0)
         }
@@ -260,9 +268,10 @@ mod tests {
             along: AP,
             about: IE,
             offset_mm: 28.0,
-            positive_n_per_mm: 7.24,
-            negative_n_per_mm: 33.8,
-            free_play_mm: 2.5,
+            positive_stiffness: 7.24,
+            negative_stiffness: 33.8,
+            free_play: 2.5,
+            rest: 0.0,
         };
         assert_eq!(spring.force(2.5), (0.0, 0.0));
         assert_eq!(spring.force(-2.5), (0.0, 0.0));

@@ -4,6 +4,7 @@
 
 use super::{Chain, Configuration, Kinematics, Machine};
 use crate::{
+    Vec3,
     contact::{ContactModel, Response},
     spatial::{Mat6, RelativeMotion, Vec6},
 };
@@ -23,6 +24,8 @@ pub(super) fn move_by(positions: &mut [f64; 6], motions: &Vec6) {
 pub(super) struct Balance<'a> {
     machine: &'a Machine,
     configuration: Configuration,
+    /// Position of the counterface frame in the insert frame with the machine at zero.
+    zero_mm: Vec3,
     kinematics: Kinematics,
     contact: &'a dyn ContactModel,
     pub response: Response,
@@ -41,13 +44,14 @@ impl<'a> Balance<'a> {
         Self {
             machine,
             configuration,
+            zero_mm: chain.zero_mm(),
             kinematics,
             contact,
             response,
         }
     }
 
-    /// Returns the residual r = M a + C v + springs - contact - load of every loaded joint, N or N mm; 0 on the
+    /// Returns the residual r = M a + C v + springs + ligaments - contact - load of every loaded joint, N or N mm; 0 on the
     /// others.
     ///
     /// The contact does work on joint j through its screw s_j, the motion of the counterface past the
@@ -63,6 +67,9 @@ impl<'a> Balance<'a> {
         }
         for spring in &self.machine.springs {
             spring.subtract_force(&self.kinematics.positions, &mut residual);
+        }
+        for ligament in &self.machine.ligaments {
+            ligament.subtract_force(&self.zero_mm, &self.configuration, &mut residual);
         }
         for j in self.machine.held() {
             residual[j] = 0.0;
@@ -90,6 +97,9 @@ impl<'a> Balance<'a> {
         }
         for spring in &self.machine.springs {
             spring.subtract_stiffness(&self.kinematics.positions, &mut tangent);
+        }
+        for ligament in &self.machine.ligaments {
+            ligament.subtract_stiffness(&self.zero_mm, &self.configuration, &mut tangent);
         }
         // A held joint keeps its row and column out of the solution without changing the size of the system.
         for j in self.machine.held() {

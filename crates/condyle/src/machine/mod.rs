@@ -1,7 +1,7 @@
 //! The simulator: joints, waveforms, restraints, and equilibrium in time.
 //!
-//! A machine is a table of six joints ([`Mechanism`]; the [`knee`] is one), a drive for each of them, and
-//! springs. It sees a contact interface, never a mesh.
+//! A machine is a table of six joints ([`Mechanism`]; the [`knee`] is one), a drive for each of them,
+//! springs and ligaments. It sees a contact interface, never a mesh.
 
 mod assembly;
 mod balance;
@@ -10,6 +10,7 @@ mod cycle;
 mod explicit;
 mod implicit;
 pub mod knee;
+mod ligament;
 mod mechanism;
 mod settle;
 mod simulator;
@@ -23,6 +24,7 @@ pub use cycle::{
     Cycle, CycleError, Integration, Kinematics, MachineState, SolverCounters, TimeSettings,
     WarmStart,
 };
+pub use ligament::{Ligament, SlackLength};
 pub use mechanism::{
     Axis, Channel, ChannelUnit, CycleQuantity, CycleRow, JointDescription, JointIndex, JointKind,
     Loading, Mechanism, MovedBody, Region, Settling, TestedJoint,

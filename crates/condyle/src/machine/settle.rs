@@ -30,7 +30,7 @@ pub struct NotSettled {
 
 /// Finds the positions of static balance under the load at the start of the cycle.
 ///
-/// The [description](Settling) of each joint defines its state during settling. Springs do not act, and neither does
+/// The [description](Settling) of each joint defines its state during settling. Springs and ligaments do not act, and neither does
 /// friction, since nothing slides. Newton's method with a damping that vanishes near the balance (pseudo-transient
 /// continuation) also converges from a first touch on one side.
 ///
@@ -89,8 +89,9 @@ pub fn settle(
 
 fn settling(machine: &Machine) -> Machine {
     let mut settling = machine.clone();
-    // Neutral is where the springs are slack.
+    // Neutral is where springs and ligaments are slack.
     settling.springs.clear();
+    settling.ligaments.clear();
     for joint in &mut settling.joints {
         (joint.inertia, joint.damping) = (0.0, 0.0);
         let free = Drive::Loaded(Waveform::constant(0.0));

@@ -4,10 +4,10 @@ use std::sync::Arc;
 
 use condyle::contact::{
     ContactLaw, Deformable, Foundation, FrictionModel, PressureLaw, confined_modulus,
-    shell_modulus, softening_modulus,
+    shell_modulus, softening_modulus, trough_modulus,
 };
 use condyle::evolve::{Schedule, Updates, WearTest};
-use condyle::geometry::Insert;
+use condyle::geometry::{Insert, TroughShape};
 use condyle::machine::{Integration, TimeSettings};
 use condyle_fem::ElasticPlastic;
 
@@ -70,7 +70,7 @@ impl Case {
             flexion_axis_mm: femur.flexion_axis_mm,
             start_mm: femur.start_mm,
             start_height_mm: match &self.insert.shape {
-                InsertShape::Cup(_) => Some(0.0),
+                InsertShape::Cup(_) | InsertShape::Trough(_) => Some(0.0),
                 _ => None,
             },
             insert,
@@ -179,6 +179,14 @@ impl Case {
             // A curved layer is softer than a flat one of the same thickness.
             InsertShape::Cup(cup) => {
                 shell_modulus(e_mpa, v, cup.shape.radius_mm, cup.shape.thickness_mm)
+            }
+            InsertShape::Trough(trough) => {
+                let TroughShape {
+                    radius_mm,
+                    thickness_mm,
+                    ..
+                } = trough.shape;
+                trough_modulus(e_mpa, v, radius_mm, thickness_mm)
             }
             _ => confined_modulus(e_mpa, v),
         };

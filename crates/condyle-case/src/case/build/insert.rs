@@ -38,6 +38,7 @@ impl Case {
         match &mut coarser.shape {
             InsertShape::Generic(insert) => insert.edge_mm *= 2.0,
             InsertShape::Cup(insert) => insert.edge_mm *= 2.0,
+            InsertShape::Trough(insert) => insert.edge_mm *= 2.0,
             InsertShape::Pin(insert) => insert.edge_mm *= 2.0,
             InsertShape::Flat(insert) => insert.edge_mm *= 2.0,
             InsertShape::Mesh(insert) => insert.edge_mm *= 2.0,
@@ -85,6 +86,12 @@ impl Case {
                 // A hemisphere has the area of a square with sides of 2.5 radii.
                 let side_mm = 2.5 * insert.shape.radius_mm;
                 check_node_count((side_mm, side_mm), meshing, limits)?;
+                insert.shape.insert(meshing)?
+            }
+            InsertShape::Trough(insert) => {
+                let meshing = meshing(insert.edge_mm, insert.layers);
+                let size_mm = (insert.shape.length_mm, insert.shape.width_mm);
+                check_node_count(size_mm, meshing, limits)?;
                 insert.shape.insert(meshing)?
             }
             InsertShape::Pin(insert) => {

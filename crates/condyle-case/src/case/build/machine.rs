@@ -9,6 +9,7 @@ use condyle::machine::{
 
 use crate::case::contents::Case;
 use crate::case::drive::DriveWord;
+use crate::case::frame::Side;
 use crate::case::machine as case;
 use crate::case::machine::{Freedom, StiffnessOf};
 
@@ -17,8 +18,8 @@ const TONNE_MM2_PER_KG_M2: f64 = 1e3;
 const NMM_PER_NM: f64 = 1e3;
 
 impl case::Machine {
-    /// Builds the machine around an insert whose dishes are lowest at `low_point_mm`.
-    pub(super) fn build(&self, low_point_mm: Vec3) -> Machine {
+    /// Builds the machine around an insert whose dishes are lowest at `low_point_mm`; ligaments are of a joint of `side`.
+    pub(super) fn build(&self, low_point_mm: Vec3, side: Side) -> Machine {
         let settings = &self.settings;
         let mut machine = Machine::new(&KNEE);
         for index in JointIndex::ALL {
@@ -49,11 +50,14 @@ impl case::Machine {
             along: knee::AP,
             about: knee::IE,
             offset_mm: side * springs.lateral_offset_mm,
-            positive_n_per_mm: share * springs.anterior_n_per_mm,
-            negative_n_per_mm: share * springs.posterior_n_per_mm,
-            free_play_mm: springs.free_play_mm,
+            positive_stiffness: share * springs.anterior_n_per_mm,
+            negative_stiffness: share * springs.posterior_n_per_mm,
+            free_play: springs.free_play_mm,
+            rest: 0.0,
         };
         machine.springs = vec![spring(1.0), spring(-1.0)];
+        let ligaments = self.ligaments.iter();
+        machine.ligaments = ligaments.map(|ligament| ligament.build(side)).collect();
         machine.frequency_hz = settings.frequency_hz;
         machine
     }
@@ -100,11 +104,15 @@ pub(super) fn start_flexion_rad(machine: &Machine) -> f64 {
 
 impl Case {
     pub(super) fn built_activities(&self, low_point_mm: Vec3) -> Vec<Activity> {
+        let side = self.heading.side;
         if let Some(rig) = &self.machine.rig {
-            return vec![Activity::only("gait", rig.build())];
+            return vec![Activity::only("gait", rig.build(side))];
         }
         if self.activities.is_empty() {
-            return vec![Activity::only("gait", self.machine.build(low_point_mm))];
+            return vec![Activity::only(
+                "gait",
+                self.machine.build(low_point_mm, side),
+            )];
         }
         let activities = self.activities.iter().zip(self.activities.shares());
         let built = activities.map(|(activity, share)| {
@@ -117,7 +125,7 @@ impl Case {
             own.ie_torque_sign = keys.ie_torque_sign.unwrap_or(own.ie_torque_sign);
             Activity {
                 name: keys.name.clone(),
-                machine: machine.build(low_point_mm),
+                machine: machine.build(low_point_mm, side),
                 share,
             }
         });
@@ -138,7 +146,7 @@ mod tests {
 
     fn machine(text: &str) -> Machine {
         let case = Case::parse(text, "case.toml", Path::new("")).unwrap();
-        case.machine.build(Vec3::new(0.0, 1.0, 23.0))
+        case.machine.build(Vec3::new(0.0, 1.0, 23.0), Side::Right)
     }
 
     fn driven(machine: &Machine, joint: JointIndex, phase: f64) -> f64 {
@@ -187,7 +195,7 @@ mod tests {
         let pair = machine("").springs;
         let each = machine("[machine.springs]\nstiffness_of = \"each\"\n").springs;
         let stiffness = |springs: &[Spring]| -> f64 {
-            springs.iter().map(|spring| spring.negative_n_per_mm).sum()
+            springs.iter().map(|spring| spring.negative_stiffness).sum()
         };
         assert_eq!((stiffness(&pair), stiffness(&each)), (33.8, 67.6));
         assert_eq!(pair[0].offset_mm, -pair[1].offset_mm);

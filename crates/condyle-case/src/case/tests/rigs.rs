@@ -113,13 +113,13 @@ fn machines_that_cannot_work_are_refused_at_their_place() {
             "radius_mm = 14.0",
             "radius_mm = 14.2",
             "insert.shape",
-            "is not larger than its head",
+            "is not larger than its sphere",
         ),
         (
             "shape = \"sphere\"",
             "shape = \"cylinder\"",
             "insert.shape",
-            "needs a head",
+            "needs a sphere",
         ),
     ] {
         let changed = HIP.replace(change, to);
@@ -137,7 +137,7 @@ fn a_cup_needs_a_machine_for_hips() {
     let (_, message) =
         refusal("[femur]\nshape = \"sphere\"\nradius_mm = 14.0\n[insert]\nshape = \"cup\"\n");
     assert!(
-        message.contains("a cup needs a machine for hips"),
+        message.contains("a cup needs a machine by joints"),
         "{message}"
     );
 }

@@ -1,0 +1,83 @@
+//! Ligaments between the bodies.
+
+use condyle::Vec3;
+use condyle::machine;
+
+use super::frame::Side;
+use crate::config::*;
+
+settings! {
+    /// A ligament: a straight line that carries tension only, with a toe region [blankevoort1991]. It does not act while the machine settles.
+    Ligament {
+        /// Its name in messages.
+        name: String;
+        /// Attachment to the bearing, [x, y, z] in the insert frame.
+        on_bearing_mm: [f64; 3], in within(-300.0, 300.0);
+        /// Attachment to the counterface, [x, y, z] in its own frame.
+        on_counterface_mm: [f64; 3], in within(-300.0, 300.0);
+        /// Tension per strain beyond the toe region.
+        stiffness_n: f64, in within(0.0, 1e6);
+        /// Half of the strain at the end of the toe region.
+        toe_strain: f64 = 0.03, in within(1e-4, 0.3);
+        /// Length without force.
+        slack_length_mm: Option<f64> = None, in within(0.1, 500.0);
+        /// In place of `slack_length_mm`: strain with the machine at zero, where the bodies have settled; negative if slack there.
+        strain_at_zero: Option<f64> = None, in within(-0.5, 0.3);
+    }
+}
+
+impl Ligament {
+    /// Returns the ligaments of the list in `section`; none if one has problems.
+    pub(super) fn read_list(section: &Section<'_>, log: &mut Log<'_>) -> Option<Vec<Self>> {
+        let sections = section.list("ligaments", log)?;
+        let read = |section: &Section<'_>| {
+            let ligament = Self::read(section, log)?;
+            if ligament.slack_length_mm.is_some() != ligament.strain_at_zero.is_some() {
+                return Some(ligament);
+            }
+            let message = format!(
+                "the ligament \"{}\" needs one of `slack_length_mm` and `strain_at_zero`",
+                ligament.name
+            );
+            log.problem(section.span(), Fault::new(message, ""));
+            None
+        };
+        sections.iter().map(read).collect()
+    }
+
+    pub(super) fn list_item() -> Item {
+        Item::Table(TableItem {
+            is_list: true,
+            ..TableItem::new(
+                "ligaments",
+                "A ligament between the bodies, on any machine.",
+                Self::items(),
+            )
+        })
+    }
+
+    pub(super) fn write_list(all: &[Self], out: &mut Writer) {
+        for ligament in all {
+            out.table_of_list("ligaments", |out| ligament.write(out));
+        }
+    }
+
+    /// Returns the ligament of a right joint.
+    pub(super) fn build(&self, side: Side) -> machine::Ligament {
+        let on_the_right = |[x, y, z]: [f64; 3]| match side {
+            Side::Right => Vec3::new(x, y, z),
+            Side::Left => Vec3::new(x, y, -z),
+        };
+        machine::Ligament {
+            name: self.name.clone(),
+            on_bearing_mm: on_the_right(self.on_bearing_mm),
+            on_counterface_mm: on_the_right(self.on_counterface_mm),
+            stiffness_n: self.stiffness_n,
+            toe_strain: self.toe_strain,
+            slack: match (self.slack_length_mm, self.strain_at_zero) {
+                (Some(length_mm), _) => machine::SlackLength::Mm(length_mm),
+                (None, strain) => machine::SlackLength::StrainAtZero(strain.unwrap_or_default()),
+            },
+        }
+    }
+}
