@@ -28,7 +28,7 @@ choice! {
         Iso181921LumbarLike = "iso-18192-1-lumbar-like",
         /// Cervical disc: as the lumbar one, with larger motions and smaller loads.
         Iso181921CervicalLike = "iso-18192-1-cervical-like",
-        /// Ankle: flexion, AP motion and rotation prescribed.
+        /// Ankle: flexion prescribed, AP force and torque restrained by the bearing.
         Iso22622Like = "iso-22622-like",
         /// Pin on a disc along a circle.
         PinOnDisc = "pin-on-disc",

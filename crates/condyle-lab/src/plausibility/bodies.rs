@@ -57,7 +57,7 @@ pub(crate) fn wear_at_rim(finished: &Finished<'_>) -> Option<PlausibilityWarning
         "{percent:.1} % of the worn volume lies within {NEAR_RIM_MM} mm of the rim of the articulating surface; up to \
              {MAX_AT_RIM_PERCENT:.0} % is acceptable"
     );
-    let advice = "The femur rides on an edge, where the pressure of an elastic model is not to be believed: look at the placement \
+    let advice = "The counterface rides on an edge, where the pressure of an elastic model is not to be believed: look at the placement \
                  of the bodies, their axes and sides, and at where the outline of the insert was cut.";
     let value = (percent, MAX_AT_RIM_PERCENT, "%");
     (percent > MAX_AT_RIM_PERCENT).then(|| warning("wear_at_rim", value, message, advice))
@@ -86,7 +86,7 @@ pub(crate) fn pressure_at_rim(finished: &Finished<'_>) -> Option<PlausibilityWar
         place.x, place.z
     );
     let advice =
-        "The femur rides on an edge: see the placement of the bodies, their axes and sides.";
+        "The counterface rides on an edge: see the placement of the bodies, their axes and sides.";
     let value = (from_rim_mm, NEAR_RIM_MM, "mm");
     Some(warning("pressure_at_rim", value, message, advice))
 }
@@ -247,7 +247,7 @@ pub(crate) fn femur_beyond_rim(finished: &Finished<'_>) -> Option<PlausibilityWa
     let message = format!(
         "for {percent:.0} % of the {cycle} cycle the {side} condyle is on or beyond the rim of the articulating surface"
     );
-    let advice = "The femur rides off the insert: look at the placement of the bodies (start_mm, axes, sides), the sizes of \
+    let advice = "The counterface rides off the insert: look at the placement of the bodies (start_mm, axes, sides), the sizes of \
                     both, loads and springs, and at where the outline of the insert was cut.";
     let value = (percent, MAX_BEYOND_PERCENT, "%");
     Some(warning("femur_beyond_rim", value, message, advice))

@@ -79,7 +79,7 @@ pub(crate) fn not_reached(finished: &Finished<'_>) -> Vec<PlausibilityWarning> {
             "for {percent:.0} % of the {cycle} cycle contact and springs leave over {within_percent:.0} % of the {name}: up to \
                 {most:.1} {unit} of {load:.1} {unit}, which inertia and damping take"
         );
-        let advice = "The femur leaves the insert, or is thrown or dragged about: see that the load does not jump, the \
+        let advice = "The counterface leaves the insert, or is thrown or dragged about: see that the load does not jump, the \
                     frequency, and inertia and damping of the machine.";
         let value = (percent, applied.most_percent, "%");
         (percent > applied.most_percent)
@@ -123,8 +123,8 @@ fn missing(
     index: JointIndex,
     waveform: &Waveform,
 ) -> f64 {
-    // Contact alone balances the axial joint, so that the part that it does not carry is missed.
-    if machine.pressing_joint() == Some(index) {
+    // Contact alone balances the axial joint, so that the part that it does not carry is missed; ligaments pull too.
+    if machine.pressing_joint() == Some(index) && machine.ligaments.is_empty() {
         return load(waveform, &rows[row]).abs() - rows[row].axial_force_n;
     }
     let (count, joint) = (rows.len(), machine.joint(index));
@@ -227,7 +227,7 @@ fn range(finished: &Finished<'_>, (joint, most): MostMotion) -> Option<Plausibil
         "{} moves by {range:.1} {unit} in the {cycle} cycle; the limit is {most:.0}",
         description.symbol
     );
-    let advice = "See the loads, the springs and their free play, and whether the femur is held by the dishes at all.";
+    let advice = "See the loads, the springs and their free play, and whether the dishes hold the counterface at all.";
     let (check, value) = (format!("{}_range", description.name), (range, most, unit));
     (range > most).then(|| warning(&check, value, message, advice))
 }

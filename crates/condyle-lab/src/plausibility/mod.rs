@@ -30,13 +30,14 @@ const PLACE: [Check; 3] = [
 ];
 
 /// Load on the polyethylene, and quality of the solution.
-const REST: [Check; 11] = [
+const REST: [Check; 12] = [
     bodies::insert_rocks,
     interval_too_wide,
     mesh_quality,
     counts_of_volume,
     single_update,
     updates_too_few,
+    updates_overshoot,
     error_incomplete,
     error_of_mass,
     error_of_depth,
@@ -82,6 +83,8 @@ const MAX_ADDED_INERTIA: f64 = 1.0;
 /// Largest wear in one step, as a multiple of the wear that evens out the pressure at the bottom of the scar: the
 /// shape of at most a tenth of the depth is then wrong. Our choice.
 const MAX_RELAXED: f64 = 0.2;
+/// Length of an explicit step, in units of 1 / relaxation, beyond which it is unstable.
+const MAX_STABLE: f64 = 2.0;
 /// Part of the depth's error that is due to updates, %, up to which the estimates held for random designs.
 const MAX_OF_UPDATES_PERCENT: f64 = 2.0;
 const MAX_ERROR_PERCENT: f64 = 5.0;
@@ -185,6 +188,23 @@ pub(crate) fn single_update(finished: &Finished<'_>) -> Option<PlausibilityWarni
     let advice = "Take more updates, or update = \"auto\".";
     (state.updates.len() == 1 && relaxed > MAX_RELAXED)
         .then(|| warning("single_update", (relaxed, MAX_RELAXED, ""), message, advice))
+}
+
+/// Warns of steps beyond the stability of the explicit march: a place that lies too deep carries so little that the next step
+/// leaves it too high, and the other way round.
+pub(crate) fn updates_overshoot(finished: &Finished<'_>) -> Option<PlausibilityWarning> {
+    let state = finished.march.state();
+    let step = state.last_step.as_ref()?;
+    let relaxed = step.relaxation_per_cycle * step.interval;
+    let message = format!(
+        "a step of {:.0} cycles wears {relaxed:.1} times as deep as would even out the pressure; from {MAX_STABLE} on, steps \
+             overshoot in turns, and the error stated does not show it",
+        step.interval
+    );
+    let advice = "Take more updates, or update = \"auto\".";
+    let value = (relaxed, MAX_STABLE, "");
+    (state.updates.len() > 1 && relaxed > MAX_STABLE)
+        .then(|| warning("updates_overshoot", value, message, advice))
 }
 
 /// Warns of steps of the march that are so long that the estimate of their error is too small.
