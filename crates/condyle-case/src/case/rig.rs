@@ -95,14 +95,14 @@ settings! {
         spring_n_per_mm: Option<[f64; 2]> = None, in within(0.0, 10_000.0);
         /// A spring of a loaded rotation: stiffness against positive and against negative motion.
         spring_nm_per_deg: Option<[f64; 2]> = None, in within(0.0, 1000.0);
-        /// Motion each way before the spring of a translation engages.
-        free_play_mm: f64 = 0.0, in within(0.0, 100.0);
-        /// Motion each way before the spring of a rotation engages.
-        free_play_deg: f64 = 0.0, in within(0.0, 180.0);
-        /// Position of a translation where its spring is without force.
-        spring_rest_mm: f64 = 0.0, in within(-100.0, 100.0);
-        /// Position of a rotation where its spring is without force.
-        spring_rest_deg: f64 = 0.0, in within(-180.0, 180.0);
+        /// Motion each way before the spring of a translation engages; none if not given.
+        free_play_mm: Option<f64> = None, in within(0.0, 100.0);
+        /// Motion each way before the spring of a rotation engages; none if not given.
+        free_play_deg: Option<f64> = None, in within(0.0, 180.0);
+        /// Position of a translation where its spring is without force; zero if not given.
+        spring_rest_mm: Option<f64> = None, in within(-100.0, 100.0);
+        /// Position of a rotation where its spring is without force; zero if not given.
+        spring_rest_deg: Option<f64> = None, in within(-180.0, 180.0);
         /// State while the machine settles at the start of the cycle, before the first cycle.
         settling: Settling = Settling::Driven;
         /// True if it reads zero where the machine has settled; true for loaded translations if not given.
@@ -315,8 +315,8 @@ impl RigJoint {
             offset_mm: 0.0,
             positive_stiffness,
             negative_stiffness,
-            free_play: free_play * unit,
-            rest: rest * unit,
+            free_play: free_play.unwrap_or(0.0) * unit,
+            rest: rest.unwrap_or(0.0) * unit,
         })
     }
 

@@ -184,6 +184,23 @@ fn steps_of_the_march_too_long_for_their_own_estimate_are_told() {
 }
 
 #[test]
+fn steps_that_overshoot_in_a_conforming_cup_are_told() {
+    let case = |updates: usize| {
+        format!(
+            "[femur]\nshape = \"sphere\"\nradius_mm = 14.0\n[insert]\nshape = \"cup\"\nedge_mm = 2.0\nlayers = 2\n\
+             [machine]\npreset = \"iso-14242-3-like\"\n[march]\nupdates = {updates}\n[accuracy]\nestimate = false\n"
+        )
+    };
+    for (updates, overshoots) in [(8, true), (24, false)] {
+        let bench = Bench::with_case(&case(updates));
+        bench.run_into("out");
+        let found = checks(&bench, "out");
+        let told = found.iter().any(|found| found == "updates_overshoot");
+        assert_eq!(told, overshoots, "{updates} updates: {found:?}");
+    }
+}
+
+#[test]
 fn yield_is_noted_with_area_and_time_and_is_no_doubt() {
     let bench = Bench::with_case(SMALL);
     let said = bench.run_into("out");

@@ -191,7 +191,8 @@ pub(crate) fn single_update(finished: &Finished<'_>) -> Option<PlausibilityWarni
 }
 
 /// Warns of steps beyond the stability of the explicit march: a place that lies too deep carries so little that the next step
-/// leaves it too high, and the other way round.
+/// leaves it too high, and the other way round. In a deformable insert the neighbours of a place even out its pressure, and
+/// steps several times as long do not overshoot.
 pub(crate) fn updates_overshoot(finished: &Finished<'_>) -> Option<PlausibilityWarning> {
     let state = finished.march.state();
     let step = state.last_step.as_ref()?;
@@ -203,7 +204,8 @@ pub(crate) fn updates_overshoot(finished: &Finished<'_>) -> Option<PlausibilityW
     );
     let advice = "Take more updates, or update = \"auto\".";
     let value = (relaxed, MAX_STABLE, "");
-    (state.updates.len() > 1 && relaxed > MAX_STABLE)
+    let is_local = finished.march.test().contact.is_local();
+    (is_local && state.updates.len() > 1 && relaxed > MAX_STABLE)
         .then(|| warning("updates_overshoot", value, message, advice))
 }
 

@@ -37,5 +37,5 @@ pub use model::{
 };
 pub use pressure_law::{
     PressureLaw, PressureTable, PressureTableError, confined_modulus, shell_modulus,
-    softening_modulus, trough_modulus,
+    softening_modulus,
 };

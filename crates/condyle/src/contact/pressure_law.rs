@@ -73,23 +73,6 @@ pub fn shell_modulus(
     youngs_modulus_mpa * thickness_mm * shape / (radius_mm * (r - 1.0))
 }
 
-/// Returns the modulus of a cylindrical trough bonded to a rigid outer cylinder in plane strain, whose inside is displaced
-/// evenly, MPa; the pressure per displacement, times the thickness, as [`shell_modulus`] of a cup.
-///
-/// $K = \frac{E h}{R (q - 1) (1 + \nu)} \left(\frac{1}{1 - 2 \nu} + q\right)$ with $q = (1 + h/R)^2$, from
-/// Lame's solution u = A r + B/r.
-pub fn trough_modulus(
-    youngs_modulus_mpa: f64,
-    poissons_ratio: f64,
-    radius_mm: f64,
-    thickness_mm: f64,
-) -> f64 {
-    let v = poissons_ratio;
-    let q = ((radius_mm + thickness_mm) / radius_mm).powi(2);
-    let shape = (1.0 / (1.0 - 2.0 * v) + q) / (1.0 + v);
-    youngs_modulus_mpa * thickness_mm * shape / (radius_mm * (q - 1.0))
-}
-
 /// Returns the modulus at zero pressure, MPa, of a confined layer whose material follows the uniaxial curve
 /// $\epsilon = \tfrac{1}{2} \epsilon_0 (\sigma/\sigma_0 + (\sigma/\sigma_0)^3)$:
 /// [`confined_modulus`] of $E = 2 \sigma_0/\epsilon_0$.

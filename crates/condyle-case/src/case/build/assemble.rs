@@ -4,10 +4,10 @@ use std::sync::Arc;
 
 use condyle::contact::{
     ContactLaw, Deformable, Foundation, FrictionModel, PressureLaw, confined_modulus,
-    shell_modulus, softening_modulus, trough_modulus,
+    shell_modulus, softening_modulus,
 };
 use condyle::evolve::{Schedule, Updates, WearTest};
-use condyle::geometry::{Insert, TroughShape};
+use condyle::geometry::Insert;
 use condyle::machine::{Integration, TimeSettings};
 use condyle_fem::ElasticPlastic;
 
@@ -179,14 +179,6 @@ impl Case {
             // A curved layer is softer than a flat one of the same thickness.
             InsertShape::Cup(cup) => {
                 shell_modulus(e_mpa, v, cup.shape.radius_mm, cup.shape.thickness_mm)
-            }
-            InsertShape::Trough(trough) => {
-                let TroughShape {
-                    radius_mm,
-                    thickness_mm,
-                    ..
-                } = trough.shape;
-                trough_modulus(e_mpa, v, radius_mm, thickness_mm)
             }
             _ => confined_modulus(e_mpa, v),
         };

@@ -43,8 +43,11 @@ fn a_machine_by_joints_is_written_and_read_back() {
     let case = Case::parse(HIP, "case.toml", Path::new("")).unwrap();
     let again = Case::parse(&case.to_toml(), "case.toml", Path::new("")).unwrap();
     assert_eq!(case, again);
-    for preset in ["iso-14242-1-like", "iso-14242-3-like", "pin-on-disc"] {
-        let preset = crate::case::Preset::from_word(preset).unwrap();
+    for preset in crate::case::Preset::ALL
+        .iter()
+        .filter(|preset| preset.rig().is_some())
+    {
+        let preset = *preset;
         let text = crate::case::template(preset);
         let case = Case::parse(&text, "case.toml", Path::new("")).unwrap();
         assert!(case.machine.rig.is_some());
@@ -104,6 +107,18 @@ fn machines_that_cannot_work_are_refused_at_their_place() {
             "must name every joint once",
         ),
         (
+            "drive = \"prescribed\"",
+            "drive = \"prescribed\"\nspring_nm_per_deg = [1, 1]",
+            "machine.joints.spring_nm_per_deg",
+            "its spring has no effect",
+        ),
+        (
+            "axis = [0, -1, 0]",
+            "axis = [0, -1, 0]\nspring_nm_per_deg = [1, 1]",
+            "machine.joints.spring_nm_per_deg",
+            "does not fit the",
+        ),
+        (
             "tests = \"hip\"",
             "tests = \"hip\"\nap_force_sign = -1",
             "machine.ap_force_sign",
@@ -139,5 +154,65 @@ fn a_cup_needs_a_machine_for_hips() {
     assert!(
         message.contains("a cup needs a machine by joints"),
         "{message}"
+    );
+}
+
+const LIGAMENT: &str = "[[machine.ligaments]]\nname = \"pcl\"\non_bearing_mm = [-20, -8, 0]\n\
+                        on_counterface_mm = [2, -6, 0]\nstiffness_n = 9000\nslack_length_mm = 30\n";
+
+#[test]
+fn ligaments_are_written_and_read_back_on_any_machine() {
+    for machine in [
+        HIP,
+        "",
+        "[femur]\nshape = \"sphere\"\nradius_mm = 14.0\n[insert]\nshape = \"cup\"\n[machine]\npreset = \"iso-14242-1-like\"\n",
+    ] {
+        let case =
+            Case::parse(&format!("{machine}{LIGAMENT}"), "case.toml", Path::new("")).unwrap();
+        let again = Case::parse(&case.to_toml(), "case.toml", Path::new("")).unwrap();
+        assert_eq!(case, again);
+        let ligaments = case
+            .machine
+            .rig
+            .map_or(case.machine.ligaments, |rig| rig.ligaments);
+        assert_eq!(ligaments.len(), 1);
+    }
+}
+
+#[test]
+fn ligaments_without_a_length_are_refused() {
+    let none = LIGAMENT.replace("slack_length_mm = 30\n", "");
+    let both = format!("{LIGAMENT}strain_at_zero = 0.0\n");
+    for text in [none, both] {
+        assert!(
+            refusal(&text)
+                .1
+                .contains("needs one of `slack_length_mm` and `strain_at_zero`")
+        );
+    }
+}
+
+#[test]
+fn a_ligament_too_short_for_its_attachments_is_refused_at_its_place() {
+    let short = LIGAMENT.replace("slack_length_mm = 30", "slack_length_mm = 5");
+    let case = Case::parse(&short, "case.toml", Path::new("")).unwrap();
+    let error = condyle::evolve::March::start(case.build(1).unwrap().test)
+        .err()
+        .unwrap();
+    let problems = case.placement_at_its_key(&error, &[]);
+    let first = &problems.problems()[0];
+    assert!(
+        first
+            .to_string()
+            .contains("the ligament \"pcl\" is strained by"),
+        "{first}"
+    );
+    assert!(
+        first
+            .key()
+            .unwrap_or_default()
+            .starts_with("machine.ligaments"),
+        "{:?}",
+        first.key()
     );
 }
