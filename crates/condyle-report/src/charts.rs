@@ -66,27 +66,36 @@ impl Channel {
     /// Returns the column called `column`: one of a knee, or of another machine a joint whose name and unit it is.
     pub(crate) fn find(column: &str) -> Option<Self> {
         let known = CHANNELS.iter().find(|channel| channel.column == column);
-        known.cloned().or_else(|| {
-            let (name, unit) = split_unit(column);
-            let (unit, min_span) = match unit {
-                Some("deg") => ("degrees", 1.0),
-                Some("mm") => ("mm", 0.1),
-                _ => return None,
-            };
-            Some(Self {
-                column: Cow::Owned(column.to_owned()),
-                title: Cow::Owned(first_letter_large(&name.replace('_', " "))),
-                unit,
-                positive: "",
-                from_zero: false,
-                min_span,
-            })
+        known.cloned().or_else(|| Self::of_joint(column))
+    }
+
+    /// Returns the column of a joint by its name and unit.
+    fn of_joint(column: &str) -> Option<Self> {
+        let (name, _) = split_unit(column);
+        let (unit, min_span) = match column.strip_prefix(name) {
+            Some("_deg") => ("degrees", 1.0),
+            Some("_mm") => ("mm", 0.1),
+            _ => return None,
+        };
+        Some(Self {
+            column: Cow::Owned(column.to_owned()),
+            title: Cow::Owned(first_letter_large(&name.replace('_', " "))),
+            unit,
+            positive: "",
+            from_zero: false,
+            min_span,
         })
     }
 
     /// Returns the columns of a table of a cycle, in their order.
     pub(crate) fn all_of(table: &Table) -> impl Iterator<Item = Self> + '_ {
-        table.names().iter().filter_map(|name| Self::find(name))
+        // A joint of another machine may have the name of one of a knee, and move another body.
+        let is_knee = table.column(KNEE.regions[0].column).is_some();
+        let of_machine = move |name: &String| {
+            let own = (!is_knee).then(|| Self::of_joint(name)).flatten();
+            own.or_else(|| Self::find(name))
+        };
+        table.names().iter().filter_map(of_machine)
     }
 
     pub(crate) fn panel(&self, curves: Vec<Curve>) -> Panel {

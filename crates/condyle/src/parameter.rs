@@ -44,6 +44,7 @@ const UNITS: &[(&str, &str)] = &[
     ("_nm_s_per_rad", "N m s/rad"),
     ("_n_s_per_mm", "N s/mm"),
     ("_mm_per_s", "mm/s"),
+    ("_nm_per_deg", "N m/deg"),
     ("_n_per_mm", "N/mm"),
     ("_kg_m2", "kg m2"),
     ("_percent", "%"),

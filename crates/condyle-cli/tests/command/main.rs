@@ -18,6 +18,7 @@ mod femur_meshes;
 mod folders;
 mod interrupt;
 mod left_knee;
+mod machines;
 mod measured;
 mod new_from_meshes;
 mod output;
