@@ -11,16 +11,18 @@ use crate::{
 
 pub fn machine(arguments: &Machine) -> Done {
     match arguments {
-        Machine::List => {
-            let mut lines = Lines::default();
-            for preset in Preset::ALL {
-                lines.line(format!("{:<28}{}", preset.word(), preset.about()));
-            }
-            output::print(lines.text())
-        }
+        Machine::List => list(),
         Machine::Show { preset } => output::print(&shown(*preset)),
         Machine::Check { file } => check(file),
     }
+}
+
+fn list() -> Done {
+    let mut lines = Lines::default();
+    for preset in Preset::ALL {
+        lines.line(format!("{:<28}{}", preset.word(), preset.about()));
+    }
+    output::print(lines.text())
 }
 
 /// Returns the file of a machine by joints, or the tables of the knee simulator in a case.

@@ -239,11 +239,8 @@ pub(crate) fn wear(results: &Results) -> Vec<Panel> {
 pub(crate) fn cycles_of(results: &Results) -> f64 {
     let table = results.wear.as_ref();
     let cycles = table.and_then(|table| table.column("cycles"));
-    cycles
-        .unwrap_or_default()
-        .iter()
-        .copied()
-        .fold(0.0, f64::max)
+    let cycles = cycles.unwrap_or_default().iter();
+    cycles.copied().fold(0.0, f64::max)
 }
 
 /// [`wear`] with an axis that ends at `cycles`.

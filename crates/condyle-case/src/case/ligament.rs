@@ -46,13 +46,11 @@ impl Ligament {
     }
 
     pub(super) fn list_item() -> Item {
+        let about = "A ligament between the bodies, on any machine.";
+        let item = TableItem::new("ligaments", about, Self::items());
         Item::Table(TableItem {
             is_list: true,
-            ..TableItem::new(
-                "ligaments",
-                "A ligament between the bodies, on any machine.",
-                Self::items(),
-            )
+            ..item
         })
     }
 

@@ -125,9 +125,9 @@ impl Case {
     }
 }
 
-/// Returns a case to start from: every key with its default and its meaning.
-pub fn template(preset: Preset) -> String {
-    let bodies = match preset {
+/// Returns the tables of bodies that fit a machine other than a knee simulator.
+fn bodies_for(preset: Preset) -> &'static str {
+    match preset {
         Preset::Iso142421Like | Preset::Iso142423Like | Preset::Iso142424Like => {
             "[femur]\nshape = \"sphere\"\nradius_mm = 14.0\n[insert]\nshape = \"cup\"\n"
         }
@@ -140,7 +140,12 @@ pub fn template(preset: Preset) -> String {
         }
         Preset::PinOnDisc => "[femur]\nshape = \"plane\"\n[insert]\nshape = \"pin\"\n",
         _ => "",
-    };
+    }
+}
+
+/// Returns a case to start from: every key with its default and its meaning.
+pub fn template(preset: Preset) -> String {
+    let bodies = bodies_for(preset);
     let text = format!("{bodies}[machine]\npreset = {:?}\n", preset.word());
     match CaseReader::new(MemoryFiles::default()).parse(&text, "template", Path::new("")) {
         Ok(case) => case.written(true),

@@ -11,6 +11,7 @@ use condyle::machine::{
     Axis, Channel, ChannelUnit, CycleQuantity, Drive, JointDescription, JointIndex, JointKind,
     Loading, Machine, Mechanism, MovedBody, Settling, Spring, TestedJoint, Waveform, knee,
 };
+use condyle::parameter::unit_of;
 #[cfg(feature = "file-system")]
 use condyle_mesh::files::{Disk, Files};
 use miette::NamedSource;
@@ -111,6 +112,38 @@ settings! {
 }
 
 impl RigJointKeys {
+    /// Returns the keys that do not apply to its kind of motion.
+    fn keys_of_other_kind(&self) -> &'static [&'static str] {
+        match self.kind {
+            JointKind::Rotation => &[
+                "locked_at_mm",
+                "inertia_kg",
+                "damping_n_s_per_mm",
+                "spring_n_per_mm",
+                "free_play_mm",
+                "spring_rest_mm",
+            ],
+            JointKind::Translation => &[
+                "locked_at_deg",
+                "inertia_kg_m2",
+                "damping_nm_s_per_rad",
+                "turns_per_cycle",
+                "point_mm",
+                "spring_nm_per_deg",
+                "free_play_deg",
+                "spring_rest_deg",
+            ],
+        }
+    }
+
+    /// Returns the key of its spring's stiffness.
+    fn spring_key(&self) -> &'static str {
+        match self.kind {
+            JointKind::Rotation => "spring_nm_per_deg",
+            JointKind::Translation => "spring_n_per_mm",
+        }
+    }
+
     /// Returns what is wrong with the keys of a joint, each with the key at fault.
     fn faults(&self, section: &Section<'_>) -> Vec<(&'static str, Fault)> {
         let mut faults = Vec::new();
@@ -134,35 +167,16 @@ impl RigJointKeys {
                 add(table, message, "remove one of them: a joint has one drive");
             }
         }
-        let wrong: &[&'static str] = match self.kind {
-            JointKind::Rotation => &[
-                "locked_at_mm",
-                "inertia_kg",
-                "damping_n_s_per_mm",
-                "spring_n_per_mm",
-                "free_play_mm",
-                "spring_rest_mm",
-            ],
-            JointKind::Translation => &[
-                "locked_at_deg",
-                "inertia_kg_m2",
-                "damping_nm_s_per_rad",
-                "turns_per_cycle",
-                "point_mm",
-                "spring_nm_per_deg",
-                "free_play_deg",
-                "spring_rest_deg",
-            ],
-        };
-        for key in wrong.iter().filter(|key| section.value(key).is_some()) {
+        for key in self
+            .keys_of_other_kind()
+            .iter()
+            .filter(|key| section.value(key).is_some())
+        {
             let kind = self.kind.text().unwrap_or_default();
             let message = format!("`{key}` does not fit the {kind} \"{name}\"");
             add(key, message, "remove it, or change `kind`");
         }
-        let spring = match self.kind {
-            JointKind::Rotation => "spring_nm_per_deg",
-            JointKind::Translation => "spring_n_per_mm",
-        };
+        let spring = self.spring_key();
         if section.value(spring).is_some() && self.drive != DriveWord::Loaded {
             let message = format!("the joint \"{name}\" is {drive}: its spring has no effect");
             add(spring, message, "remove it, or write drive = \"loaded\"");
@@ -269,13 +283,11 @@ impl RigJoint {
 
     /// Returns the unit of its waveform.
     pub fn unit(&self) -> &'static str {
-        match channel_of(self.keys.kind, self.keys.drive).map(|channel| channel.unit) {
-            Some(ChannelUnit::Newton) => "N",
-            Some(ChannelUnit::NewtonMetre) => "N m",
-            Some(ChannelUnit::Millimetre) => "mm",
-            Some(ChannelUnit::Degree) => "deg",
-            None => "",
-        }
+        let channel = channel_of(self.keys.kind, self.keys.drive);
+        let suffix = channel.map(|channel| format!("_{}", channel.unit.suffix()));
+        suffix
+            .and_then(|suffix| unit_of(&suffix))
+            .unwrap_or_default()
     }
 
     fn axis(&self) -> Axis {

@@ -8,7 +8,7 @@ pub(crate) mod bodies;
 mod finished;
 pub(crate) mod loads;
 
-use condyle::evolve::March;
+use condyle::evolve::{March, UpdateRecord};
 use condyle_results::{
     MAX_FACTOR, PlausibilityWarning, Summary,
     catalogue::{
@@ -85,6 +85,8 @@ const MAX_ADDED_INERTIA: f64 = 1.0;
 const MAX_RELAXED: f64 = 0.2;
 /// Length of an explicit step, in units of 1 / relaxation, beyond which it is unstable.
 const MAX_STABLE: f64 = 2.0;
+/// Smallest change of the wear rate from step to step that counts as an overshoot.
+const MIN_ALTERNATION: f64 = 0.01;
 /// Part of the depth's error that is due to updates, %, up to which the estimates held for random designs.
 const MAX_OF_UPDATES_PERCENT: f64 = 2.0;
 const MAX_ERROR_PERCENT: f64 = 5.0;
@@ -205,8 +207,23 @@ pub(crate) fn updates_overshoot(finished: &Finished<'_>) -> Option<PlausibilityW
     let advice = "Take more updates, or update = \"auto\".";
     let value = (relaxed, MAX_STABLE, "");
     let is_local = finished.march.test().contact.is_local();
-    (is_local && state.updates.len() > 1 && relaxed > MAX_STABLE)
+    (is_local && relaxed > MAX_STABLE && alternates(&state.updates))
         .then(|| warning("updates_overshoot", value, message, advice))
+}
+
+/// Returns whether the last steps wear more and less in turns.
+fn alternates(updates: &[UpdateRecord]) -> bool {
+    let rate = |pair: &[UpdateRecord]| {
+        (pair[1].mass_loss_mg - pair[0].mass_loss_mg) / (pair[1].cycles - pair[0].cycles)
+    };
+    let rates: Vec<f64> = updates.windows(2).map(rate).collect();
+    let changes: Vec<f64> = rates.windows(2).map(|pair| pair[1] - pair[0]).collect();
+    // Three changes in turns; smaller ones do not matter.
+    changes.last_chunk::<3>().is_some_and(|last| {
+        let least = MIN_ALTERNATION * rates.last().copied().unwrap_or_default();
+        last.windows(2).all(|pair| pair[0] * pair[1] < 0.0)
+            && last.iter().all(|change| change.abs() > least)
+    })
 }
 
 /// Warns of steps of the march that are so long that the estimate of their error is too small.

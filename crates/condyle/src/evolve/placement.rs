@@ -59,13 +59,13 @@ fn check_ligaments(
     chain: &Chain,
     positions: &[f64; 6],
 ) -> Result<(), PlacementError> {
-    let at = chain.at(positions);
+    let pose = chain.at(positions).pose;
     for ligament in test
         .activities
         .iter()
         .flat_map(|activity| &activity.machine.ligaments)
     {
-        let strain = ligament.strain(&chain.zero_mm(), &at);
+        let strain = ligament.strain(&chain.zero_mm(), &pose);
         // The negation includes lengths of zero, whose strain is not a number.
         if !(strain <= MAX_STRAIN) {
             return Err(PlacementError::TightLigament {

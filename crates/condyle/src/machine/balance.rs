@@ -68,8 +68,9 @@ impl<'a> Balance<'a> {
         for spring in &self.machine.springs {
             spring.subtract_force(&self.kinematics.positions, &mut residual);
         }
+        let Configuration { pose, screws } = &self.configuration;
         for ligament in &self.machine.ligaments {
-            ligament.subtract_force(&self.zero_mm, &self.configuration, &mut residual);
+            ligament.subtract_force(&self.zero_mm, pose, screws, &mut residual);
         }
         for j in self.machine.held() {
             residual[j] = 0.0;
@@ -98,8 +99,9 @@ impl<'a> Balance<'a> {
         for spring in &self.machine.springs {
             spring.subtract_stiffness(&self.kinematics.positions, &mut tangent);
         }
+        let Configuration { pose, screws } = &self.configuration;
         for ligament in &self.machine.ligaments {
-            ligament.subtract_stiffness(&self.zero_mm, &self.configuration, &mut tangent);
+            ligament.subtract_stiffness(&self.zero_mm, pose, screws, &mut tangent);
         }
         // A held joint keeps its row and column out of the solution without changing the size of the system.
         for j in self.machine.held() {

@@ -1,9 +1,8 @@
 //! A ligament between the bodies: a straight line element that carries tension only.
 
-use super::Configuration;
 use crate::{
     Vec3,
-    spatial::{Mat6, Vec6},
+    spatial::{Mat6, Pose, Twist, Vec6},
 };
 
 /// The length at which a ligament goes slack.
@@ -37,7 +36,7 @@ pub struct Ligament {
     pub slack: SlackLength,
 }
 
-/// A ligament at a pose.
+/// A ligament at a pose of the counterface, with the joints' screws there.
 struct Stretched {
     tension_n: f64,
     /// Derivative of the tension by the length, N/mm.
@@ -73,14 +72,14 @@ impl Ligament {
         }
     }
 
-    /// Returns the strain at a configuration of the machine with its zero at `zero_mm`.
-    pub fn strain(&self, zero_mm: &Vec3, at: &Configuration) -> f64 {
-        let place = at.pose.to_insert(&self.on_counterface_mm);
+    /// Returns the strain at a pose of the counterface in a machine with its zero at `zero_mm`.
+    pub fn strain(&self, zero_mm: &Vec3, pose: &Pose) -> f64 {
+        let place = pose.to_insert(&self.on_counterface_mm);
         (place - self.on_bearing_mm).norm() / self.slack_length_mm(zero_mm) - 1.0
     }
 
-    fn stretched(&self, zero_mm: &Vec3, at: &Configuration) -> Option<Stretched> {
-        let place = at.pose.to_insert(&self.on_counterface_mm);
+    fn stretched(&self, zero_mm: &Vec3, pose: &Pose, screws: &[Twist; 6]) -> Option<Stretched> {
+        let place = pose.to_insert(&self.on_counterface_mm);
         let line = place - self.on_bearing_mm;
         let (length_mm, slack_mm) = (line.norm(), self.slack_length_mm(zero_mm));
         let (tension_n, by_strain) = self.tension_n(length_mm / slack_mm - 1.0);
@@ -90,8 +89,7 @@ impl Ligament {
             slope_n_per_mm: by_strain / slack_mm,
             length_mm,
             direction: line / length_mm,
-            by_joint: at
-                .screws
+            by_joint: screws
                 .each_ref()
                 .map(|screw| screw.angular.cross(&place) + screw.linear),
         })
@@ -99,8 +97,14 @@ impl Ligament {
 
     /// Subtracts the ligament's load on every joint: it pulls the counterface along -u with its tension T, which is
     /// -T u . d on a joint that moves the attachment by d.
-    pub(super) fn subtract_force(&self, zero_mm: &Vec3, at: &Configuration, residual: &mut Vec6) {
-        let Some(stretched) = self.stretched(zero_mm, at) else {
+    pub(super) fn subtract_force(
+        &self,
+        zero_mm: &Vec3,
+        pose: &Pose,
+        screws: &[Twist; 6],
+        residual: &mut Vec6,
+    ) {
+        let Some(stretched) = self.stretched(zero_mm, pose, screws) else {
             return;
         };
         for (j, moved) in stretched.by_joint.iter().enumerate() {
@@ -113,10 +117,11 @@ impl Ligament {
     pub(super) fn subtract_stiffness(
         &self,
         zero_mm: &Vec3,
-        at: &Configuration,
+        pose: &Pose,
+        screws: &[Twist; 6],
         tangent: &mut Mat6,
     ) {
-        let Some(stretched) = self.stretched(zero_mm, at) else {
+        let Some(stretched) = self.stretched(zero_mm, pose, screws) else {
             return;
         };
         let Stretched {
@@ -130,7 +135,7 @@ impl Ligament {
             for k in 0..6 {
                 let along = direction.dot(&by_joint[j]) * direction.dot(&by_joint[k]);
                 let (first, last) = (j.min(k), j.max(k));
-                let turned = at.screws[first].angular.cross(&by_joint[last]);
+                let turned = screws[first].angular.cross(&by_joint[last]);
                 tangent[(j, k)] += slope_n_per_mm * along
                     + tension_n
                         * ((by_joint[j].dot(&by_joint[k]) - along) / length_mm
@@ -183,7 +188,7 @@ mod tests {
     fn strain_at_zero_gives_the_slack_length() {
         let chain = chain();
         let ligament = ligament(SlackLength::StrainAtZero(0.02));
-        let strain = ligament.strain(&chain.zero_mm(), &chain.at(&[0.0; 6]));
+        let strain = ligament.strain(&chain.zero_mm(), &chain.at(&[0.0; 6]).pose);
         assert!((strain - 0.02).abs() < 1e-14);
     }
 
@@ -197,16 +202,17 @@ mod tests {
         for strain in [0.04, 0.12] {
             let at = chain.at(&somewhere);
             let mut ligament = ligament(SlackLength::Mm(1.0));
-            let length_mm = ligament.strain(&zero_mm, &at) + 1.0;
+            let length_mm = ligament.strain(&zero_mm, &at.pose) + 1.0;
             ligament.slack = SlackLength::Mm(length_mm / (1.0 + strain));
             let loads = |positions: &[f64; 6]| {
                 let mut residual = Vec6::zeros();
-                ligament.subtract_force(&zero_mm, &chain.at(positions), &mut residual);
+                let at = chain.at(positions);
+                ligament.subtract_force(&zero_mm, &at.pose, &at.screws, &mut residual);
                 residual
             };
             let energy = |positions: &[f64; 6]| {
                 let (k, toe) = (ligament.stiffness_n, ligament.toe_strain);
-                let e = ligament.strain(&zero_mm, &chain.at(positions));
+                let e = ligament.strain(&zero_mm, &chain.at(positions).pose);
                 let of_strain = if e < 2.0 * toe {
                     k * e.powi(3) / (12.0 * toe)
                 } else {
@@ -215,7 +221,7 @@ mod tests {
                 of_strain * length_mm / (1.0 + strain)
             };
             let mut tangent = Mat6::zeros();
-            ligament.subtract_stiffness(&zero_mm, &at, &mut tangent);
+            ligament.subtract_stiffness(&zero_mm, &at.pose, &at.screws, &mut tangent);
             for joint in 0..6 {
                 const STEP: f64 = 1e-5;
                 let moved = |sign: f64| {
