@@ -66,8 +66,8 @@ fn check_ligaments(
         .flat_map(|activity| &activity.machine.ligaments)
     {
         let strain = ligament.strain(&chain.zero_mm(), &pose);
-        // The negation includes lengths of zero, whose strain is not a number.
-        if !(strain <= MAX_STRAIN) {
+        // Attachments that coincide at zero give no length and no finite strain.
+        if !strain.is_finite() || strain > MAX_STRAIN {
             return Err(PlacementError::TightLigament {
                 name: ligament.name.clone(),
                 percent: 100.0 * strain,
