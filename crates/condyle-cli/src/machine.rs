@@ -41,7 +41,7 @@ fn check(file: &Path) -> Done {
     let rig = Rig::from_file(file).map_err(|problems| Failure::from(&problems))?;
     let mut lines = Lines::default();
     let mut row = |name: &str, value: String| lines.line(format!("{name:<28}{value}"));
-    row("tests", format!("{:?}", rig.keys.tests).to_lowercase());
+    row("tests", rig.keys.tests.name().to_owned());
     row("frequency", format!("{} Hz", rig.keys.frequency_hz));
     for joint in &rig.joints {
         row(&joint.keys.name, described(joint));

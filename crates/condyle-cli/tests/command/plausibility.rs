@@ -184,7 +184,7 @@ fn steps_of_the_march_too_long_for_their_own_estimate_are_told() {
 }
 
 #[test]
-fn steps_that_overshoot_in_a_conforming_cup_are_told() {
+fn steps_that_overshoot_in_a_conforming_cup_are_reported() {
     let case = |updates: usize| {
         format!(
             "[femur]\nshape = \"sphere\"\nradius_mm = 14.0\n[insert]\nshape = \"cup\"\nedge_mm = 2.0\nlayers = 2\n\
@@ -195,8 +195,8 @@ fn steps_that_overshoot_in_a_conforming_cup_are_told() {
         let bench = Bench::with_case(&case(updates));
         bench.run_into("out");
         let found = checks(&bench, "out");
-        let told = found.iter().any(|found| found == "updates_overshoot");
-        assert_eq!(told, overshoots, "{updates} updates: {found:?}");
+        let is_reported = found.iter().any(|found| found == "updates_overshoot");
+        assert_eq!(is_reported, overshoots, "{updates} updates: {found:?}");
     }
 }
 

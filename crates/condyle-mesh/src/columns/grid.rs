@@ -146,6 +146,12 @@ impl ColumnGrid {
         (0..nx).flat_map(move |i| (0..nz).map(move |k| (i, k)))
     }
 
+    /// Returns the column of every grid point, in the order of their numbers, from its place x and z, mm.
+    pub fn columns(&self, column: impl Fn(f64, f64) -> (f64, f64)) -> Vec<(f64, f64)> {
+        let places = (0..self.point_count()).map(|number| self.place_of_mm(number));
+        places.map(|place| column(place.x, place.y)).collect()
+    }
+
     /// Returns the whole rectangle seen from above, its places in the order of [`ColumnGrid::number`].
     pub fn plan(&self) -> Plan {
         let places = (0..self.point_count()).map(|number| self.place_of_mm(number));

@@ -71,13 +71,7 @@ impl GenericInsertShape {
         place: impl Fn(&Vec3) -> Vec3,
     ) -> Result<Insert, InsertError> {
         let grid = ColumnGrid::filling(LOW_MM, HIGH_MM, meshing.edge_mm, meshing.layers)?;
-        let mut columns = vec![(0.0, 0.0); grid.point_count()];
-        for i in 0..=grid.cells.0 {
-            for k in 0..=grid.cells.1 {
-                let [x, z] = grid.place_mm(i, k).into();
-                columns[grid.number(i, k)] = (-self.thickness_mm, self.height_mm(x, z));
-            }
-        }
+        let columns = grid.columns(|x, z| (-self.thickness_mm, self.height_mm(x, z)));
         let mut built = grid.plan().hexahedra(&columns, meshing.layers);
         let nodes = built.mesh.nodes.iter_mut();
         nodes.for_each(|node| *node = place(node));

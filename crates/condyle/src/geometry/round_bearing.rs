@@ -108,14 +108,10 @@ impl TroughShape {
             meshing.layers,
         )?;
         let bottom_mm = -self.radius_mm - self.thickness_mm;
-        let mut columns = vec![(0.0, 0.0); grid.point_count()];
-        for i in 0..=grid.cells.0 {
-            for k in 0..=grid.cells.1 {
-                let [x, _] = grid.place_mm(i, k).into();
-                let top_mm = -(self.radius_mm * self.radius_mm - x * x).max(0.0).sqrt();
-                columns[grid.number(i, k)] = (bottom_mm, top_mm);
-            }
-        }
+        let columns = grid.columns(|x, _| {
+            let top_mm = -(self.radius_mm * self.radius_mm - x * x).max(0.0).sqrt();
+            (bottom_mm, top_mm)
+        });
         let built = grid.plan().hexahedra(&columns, meshing.layers);
         Insert::new(built.mesh, &built.articulating, &built.backside)
     }
