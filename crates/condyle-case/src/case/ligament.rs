@@ -7,7 +7,7 @@ use super::frame::Side;
 use crate::config::*;
 
 settings! {
-    /// A ligament: a straight line that carries tension only, with a toe region [blankevoort1991]. It does not act while the machine settles.
+    /// A ligament: a straight line that carries tension only, with a toe region. It does not act while the machine settles.
     Ligament {
         /// Its name in messages.
         name: String;
