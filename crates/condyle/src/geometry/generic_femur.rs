@@ -102,7 +102,7 @@ impl GenericFemur {
     }
 
     /// Returns gap, normal and curvature at a point, the gap averaged as in
-    /// [`FemoralSurface::sample`](super::FemoralSurface::sample).
+    /// [`Counterface::sample`](super::Counterface::sample).
     #[inline(always)]
     pub fn sample<T: Number>(&self, point: &Vector<T>, spread_mm2: T) -> SurfaceSample<T> {
         let (folded, side) = self.folded(point);
