@@ -19,7 +19,7 @@ pub enum SlackLength {
 /// With the strain e = L / L0 - 1, the stiffness k and the toe strain t, the tension is
 /// 0 for e <= 0, k e^2 / (4 t) for 0 < e < 2 t, and k (e - t) beyond; its slope is continuous.
 ///
-/// Source: blankevoort1991.
+/// Source: Blankevoort 1991.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Ligament {
     /// Its name in messages.
