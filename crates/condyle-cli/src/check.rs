@@ -11,7 +11,7 @@ use crate::{
 pub fn check(arguments: &Check) -> Done {
     let threads = usize::from(arguments.threads);
     let preview = Preview::of(&arguments.case, &arguments.changes.set, threads)?;
-    output::warn(&preview.warnings);
+    output::warn(preview.warnings.iter().chain(&preview.doubts));
     if let Some(path) = &arguments.picture {
         replace_file(path, preview.picture_svg().as_bytes())
             .map_err(|error| Failure::unwritten(path, &error, "choose another name or folder"))?;
@@ -29,7 +29,11 @@ pub fn check(arguments: &Check) -> Done {
     if let Some(path) = &arguments.picture {
         lines.line(format!("{:<28}{}", "picture", path.display()));
     }
-    lines.line(format!("{}: the case is good", arguments.case.display()));
+    let case = arguments.case.display();
+    lines.line(match preview.doubts.len() {
+        0 => format!("{case}: the case is good"),
+        _ => format!("{case}: the case starts, but see the warnings"),
+    });
     output::print(lines.text())
 }
 
@@ -108,7 +112,10 @@ fn rows_of_insert(insert: &InsertFacts) -> Vec<Row> {
     );
     rows.push(("  mesh", mesh));
     if let Some([medial, lateral]) = insert.dish_thickness_mm {
-        let thickness = format!("{medial:.2} mm medial, {lateral:.2} mm lateral at the thinnest");
+        let thickness = format!(
+            "{medial:.2} mm medial, {lateral:.2} mm lateral at the thinnest; {:.2} mm anywhere inside the rim",
+            insert.least_thickness_mm
+        );
         rows.push(("  thickness over the dishes", thickness));
     }
     if let Some(middle) = insert.dishes_middle_mm {

@@ -23,9 +23,15 @@ const SCHEMA: &str = "condyle.schema.json";
 
 pub fn new(arguments: &New) -> Done {
     let path = &arguments.case;
-    let text = text(arguments).map_err(|error| match error {
-        DraftError::Case(problems) => Failure::from(&problems),
-        error => Failure::bad_input(error),
+    let text = text(arguments).map_err(|error| match &error {
+        DraftError::Case(problems) => Failure::from(problems),
+        DraftError::Exchanged { femur, insert } => {
+            let [case, femur, insert] = [path, femur, insert].map(|path| path.display());
+            Failure::bad_input(format_args!(
+                "{error}: condyle new {case} --femur {insert} --insert {femur}"
+            ))
+        }
+        _ => Failure::bad_input(error),
     })?;
     let text = format!("#:schema {SCHEMA}\n{text}");
     // An existing file is kept, because a user may have edited it.
@@ -39,28 +45,37 @@ pub fn new(arguments: &New) -> Done {
         }
         _ => {}
     }
-    let picture = arguments.femur.as_ref().and_then(|_| drawn(path));
-    let picture = picture.map(|picture| format!("look at {}; ", picture.display()));
+    let picture = match &arguments.femur {
+        Some(_) => settled(path)?.map(|picture| format!("look at {}; ", picture.display())),
+        // The generic implant always starts.
+        None => None,
+    };
     let (path, picture) = (path.display(), picture.unwrap_or_default());
     output::print(&format!(
         "wrote {path}; {picture}run it with: condyle run {path}\n"
     ))
 }
 
-/// Draws the bodies in place into a file next to the case, or warns why it cannot.
-fn drawn(case: &Path) -> Option<PathBuf> {
+/// Settles the bodies of a case as a run does, and draws them in place into a file next to it; none if that cannot be written.
+fn settled(case: &Path) -> Result<Option<PathBuf>, Failure> {
     let threads = thread::available_parallelism().map_or(1, usize::from);
+    let preview = Preview::of(case, &[], threads).map_err(|error| {
+        note(format_args!(
+            "wrote {}, which does not start:",
+            case.display()
+        ));
+        Failure::from(error)
+    })?;
+    output::warn(preview.warnings.iter().chain(&preview.doubts));
     let picture = case.with_extension("svg");
-    let drawn = Preview::of(case, &[], threads)
-        .map_err(|error| format!("the case does not start yet: {error}"))
-        .and_then(|preview| {
-            replace_file(&picture, preview.picture_svg().as_bytes())
-                .map_err(|error| format!("{}: {error}", picture.display()))
-        });
+    let drawn = replace_file(&picture, preview.picture_svg().as_bytes());
     if let Err(why) = &drawn {
-        note(format_args!("warning: no picture: {why}"));
+        note(format_args!(
+            "warning: no picture: {}: {why}",
+            picture.display()
+        ));
     }
-    drawn.is_ok().then_some(picture)
+    Ok(drawn.is_ok().then_some(picture))
 }
 
 /// Returns the case to write: of two meshes if they are given, else of the generic implant.

@@ -4,6 +4,7 @@ use condyle::{
     Vec3,
     contact::{ContactMemory, TouchedNode},
     evolve::March,
+    geometry::Dishes,
     machine::{
         Chain, JointIndex,
         knee::{FLEXION, KNEE, MEDIAL, VV},
@@ -43,10 +44,44 @@ pub struct AtRest {
     pub(crate) nodes_near: usize,
 }
 
+/// Distance from the middle of the dishes to a side, as a share of that of their lowest points, up to which a place is
+/// on the eminence; the contact of knees begins at about 0.6.
+const EMINENCE: f64 = 0.4;
+/// Share of the load on the eminence beyond which a femur stands there; sound knees have none.
+const MAX_ON_EMINENCE: f64 = 0.05;
+
 /// Distance at rest below which nodes approximately touch under the loads of a cycle, mm.
 const NEAR_MM: f64 = 0.25;
 
 impl AtRest {
+    /// Returns a warning if the femur of a knee stands on the eminence between the dishes.
+    pub(crate) fn beside_dishes(&self, march: &March) -> Option<String> {
+        let test = march.test();
+        if *test.machine().mechanism != KNEE {
+            return None;
+        }
+        let places = test.insert.surface().positions;
+        let dishes = Dishes::find(&places)?;
+        let (middle, half) = (
+            dishes.middle_mm(),
+            (dishes.lateral_mm.z - dishes.medial_mm.z) / 2.0,
+        );
+        let is_between = |node: &&TouchedNode| {
+            let place = places[node.node as usize];
+            (place.z - middle.z).abs() < EMINENCE * half
+        };
+        let load = |node: &TouchedNode| -node.force_n.y;
+        let between: f64 = self.touched.iter().filter(is_between).map(load).sum();
+        let share = between / self.axial_force_n;
+        (share > MAX_ON_EMINENCE).then(|| {
+            format!(
+                "at rest {:.0} % of the load is on the eminence between the dishes: the femur does not lie in them; check that \
+                 both bodies are of one implant, their length_unit, axes and start_mm",
+                100.0 * share
+            )
+        })
+    }
+
     /// Evaluates the settled bodies of a march that has not begun.
     pub(crate) fn of(march: &March) -> Self {
         let test = march.test();

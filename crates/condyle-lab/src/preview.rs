@@ -1,6 +1,7 @@
 //! A preview of a case: its bodies, the settled femur, and the expected time and memory of a run.
 
 use std::{
+    collections::BTreeSet,
     path::Path,
     time::{Duration, Instant},
 };
@@ -9,7 +10,7 @@ use condyle::{
     Vec3,
     contact::{ContactMemory, ContactModel},
     evolve::March,
-    geometry::{Dishes, TriangleMesh, bounds},
+    geometry::{Dishes, Insert, TriangleMesh, bounds},
     machine::knee::{IE, KNEE, VV},
     spatial::{Pose, RelativeMotion},
 };
@@ -23,6 +24,7 @@ use serde::Serialize;
 
 use crate::{
     at_rest::AtRest,
+    plausibility::finished::rim_of,
     run::{
         Clock,
         error::RunError,
@@ -39,6 +41,8 @@ pub struct Preview {
     pub side: &'static str,
     /// Corrections of the input, and remarks on suspicious input.
     pub warnings: Vec<String>,
+    /// Reasons to expect that the bodies do not belong together, or lie otherwise than the case says.
+    pub doubts: Vec<String>,
     /// The femoral component.
     pub femur: BodyFacts,
     /// The insert.
@@ -78,6 +82,8 @@ impl Preview {
         let triangles = case.femur_triangles(march.test(), FEMUR_TRIANGLES);
         let triangles = triangles.map_err(|source| RunError::of_build(&case, &source))?;
         let at_rest = AtRest::of(&march);
+        let mut doubts = case.misfit_remarks();
+        doubts.extend(at_rest.beside_dishes(&march));
         let file = case.femur.file();
         let femur = BodyFacts::of(
             case.femur.shape.word(),
@@ -93,6 +99,7 @@ impl Preview {
             side: case.heading.side.word(),
             expected: Expected::of(&case, &march, &at_rest, clock.spent),
             warnings,
+            doubts,
             femur,
             insert,
             at_rest,
@@ -220,6 +227,8 @@ pub struct InsertFacts {
     pub worst_quality: f64,
     /// Least thickness within 10 mm of the lowest place of the medial and of the lateral dish, mm.
     pub dish_thickness_mm: Option<[f64; 2]>,
+    /// Least thickness of the surface anywhere but on its rim, mm: where a scar reaches it, a run reports it.
+    pub least_thickness_mm: f64,
     /// Middle between the dishes: anterior, superior and lateral of the origin, where the machine's axes are, mm.
     pub dishes_middle_mm: Option<[f64; 3]>,
 }
@@ -248,10 +257,20 @@ impl InsertFacts {
             hexahedra: mesh.hexes.len(),
             surface_nodes: places.len(),
             worst_quality: mesh.worst_quality(),
+            least_thickness_mm: least_thickness_mm(insert),
             dish_thickness_mm: dishes.map(|d| [d.medial_mm, d.lateral_mm].map(thickness)),
             dishes_middle_mm: dishes.map(|dishes| dishes.middle_mm().into()),
         }
     }
+}
+
+fn least_thickness_mm(insert: &Insert) -> f64 {
+    let rim: BTreeSet<u32> = rim_of(insert).into_iter().flatten().collect();
+    let nodes = (0..).zip(insert.thickness_mm());
+    let inside = nodes.filter(|(node, _)| !rim.contains(node));
+    inside
+        .map(|(_, thickness)| *thickness)
+        .fold(f64::INFINITY, f64::min)
 }
 
 /// Cycles solved for an update: some are solved again until they repeat themselves.

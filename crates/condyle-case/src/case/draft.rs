@@ -1,19 +1,21 @@
 //! A case drafted from two mesh files: unit, axes, side, origin and start are concluded from the shapes.
 
+use std::mem;
 use std::path::{Path, PathBuf};
 
 use condyle::anatomy::{
-    Orientation, Recognition, Sureness, flange_lead_mm, start_over_the_dishes_mm,
+    Likeness, Orientation, Recognition, Sureness, Upright, flange_lead_mm, start_over_the_dishes_mm,
 };
-use condyle::geometry::{GenericInsertShape, TriangleMesh, Underside};
+use condyle::geometry::{GenericInsertShape, TriangleMesh, Underside, posterior_arc_centre_mm};
+use condyle::{Mat3, Vec3};
 use condyle_mesh::files::Disk;
 use condyle_mesh::formats::{parse_surface, surface_bytes};
 use condyle_mesh::repair::{CheckedMesh, RepairError};
 use thiserror::Error;
 
 use super::build::{
-    Body, BuildError, MAX_ACROSS_MM, checks_of, cut_at, heights_to_write, longest_mm,
-    middle_of_mesh, rounded_up, usual_unit,
+    Body, BuildError, MAX_ACROSS_MM, WrittenRotation, advice, checks_of, cut_at, heights_to_write,
+    longest_mm, middle_of_mesh, rounded_up, usual_unit,
 };
 use super::contents::Case;
 use super::frame::{Axes, LengthUnit, Side};
@@ -22,6 +24,8 @@ use crate::config::{Problems, quoted};
 
 /// Distance along x from the dishes' middle beyond which an origin is not that of a machine, mm.
 const MAX_ALONG_MM: f64 = 20.0;
+/// Largest `start_mm` of a case.
+const MAX_START_MM: f64 = 100.0;
 
 /// A case drafted from meshes.
 #[derive(Clone, Debug)]
@@ -46,42 +50,37 @@ impl Drafted {
     ) -> Result<Self, DraftError> {
         let femur = Concluded::from(Body::Femur, femur)?;
         let insert = Concluded::from(Body::Insert, insert)?;
-        let femur_lies = femur.orientation(&insert.best());
-        let insert_lies = insert.orientation(&[femur_lies]);
-        let (femur_shell, whole) = (femur.shell(&femur_lies)?, insert.shell(&insert_lies)?);
+        refuse_others(&femur, &insert)?;
+        let (mut femur, insert) = (femur.upright()?, insert.upright()?);
+        femur.share_frame_of(&insert);
+        let femur_lies = femur.lies(&insert.best());
+        let insert_lies = insert.lies(&[femur_lies.rotation()]);
+        let (mut femur_shell, whole) = (femur.shell(&femur_lies)?, insert.shell(&insert_lies)?);
         let mut alone =
             Alone::of(whole).map_err(|error| BuildError::shell(&insert.file, &error))?;
         let mut of_insert = insert.remarks(&insert_lies, &alone.shell);
         let mut insert_keys = insert.keys(&insert_lies);
         of_insert.extend(alone.remarks());
-        if !alone.shell.closed {
-            let thickness_mm = GenericInsertShape::default().thickness_mm;
-            insert_keys += &format!("thickness_mm = {thickness_mm:?}\n");
-        }
-        if let Underside::Ledge { height_mm, .. } = &alone.underside {
-            insert_keys += &format!("clip_below_mm = {:?}\n", rounded_up(*height_mm));
-        }
-        let middle = middle_of_mesh(&alone.shell.mesh);
-        // The lowest place of flat dishes along x is uncertain: only a distant one indicates another origin.
-        if middle.z.abs() > MAX_ACROSS_MM || middle.x.abs() > MAX_ALONG_MM {
-            alone.shell.mesh = alone.shell.mesh.mapped(|vertex| vertex - middle);
-            insert_keys += "origin = \"centre\"\n";
-            of_insert.push(format!(
-                "  origin \"centre\", since the file has its own {:.0} mm from the middle of the dishes.",
-                middle.norm()
-            ));
-        }
+        insert_keys += &alone.keys();
+        of_insert.extend(alone.centre(&mut insert_keys));
         let (side, of_side) = with_reason(side, &femur_shell.mesh);
         let mut of_femur = femur.remarks(&femur_lies, &femur_shell);
-        of_femur.push(of_side);
         let machine = format!("[machine]\npreset = \"{}\"\n", preset.word());
         let flexion_rad = Case::parse(&machine, "machine", Path::new(""))?.start_flexion_rad();
-        let start = start_over_the_dishes_mm(&femur_shell.mesh, &alone.shell.mesh, flexion_rad);
-        let (x, z) = start.unwrap_or_default();
+        let start = |femur: &CheckedMesh| {
+            let start = start_over_the_dishes_mm(&femur.mesh, &alone.shell.mesh, flexion_rad);
+            start.unwrap_or_default()
+        };
+        let mut femur_keys = femur.keys(&femur_lies);
+        let (mut x, mut z) = start(&femur_shell);
+        if x.abs().max(z.abs()) > MAX_START_MM {
+            of_femur.push(centre_femur(&mut femur_shell.mesh, &mut femur_keys));
+            (x, z) = start(&femur_shell);
+        }
+        of_femur.push(of_side);
         let keys = format!(
-            "title = \"Untitled\"\nside = \"{}\"\n{}start_mm = [{x:.1}, {z:.1}]\n{insert_keys}{machine}",
-            side.word(),
-            femur.keys(&femur_lies)
+            "title = \"Untitled\"\nside = \"{}\"\n{femur_keys}start_mm = [{x:.1}, {z:.1}]\n{insert_keys}{machine}",
+            side.word()
         );
         let mut text = Case::parse(&keys, "draft", folder)?.as_draft_in(folder);
         for (table, remarks) in [("[femur]\n", &of_femur), ("[insert]\n", &of_insert)] {
@@ -91,6 +90,46 @@ impl Drafted {
         let remarks = [of_femur, of_insert].concat();
         Ok(Self { text, remarks })
     }
+}
+
+/// Refuses meshes of other bodies than those of a whole knee.
+fn refuse_others(femur: &Concluded<'_>, insert: &Concluded<'_>) -> Result<(), DraftError> {
+    let [of_femur, of_insert] = [femur, insert].map(|body| Likeness::of(&body.mesh));
+    if (of_femur, of_insert) == (Some(Likeness::Insert), Some(Likeness::Femur)) {
+        let [femur, insert] = [femur, insert].map(|body| body.written.to_path_buf());
+        return Err(DraftError::Exchanged { femur, insert });
+    }
+    for (body, likeness) in [(femur, of_femur), (insert, of_insert)] {
+        // One of both alone may be mistaken, where its shape is unusual; only spheres are told in any unit.
+        let is_other = |one: &Likeness| match one {
+            Likeness::Femur | Likeness::Insert => false,
+            Likeness::Head(_) | Likeness::Cup => true,
+            Likeness::Tray | Likeness::OneCompartment => {
+                usual_unit(longest_mm(&body.mesh)).is_some()
+            }
+        };
+        let other = likeness.filter(is_other);
+        if let Some((other, advice)) = other.and_then(|one| Some((one, advice(body.body, one)?))) {
+            let message = format!("this {} is {other}; {advice}", body.body);
+            return Err(BuildError::mesh(&body.file, &["file"], message).into());
+        }
+    }
+    Ok(())
+}
+
+/// Moves the origin of a femur to its flexion axis, half-way between its sides; returns the remark.
+fn centre_femur(femur: &mut TriangleMesh, keys: &mut String) -> String {
+    let (x, y) = posterior_arc_centre_mm(femur);
+    let (low, high) = femur.bounds();
+    // A tenth of a millimetre is enough for an origin; adding zero turns -0 into 0.
+    let [x, y, z] = [x, y, f64::midpoint(low.z, high.z)].map(|at| (10.0 * at).round() / 10.0 + 0.0);
+    *keys += &format!("origin_mm = [{x:?}, {y:?}, {z:?}]\n");
+    let origin = Vec3::new(x, y, z);
+    *femur = mem::take(femur).mapped(|vertex| vertex - origin);
+    format!(
+        "  origin_mm on its flexion axis, since the file has its own {:.0} mm from there.",
+        origin.norm()
+    )
 }
 
 /// Returns the side of the knee of a femur with x anterior, y superior, z right, and the reason for it.
@@ -121,59 +160,83 @@ struct Concluded<'a> {
     body: Body,
     file: PathBuf,
     written: &'a Path,
+    /// In the unit of the file until it is concluded, then in mm.
     mesh: TriangleMesh,
     unit: LengthUnit,
-    recognition: Option<Recognition>,
+    upright: Option<Upright>,
 }
 
 impl<'a> Concluded<'a> {
     fn from(body: Body, written: &'a Path) -> Result<Self, BuildError> {
         let file = std::path::absolute(written).unwrap_or_else(|_| written.to_path_buf());
         let mesh = parse_surface(&file, &surface_bytes(&Disk, &file)?)?;
-        let size = longest_mm(&mesh);
-        let Some((unit, _)) = usual_unit(size) else {
-            let message = format!(
-                "this {body} is {size:.4} long in the unit of the file, and none of mm, cm, m and in makes it 40 mm to 120 mm \
-                 long, as that of a whole knee is; scale it, or write the case by hand"
-            );
-            return Err(BuildError::mesh(&file, &["length_unit"], message));
-        };
-        let mesh = mesh.mapped(|vertex| vertex * unit.in_mm());
-        let recognition = match (body, body.recognise(&mesh)) {
-            (Body::Insert, None) => recognised_alone(&mesh),
-            (_, recognition) => recognition,
-        };
+        let unit = LengthUnit::Millimetre;
+        let usual = usual_unit(longest_mm(&mesh)).map(|(unit, _)| unit);
         Ok(Self {
             body,
             file,
             written,
-            recognition,
-            mesh,
-            unit,
+            mesh: match usual {
+                Some(unit) => mesh.mapped(|vertex| vertex * unit.in_mm()),
+                None => mesh,
+            },
+            unit: usual.unwrap_or(unit),
+            upright: None,
         })
     }
 
-    /// Returns the orientations that agree with its shape, best first.
-    fn best(&self) -> Vec<Orientation> {
-        self.recognition
-            .iter()
-            .flat_map(Recognition::best)
-            .collect()
+    /// Finds the frame along which it lies.
+    fn upright(self) -> Result<Self, BuildError> {
+        let (body, size) = (self.body, longest_mm(&self.mesh));
+        if usual_unit(size).is_none() {
+            let message = format!(
+                "this {body} is {size:.4} long in the unit of the file, and none of mm, cm, m and in makes it 40 mm to 120 mm \
+                 long, as that of a whole knee is; scale it, or write the case by hand"
+            );
+            return Err(BuildError::mesh(&self.file, &["length_unit"], message));
+        }
+        let upright = match body {
+            Body::Femur => Upright::of_femur(&self.mesh),
+            Body::Insert => Upright::of_insert(&self.mesh)
+                .or_else(|| recognised_alone(&self.mesh).map(Upright::square)),
+        };
+        Ok(Self { upright, ..self })
     }
 
-    /// Returns its orientation: that of the other body if its own shape permits it, since the files of one implant
-    /// mostly share their axes.
-    fn orientation(&self, of_other: &[Orientation]) -> Orientation {
-        let Some(recognition) = &self.recognition else {
-            return of_other.first().copied().unwrap_or(Orientation::ISB);
+    /// Takes the frame of the insert, if the femur may lie in it.
+    fn share_frame_of(&mut self, insert: &Self) {
+        if let (Some(own), Some(of_insert)) = (self.upright.take(), &insert.upright) {
+            self.upright = Some(own.in_frame_of(of_insert, &self.mesh));
+        }
+    }
+
+    /// Returns the rotations from the file that agree with its shape, best first.
+    fn best(&self) -> Vec<Mat3> {
+        let rotations = |upright: &Upright| {
+            let turn = upright.rotation();
+            let best = upright.recognition.best();
+            best.map(|best| best.rotation() * turn).collect()
         };
-        // Both files of one implant mostly have the same axes.
-        let shared = recognition.best().find(|best| of_other.contains(best));
-        shared.unwrap_or_else(|| recognition.nearest())
+        self.upright.as_ref().map_or_else(Vec::new, rotations)
+    }
+
+    /// Returns its rotation from the file: that of the other body if its own shape permits it, since the files of one
+    /// implant mostly share their axes.
+    fn lies(&self, of_other: &[Mat3]) -> WrittenRotation {
+        let square = Orientation::ISB.rotation();
+        let Some(upright) = &self.upright else {
+            return WrittenRotation::of(of_other.first().unwrap_or(&square));
+        };
+        let best = self.best();
+        // Written angles are rounded; orientations differ by a quarter turn.
+        let is_of_other = |one: &&Mat3| of_other.iter().any(|other| (*one - other).amax() < 0.01);
+        let turn = upright.rotation();
+        let nearest = upright.recognition.nearest_after(&turn).rotation() * turn;
+        WrittenRotation::of(best.iter().find(is_of_other).unwrap_or(&nearest))
     }
 
     /// Returns the mesh, repaired and checked as in a run.
-    fn shell(&self, lies: &Orientation) -> Result<CheckedMesh, BuildError> {
+    fn shell(&self, lies: &WrittenRotation) -> Result<CheckedMesh, BuildError> {
         let rotation = lies.rotation();
         let placed = self.mesh.clone().mapped(|vertex| rotation * vertex);
         checks_of(self.body, None)
@@ -181,16 +244,13 @@ impl<'a> Concluded<'a> {
             .map_err(|error| BuildError::shell(&self.file, &error))
     }
 
-    fn keys(&self, lies: &Orientation) -> String {
+    fn keys(&self, lies: &WrittenRotation) -> String {
         let file = quoted(&self.file.display().to_string());
-        let [x, y, z] = Axes::of(&lies.rotation()).words();
-        let (table, unit) = (self.body.table(), self.unit.word());
-        format!(
-            "[{table}]\nshape = \"mesh\"\nfile = {file}\nlength_unit = \"{unit}\"\naxes = [\"{x}\", \"{y}\", \"{z}\"]\n"
-        )
+        let (table, unit, lines) = (self.body.table(), self.unit.word(), lies.lines());
+        format!("[{table}]\nshape = \"mesh\"\nfile = {file}\nlength_unit = \"{unit}\"\n{lines}")
     }
 
-    fn remarks(&self, lies: &Orientation, shell: &CheckedMesh) -> Vec<String> {
+    fn remarks(&self, lies: &WrittenRotation, shell: &CheckedMesh) -> Vec<String> {
         let (low, high) = shell.mesh.bounds();
         let size = high - low;
         let mut remarks = vec![
@@ -208,6 +268,9 @@ impl<'a> Concluded<'a> {
             ),
             format!("  axes {}.", self.how_sure(lies)),
         ];
+        if let Some(angles) = lies.rotation_deg {
+            remarks.push(rotated(angles));
+        }
         if self.body == Body::Femur {
             let start = "  start_mm: the lowest points of the condyles over those of the dishes.";
             remarks.push(start.to_owned());
@@ -219,8 +282,8 @@ impl<'a> Concluded<'a> {
         remarks
     }
 
-    fn how_sure(&self, lies: &Orientation) -> String {
-        let Some(recognition) = &self.recognition else {
+    fn how_sure(&self, lies: &WrittenRotation) -> String {
+        let Some(Upright { recognition, .. }) = &self.upright else {
             return "cannot be concluded, since the shape is not that of a whole knee: check them"
                 .to_owned();
         };
@@ -231,10 +294,13 @@ impl<'a> Concluded<'a> {
                     .to_owned()
             }
             None => {
-                let others = recognition.best().filter(|other| other != lies);
-                let others: Vec<String> = others
-                    .map(|other| format!("{:?}", Axes::of(&other.rotation()).words()))
-                    .collect();
+                let others = self
+                    .best()
+                    .into_iter()
+                    .map(|one| WrittenRotation::of(&one).axes);
+                let others = others.filter(|other| *other != lies.axes);
+                let others: Vec<String> =
+                    others.map(|other| format!("{:?}", other.words())).collect();
                 format!(
                     "not for certain, since {} fits about as well: check them",
                     others.join(" or ")
@@ -242,6 +308,27 @@ impl<'a> Concluded<'a> {
             }
         }
     }
+}
+
+/// Describes a rotation about the fixed axes z, x, y by its angle and axis.
+fn rotated(angles_deg: [f64; 3]) -> String {
+    let rotation = WrittenRotation {
+        axes: Axes::ISB,
+        rotation_deg: Some(angles_deg),
+    };
+    // The rotation turns the file back: its transpose is how the file lies.
+    let turn = rotation.rotation().transpose();
+    let cosine = f64::midpoint(turn.trace(), -1.0);
+    let [x, y, z] = [(2, 1), (0, 2), (1, 0)].map(|(i, j)| turn[(i, j)] - turn[(j, i)]);
+    let axis = Vec3::new(x, y, z).normalize();
+    format!(
+        "  rotation_deg: the file lies rotated by {:.1} degrees about the axis ({:.2}, {:.2}, {:.2}), anterior, superior and \
+         right; check it in the picture.",
+        cosine.clamp(-1.0, 1.0).acos().to_degrees(),
+        axis.x,
+        axis.y,
+        axis.z
+    )
 }
 
 /// An insert without the tray that may be in its file.
@@ -262,6 +349,33 @@ impl Alone {
             Underside::Whole | Underside::Unclear { .. } => whole,
         };
         Ok(Self { shell, underside })
+    }
+
+    fn keys(&self) -> String {
+        let mut keys = String::new();
+        if !self.shell.closed {
+            let thickness_mm = GenericInsertShape::default().thickness_mm;
+            keys += &format!("thickness_mm = {thickness_mm:?}\n");
+        }
+        if let Underside::Ledge { height_mm, .. } = &self.underside {
+            keys += &format!("clip_below_mm = {:?}\n", rounded_up(*height_mm));
+        }
+        keys
+    }
+
+    /// Moves the origin between the dishes, if it is far from there; returns the remark.
+    fn centre(&mut self, keys: &mut String) -> Option<String> {
+        let middle = middle_of_mesh(&self.shell.mesh);
+        // The lowest place of flat dishes along x is uncertain: only a distant one indicates another origin.
+        if middle.z.abs() <= MAX_ACROSS_MM && middle.x.abs() <= MAX_ALONG_MM {
+            return None;
+        }
+        self.shell.mesh = mem::take(&mut self.shell.mesh).mapped(|vertex| vertex - middle);
+        *keys += "origin = \"centre\"\n";
+        Some(format!(
+            "  origin \"centre\", since the file has its own {:.0} mm from the middle of the dishes.",
+            middle.norm()
+        ))
     }
 
     fn remarks(&self) -> Vec<String> {
@@ -321,6 +435,18 @@ pub enum DraftError {
     /// A file that cannot be read or used.
     #[error(transparent)]
     Mesh(#[from] BuildError),
+    /// Femur and insert in each other's place.
+    #[error(
+        "{} is an insert and {} a femoral component: exchange them",
+        femur.display(),
+        insert.display()
+    )]
+    Exchanged {
+        /// The file named as the femur.
+        femur: PathBuf,
+        /// The file named as the insert.
+        insert: PathBuf,
+    },
     /// The draft is not a valid case.
     #[error(transparent)]
     Case(#[from] Problems),

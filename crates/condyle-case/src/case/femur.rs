@@ -46,6 +46,10 @@ settings! {
         length_unit: LengthUnit = LengthUnit::Millimetre;
         /// Directions of x, y and z of the file.
         axes: Axes = Axes::ISB;
+        /// Turn of the body after `axes`, about z, then x, then y of the frame; given as [x, y, z].
+        rotation_deg: Option<[f64; 3]> = None, in within(-180.0, 180.0);
+        /// Point of the file that is the origin of the femoral frame, along its axes after `axes` and `rotation_deg`; the file's own if not given.
+        origin_mm: Option<[f64; 3]> = None, in within(-100_000.0, 100_000.0);
         /// Flexion axis [x, y] in the femoral frame; fitted to the posterior condyles if not given.
         flexion_axis_mm: Option<[f64; 2]> = None, in within(-200.0, 200.0);
         /// Start of the femoral frame in the insert frame, [x, z], before it settles; at the origin if not given.

@@ -32,6 +32,8 @@ settings! {
         length_unit: LengthUnit = LengthUnit::Millimetre;
         /// Directions of x, y and z of the file.
         axes: Axes = Axes::ISB;
+        /// Turn of the body after `axes`, about z, then x, then y of the frame; given as [x, y, z].
+        rotation_deg: Option<[f64; 3]> = None, in within(-180.0, 180.0);
         /// Edge of a hexahedron, seen from above.
         edge_mm: f64 = Meshing::default().edge_mm, in within(0.1, 10.0);
         /// Hexahedra through the thickness.
@@ -50,6 +52,8 @@ settings! {
         length_unit: LengthUnit = LengthUnit::Millimetre;
         /// Directions of x, y and z of the file.
         axes: Axes = Axes::ISB;
+        /// Turn of the body after `axes`, about z, then x, then y of the frame; given as [x, y, z].
+        rotation_deg: Option<[f64; 3]> = None, in within(-180.0, 180.0);
         /// Name in the file of the surface that articulates; found from above if not given.
         articulating_surface: Option<String> = None;
         /// Name in the file of the backside; found from below if not given.

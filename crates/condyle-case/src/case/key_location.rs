@@ -29,7 +29,18 @@ impl Case {
     /// Returns a failed build as a problem at the key of this case at fault.
     pub fn at_its_key(&self, error: &BuildError) -> Problems {
         let table = error.table(self.femur.file().map(DataFile::path));
-        self.errors_at(&[((table, error.keys), error.to_string())])
+        let mut errors = Vec::new();
+        // A mesh that cannot be used may be another body than its table says.
+        if error.file().is_some() && error.keys == ["file"] {
+            errors.extend(self.misfits_at_their_keys());
+        }
+        errors.push(((table, error.keys), error.to_string()));
+        self.errors_at(&errors)
+    }
+
+    fn misfits_at_their_keys(&self) -> impl Iterator<Item = (KeyLocation, String)> {
+        let misfits = self.misfits().into_iter();
+        misfits.map(|misfit| ((misfit.body.table(), misfit.keys), misfit.text))
     }
 
     /// Returns a failed placement of this case's bodies as a problem at the key at fault, after axes that `warnings` find
@@ -58,6 +69,7 @@ impl Case {
                 errors.push(((body.table(), &["axes", "file"]), warning.to_string()));
             }
         }
+        errors.extend(self.misfits_at_their_keys());
         errors.push((location, error.to_string()));
         self.errors_at(&errors)
     }

@@ -1,9 +1,9 @@
 //! `condyle new` with two meshes, and its messages about wrong axes and units.
 
-use std::fs;
+use std::{fs, path::Path};
 
 use crate::bench::Bench;
-use crate::shapes::{FLEXED_A_LITTLE, Triangle, block, femur, insert, stl};
+use crate::shapes::{FLEXED_A_LITTLE, Triangle, block, femur, insert, stl, wedge};
 
 /// The triangles in a file of another unit, whose x, y and z point right, anterior and superior.
 fn in_cm_right_anterior_superior(triangles: &[Triangle]) -> String {
@@ -87,4 +87,77 @@ fn an_insert_upside_down_is_refused_with_the_line_to_write() {
     bench.write("case.toml", &case.replace("cm", "in"));
     let said = bench.say(&["check", "case.toml"]);
     said.assert_refused(2, &["write length_unit = \"cm\"", "case.toml:4"]);
+}
+
+/// The implant of the repository, exchanged.
+#[test]
+fn exchanged_bodies_are_refused_with_the_right_command() {
+    let bench = cad_knee(1.0);
+    let said = bench.say(&["new", "my.toml", "--femur", "i.stl", "--insert", "f.stl"]);
+    let right = "exchange them: condyle new my.toml --femur f.stl --insert i.stl";
+    said.assert_refused(2, &["i.stl is an insert", right]);
+    assert!(!bench.path("my.toml").exists());
+    let case = "[femur]\nshape = \"mesh\"\nfile = \"i.stl\"\naxes = [\"right\", \"anterior\", \"superior\"]\n\
+        [insert]\nshape = \"mesh\"\nfile = \"f.stl\"\naxes = [\"right\", \"anterior\", \"superior\"]\n";
+    bench.write("case.toml", case);
+    let said = bench.say(&["check", "case.toml"]);
+    assert_ne!(said.code, Some(0));
+    assert!(
+        said.err.contains("is a femoral component; exchange"),
+        "{}",
+        said.err
+    );
+}
+
+/// The files of the implant of the repository, the femur scaled.
+fn cad_knee(scale: f64) -> Bench {
+    let bench = Bench::new();
+    let folder = Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/../../cases/cad-knee"));
+    fs::copy(folder.join("insert.stl"), bench.path("i.stl")).unwrap();
+    let mut bytes = fs::read(folder.join("femur.stl")).unwrap();
+    // After 84 bytes, each triangle has 12 numbers, of which the first three are its normal, and two more bytes.
+    for triangle in bytes[84..].chunks_exact_mut(50) {
+        for number in triangle[12..48].chunks_exact_mut(4) {
+            let value = f32::from_le_bytes(number.try_into().unwrap());
+            number.copy_from_slice(&(value * scale as f32).to_le_bytes());
+        }
+    }
+    fs::write(bench.path("f.stl"), bytes).unwrap();
+    bench
+}
+
+#[test]
+fn a_femur_on_the_eminence_is_reported_by_new_and_check() {
+    let bench = cad_knee(0.8);
+    let said = bench.say(&NEW);
+    assert_eq!(said.code, Some(0), "{}", said.err);
+    let checked = bench.say(&["check", "my.toml"]);
+    assert!(!checked.out.contains("the case is good"), "{}", checked.out);
+    for said in [&said.err, &checked.err] {
+        let on_eminence = "of the load is on the eminence between the dishes";
+        assert!(
+            said.contains(on_eminence) && said.contains("unlike those of one implant"),
+            "{said}"
+        );
+    }
+    let bench = cad_knee(1.0);
+    let said = bench.say(&NEW);
+    assert!(!said.err.contains("warning"), "{}", said.err);
+    let checked = bench.say(&["check", "my.toml"]);
+    assert!(checked.out.contains("the case is good"), "{}", checked.out);
+}
+
+#[test]
+fn a_draft_that_does_not_start_ends_with_the_code_of_its_error() {
+    let bench = cad_knee(1.0);
+    // A wedge of the size of an insert, on which no femur rests.
+    bench.write("i.stl", &stl(&wedge(1.0)));
+    let said = bench.say(&NEW);
+    assert_ne!(said.code, Some(0));
+    assert!(
+        said.err.contains("wrote my.toml, which does not start:"),
+        "{}",
+        said.err
+    );
+    assert!(!said.out.contains("run it with"), "{}", said.out);
 }

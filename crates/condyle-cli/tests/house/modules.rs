@@ -313,6 +313,7 @@ const MAY_USE: &[(&str, &[&str])] = &[
             "condyle_mesh",
             "condyle_report",
             "condyle_lab::at_rest",
+            "condyle_lab::plausibility",
             "condyle_lab::run",
         ],
     ),

@@ -110,7 +110,7 @@ impl<'a> Finished<'a> {
 }
 
 /// Returns the edges that belong to a single face.
-fn rim_of(insert: &Insert) -> Vec<[u32; 2]> {
+pub(crate) fn rim_of(insert: &Insert) -> Vec<[u32; 2]> {
     let mut faces_at = BTreeMap::<[u32; 2], usize>::new();
     for face in insert.surface_faces() {
         for side in 0..4 {

@@ -5,7 +5,7 @@
 //! fold, two counts of one volume that differ.
 
 pub(crate) mod bodies;
-mod finished;
+pub(crate) mod finished;
 pub(crate) mod loads;
 
 use condyle::evolve::{March, UpdateRecord};

@@ -8,7 +8,7 @@ use crate::{Mat3, geometry::TriangleMesh};
 
 /// Lead in score of another orientation that makes the given one likely wrong. The right orientation of
 /// about a hundred shapes, whole, cut, leaning and noisy, was never so far behind.
-const LIKELY_MARGIN: f64 = 2.0;
+pub(super) const LIKELY_MARGIN: f64 = 2.0;
 /// Lead that makes it certainly wrong: more than any one sign can contribute.
 const CERTAIN_MARGIN: f64 = 6.0;
 
@@ -60,6 +60,11 @@ impl Recognition {
         })
     }
 
+    /// Returns the score of the best orientation.
+    pub(super) fn score(&self) -> f64 {
+        self.scores[0].1
+    }
+
     /// Returns the orientations that fit best and cannot be distinguished, best first.
     pub fn best(&self) -> impl Iterator<Item = Orientation> {
         self.within(LIKELY_MARGIN)
@@ -90,8 +95,13 @@ impl Recognition {
     /// Returns the orientation with the smallest rotation from x anterior, y superior, z right of those that fit as well
     /// as the best.
     pub fn nearest(&self) -> Orientation {
+        self.nearest_after(&Mat3::identity())
+    }
+
+    /// As [`Recognition::nearest`], of a body that was turned by `turn` before.
+    pub fn nearest_after(&self, turn: &Mat3) -> Orientation {
         // The trace of a rotation is 1 + 2 cos(angle).
-        let least_turn = |orientation: &Orientation| orientation.rotation().trace();
+        let least_turn = |orientation: &Orientation| (orientation.rotation() * turn).trace();
         let equal = self.within(EQUAL_MARGIN);
         equal
             .reduce(|a, b| {

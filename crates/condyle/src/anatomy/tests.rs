@@ -1,6 +1,6 @@
-use super::{Orientation, Recognition, Sureness, start_over_the_dishes_mm};
+use super::{Likeness, Orientation, Recognition, Sureness, Upright, start_over_the_dishes_mm};
 use crate::{
-    Vec3,
+    Mat3, Vec3,
     geometry::{
         GenericFemur, GenericFemurShape, GenericInsertShape, Insert, Meshing, TriangleMesh,
         flat_insert,
@@ -118,4 +118,105 @@ fn verify_the_generic_femur_starts_with_its_lowest_points_over_the_dishes() {
     let (x, z) = start_over_the_dishes_mm(&femur, &insert, -7f64.to_radians()).unwrap();
     let expected = -16.0 * 27f64.to_radians().sin();
     assert!((x - expected).abs() < 1.0 && z.abs() < 1e-6, "{x} {z}");
+}
+
+fn rotation(axis: Vec3, degrees: f64) -> Mat3 {
+    let cross = axis.normalize().cross_matrix();
+    let (sine, cosine) = degrees.to_radians().sin_cos();
+    Mat3::identity() + cross * sine + cross * cross * (1.0 - cosine)
+}
+
+/// The symmetric bodies repeat themselves only roughly under their samples: a degree is left.
+#[test]
+fn a_pair_turned_about_any_axis_is_turned_back() {
+    let (femur, insert) = (generic_femur(), generic_insert());
+    for (axis, degrees) in [
+        (Vec3::x(), 5.0),
+        (Vec3::y(), 20.0),
+        (Vec3::z(), 35.0),
+        (Vec3::new(1.0, 2.0, -1.0), 27.0),
+    ] {
+        let turn = rotation(axis, degrees);
+        let shift = Vec3::new(1000.0, -700.0, 300.0);
+        let [femur, insert] =
+            [&femur, &insert].map(|mesh| mesh.clone().mapped(|v| turn * v + shift));
+        let of_insert = Upright::of_insert(&insert).unwrap();
+        let of_femur = Upright::of_femur(&femur).unwrap();
+        let of_femur = of_femur.in_frame_of(&of_insert, &femur);
+        for upright in [of_insert, of_femur] {
+            assert!(
+                (upright.off_square_deg() - degrees).abs() < 1.5,
+                "{axis} {degrees} {}",
+                upright.off_square_deg()
+            );
+            let left = upright.rotation() * turn;
+            let nearest = Orientation::nearest_to(&left).rotation();
+            let trace = (nearest.transpose() * left).trace();
+            assert!(
+                trace > 1.0 + 2.0 * 1.5f64.to_radians().cos(),
+                "{axis} {degrees}"
+            );
+        }
+    }
+}
+
+#[test]
+fn square_bodies_are_not_turned() {
+    let away = |v: &Vec3| v + Vec3::new(1000.0, -700.0, 300.0);
+    for mesh in [generic_insert(), generic_insert().mapped(away)] {
+        assert_eq!(Upright::of_insert(&mesh).unwrap().turn, None);
+    }
+    for mesh in [generic_femur(), generic_femur().mapped(away)] {
+        assert_eq!(Upright::of_femur(&mesh).unwrap().turn, None);
+    }
+}
+
+/// A ball, or its lower half, of 20-degree facets.
+fn ball(radius: f64, is_half: bool) -> TriangleMesh {
+    let octahedron = TriangleMesh {
+        vertices: [0, 1, 2]
+            .into_iter()
+            .flat_map(|axis| [Vec3::ith(axis, 1.0), Vec3::ith(axis, -1.0)])
+            .collect(),
+        triangles: vec![
+            [0, 2, 4],
+            [2, 1, 4],
+            [1, 3, 4],
+            [3, 0, 4],
+            [2, 0, 5],
+            [1, 2, 5],
+            [3, 1, 5],
+            [0, 3, 5],
+        ],
+    };
+    let middle = |a: &Vec3, b: &Vec3| (a + b).normalize();
+    let mut ball = octahedron.in_four(middle).in_four(middle).in_four(middle);
+    if is_half {
+        let places = ball.vertices.clone();
+        let is_below =
+            |triangle: &[u32; 3]| triangle.iter().all(|&at| places[at as usize].y < 1e-9);
+        ball.triangles.retain(is_below);
+    }
+    ball.mapped(|vertex| vertex * radius)
+}
+
+#[test]
+fn a_head_a_cup_a_tray_and_one_compartment_are_told_from_a_knee() {
+    let of = |mesh: &TriangleMesh| Likeness::of(mesh);
+    assert!(
+        matches!(of(&ball(14.0, false)), Some(Likeness::Head(radius)) if (radius - 14.0).abs() < 0.2)
+    );
+    assert_eq!(of(&ball(16.0, true)), Some(Likeness::Cup));
+    let block = |low: [f64; 3], high: [f64; 3]| TriangleMesh::block(low.into(), high.into());
+    let plate = block([-23.0, 0.0, -36.0], [23.0, 4.0, 36.0]);
+    let stem = block([-6.0, -40.0, -6.0], [6.0, 0.0, 6.0]);
+    assert_eq!(of(&plate.joined(&stem)), Some(Likeness::Tray));
+    for turn in [Mat3::identity(), rotation(Vec3::new(1.0, 2.0, -1.0), 27.0)] {
+        let turned = |mesh: TriangleMesh| mesh.mapped(|vertex| turn * vertex);
+        assert_eq!(of(&turned(generic_femur())), Some(Likeness::Femur));
+        assert_eq!(of(&turned(generic_insert())), Some(Likeness::Insert));
+    }
+    let narrow = generic_insert().mapped(|v| Vec3::new(v.x, v.y, v.z * 0.4));
+    assert_eq!(of(&narrow), Some(Likeness::OneCompartment));
+    assert_eq!(of(&TriangleMesh::default()), None);
 }

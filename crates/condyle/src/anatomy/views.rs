@@ -79,6 +79,14 @@ impl Orientation {
             })
     }
 
+    /// Returns the orientation whose rotation is nearest to a given one.
+    pub fn nearest_to(rotation: &Mat3) -> Self {
+        // The trace of a rotation is 1 + 2 cos(angle).
+        let close = |one: &Self| (one.rotation().transpose() * rotation).trace();
+        let nearest = Self::all().max_by(|a, b| close(a).total_cmp(&close(b)));
+        nearest.unwrap_or(Self::ISB)
+    }
+
     /// Returns the rotation of a point of the given frame to x anterior, y superior, z right.
     pub fn rotation(&self) -> Mat3 {
         let rows = [self.anterior, self.superior, self.right].map(|axis| axis.unit().transpose());

@@ -78,7 +78,7 @@ impl Case {
             }
             FemurShape::Plane => at_origin(Counterface::Plane, None, (0.0, 0.0)),
             FemurShape::Mesh(femur) => {
-                let placing = Placing::new(femur.length_unit, &femur.axes, side)?;
+                let placing = femur.placing(side)?;
                 let PreparedFemur { shell, field } =
                     femur.prepared(placement, &placing, &self.limits, threads, keep)?;
                 warn(&femur.file, &shell, warnings);
@@ -187,7 +187,7 @@ impl Case {
     pub fn femur_triangles(&self, test: &WearTest, about: f64) -> Result<TriangleMesh, BuildError> {
         match (&self.femur.shape, test.counterface.as_ref()) {
             (FemurShape::Mesh(femur), _) => {
-                let placing = Placing::new(femur.length_unit, &femur.axes, self.heading.side)?;
+                let placing = femur.placing(self.heading.side)?;
                 let checks = checks_of(Body::Femur, None);
                 let shell = shell(&femur.file, &placing, checks, &mut Vec::new())?;
                 Ok(femur.moved(shell.mesh, &self.femur.placement))

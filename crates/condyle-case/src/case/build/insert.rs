@@ -14,7 +14,7 @@ use condyle_mesh::repair::{CheckedMesh, RepairError};
 
 use super::checks::{check_orientation, off_centre};
 use super::error::{Body, BuildError, BuildWarning, Finding};
-use super::placing::{Placing, checks_of, middle_of_mesh, middle_of_points, shell};
+use super::placing::{checks_of, middle_of_mesh, middle_of_points, shell};
 use super::size::check_points;
 use crate::case::contents::Case;
 use crate::case::insert::{GenericInsert, HexahedralInsert, Insert, InsertShape, MeshInsert};
@@ -57,7 +57,7 @@ impl Case {
         };
         let path = insert.file.path();
         let bytes = surface_bytes(insert.file.files(), path).ok()?;
-        let placing = Placing::new(insert.length_unit, &insert.axes, self.heading.side).ok()?;
+        let placing = insert.placing(self.heading.side).ok()?;
         Some(placing.mesh(parse_surface(path, &bytes).ok()?))
     }
 
@@ -124,7 +124,7 @@ impl Case {
         warnings: &mut Vec<BuildWarning>,
     ) -> Result<geometry::Insert, BuildError> {
         let file = &insert.file;
-        let placing = Placing::new(insert.length_unit, &insert.axes, self.heading.side)?;
+        let placing = insert.placing(self.heading.side)?;
         let checks = checks_of(Body::Insert, insert.clip_below_mm);
         let mut shell = shell(file, &placing, checks, warnings)?;
         if shell.closed && insert.thickness_mm.is_some() {
@@ -169,7 +169,7 @@ impl Case {
         of: &Insert,
         warnings: &mut Vec<BuildWarning>,
     ) -> Result<geometry::Insert, BuildError> {
-        let placing = Placing::new(insert.length_unit, &insert.axes, self.heading.side)?;
+        let placing = insert.placing(self.heading.side)?;
         let path = insert.file.path();
         let mut file = read_hexahedra(insert.file.files(), path)?;
         for node in &mut file.mesh.nodes {

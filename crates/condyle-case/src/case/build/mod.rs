@@ -6,6 +6,7 @@ mod error;
 mod femur;
 mod insert;
 mod machine;
+mod misfit;
 mod placing;
 mod shared;
 mod size;
@@ -18,10 +19,12 @@ pub use femur::FEMUR_TRIANGLES;
 pub use shared::SharedBodies;
 
 pub(super) use error::Finding;
+#[cfg(feature = "file-system")]
+pub(super) use misfit::advice;
 
 #[cfg(feature = "file-system")]
 pub(super) use {
     checks::{MAX_ACROSS_MM, longest_mm, usual_unit},
     insert::{cut_at, heights_to_write, rounded_up},
-    placing::{checks_of, middle_of_mesh},
+    placing::{WrittenRotation, checks_of, middle_of_mesh},
 };

@@ -3,6 +3,7 @@
 
 use std::path::Path;
 
+use condyle::anatomy::Orientation;
 use condyle::geometry::{Dishes, TriangleMesh};
 use condyle::{Mat3, Vec3};
 use condyle_mesh::formats::{parse_surface, surface_bytes};
@@ -10,50 +11,91 @@ use condyle_mesh::repair::{CheckedMesh, Checks, Defect, LeftOut, Parts, Touching
 
 use super::error::{Body, BuildError, BuildWarning, Finding};
 use super::size::{check_triangles, stray_piece};
-use crate::case::femur::FemurPlacement;
+use crate::case::femur::{FemurPlacement, MeshFemur};
 use crate::case::frame::{Axes, LengthUnit, Side};
-use crate::case::insert::{InsertOrigin, InsertPlacement};
+use crate::case::insert::{HexahedralInsert, InsertOrigin, InsertPlacement, MeshInsert};
 use crate::config::DataFile;
+
+/// The turn and the origin that a case adds to the axes of a file.
+type Moved = (Option<[f64; 3]>, Option<[f64; 3]>);
+
+impl MeshFemur {
+    pub(super) fn placing(&self, side: Side) -> Result<Placing, BuildError> {
+        let moved = (self.rotation_deg, self.origin_mm);
+        Placing::new(self.length_unit, &self.axes, moved, side)
+    }
+}
+
+impl MeshInsert {
+    pub(super) fn placing(&self, side: Side) -> Result<Placing, BuildError> {
+        let moved = (self.rotation_deg, None);
+        Placing::new(self.length_unit, &self.axes, moved, side)
+    }
+}
+
+impl HexahedralInsert {
+    pub(super) fn placing(&self, side: Side) -> Result<Placing, BuildError> {
+        let moved = (self.rotation_deg, None);
+        Placing::new(self.length_unit, &self.axes, moved, side)
+    }
+}
 
 /// Map from the unit and axes of a file to mm, x anterior, y superior, z to the right of a right knee.
 pub(super) struct Placing {
     pub unit: LengthUnit,
     axes: Mat3,
     linear: Mat3,
+    /// The place of the origin after the linear part.
+    origin_mm: Option<Vec3>,
     /// A left knee is mirrored, and its faces are turned round.
     pub mirrors: bool,
 }
 
 impl Placing {
-    pub(super) fn new(unit: LengthUnit, axes: &Axes, side: Side) -> Result<Self, BuildError> {
+    fn new(
+        unit: LengthUnit,
+        axes: &Axes,
+        (rotation_deg, origin_mm): Moved,
+        side: Side,
+    ) -> Result<Self, BuildError> {
         let axes = axes.rotation(side);
         let axes = axes.map_err(|why| BuildError::new(&["axes"], format!("`axes`: {why}")))?;
+        let axes = match rotation_deg {
+            Some([x, y, z]) => rotation(z, x, y) * axes,
+            None => axes,
+        };
         let mirrors = side == Side::Left;
         let linear = mirror(mirrors) * (axes * unit.in_mm());
+        let origin_mm = origin_mm.map(|origin| mirror(mirrors) * Vec3::from(origin));
         Ok(Self {
             unit,
             axes,
             linear,
+            origin_mm,
             mirrors,
         })
     }
 
     /// Returns the axes of a file whose body must be turned by `turn` after this placing.
     pub(super) fn axes_turned(&self, turn: &Mat3) -> Axes {
+        Axes::of(&self.rotation_turned(turn))
+    }
+
+    /// Returns the rotation of a file whose body must be turned by `turn` after this placing.
+    pub(super) fn rotation_turned(&self, turn: &Mat3) -> Mat3 {
         // The turn holds in the mirrored frame: it is mirrored back before it meets the axes of the file.
         let mirror = mirror(self.mirrors);
-        Axes::of(&(mirror * turn * mirror * self.axes))
+        mirror * turn * mirror * self.axes
     }
 
     pub(super) fn bytes(&self) -> Vec<u8> {
-        self.linear
-            .iter()
-            .flat_map(|entry| entry.to_le_bytes())
-            .collect()
+        let numbers = self.linear.iter().chain(self.origin_mm.iter().flatten());
+        numbers.flat_map(|entry| entry.to_le_bytes()).collect()
     }
 
     pub(super) fn point(&self, point: &Vec3) -> Vec3 {
-        self.linear * point
+        let point = self.linear * point;
+        self.origin_mm.map_or(point, |origin| point - origin)
     }
 
     pub(super) fn mesh(&self, mesh: TriangleMesh) -> TriangleMesh {
@@ -273,6 +315,61 @@ impl FemurPlacement {
     }
 }
 
+/// A rotation as a case writes it.
+pub(in crate::case) struct WrittenRotation {
+    pub axes: Axes,
+    /// None for a rotation that the axes describe.
+    pub rotation_deg: Option<[f64; 3]>,
+}
+
+impl WrittenRotation {
+    /// Describes a rotation to a hundredth of a degree.
+    pub(in crate::case) fn of(rotation: &Mat3) -> Self {
+        let nearest = Orientation::nearest_to(rotation).rotation();
+        let angles = angles_deg(&(rotation * nearest.transpose()));
+        // Adding zero turns -0 into 0.
+        let angles = angles.map(|angle| (angle * PER_DEGREE).round() / PER_DEGREE + 0.0);
+        Self {
+            axes: Axes::of(&nearest),
+            rotation_deg: (angles != [0.0; 3]).then_some(angles),
+        }
+    }
+
+    /// Returns the rotation that is written.
+    pub(in crate::case) fn rotation(&self) -> Mat3 {
+        // The words of an orientation do not depend on the side, and are right-handed.
+        let axes = self
+            .axes
+            .rotation(Side::Right)
+            .unwrap_or_else(|_| Mat3::identity());
+        match self.rotation_deg {
+            Some([x, y, z]) => rotation(z, x, y) * axes,
+            None => axes,
+        }
+    }
+
+    /// Returns the lines of a case.
+    pub(in crate::case) fn lines(&self) -> String {
+        let [x, y, z] = self.axes.words();
+        let axes = format!("axes = [\"{x}\", \"{y}\", \"{z}\"]\n");
+        let turn = self
+            .rotation_deg
+            .map(|[x, y, z]| format!("rotation_deg = [{x:?}, {y:?}, {z:?}]\n"));
+        axes + &turn.unwrap_or_default()
+    }
+}
+
+/// Steps of written angles in a degree.
+const PER_DEGREE: f64 = 100.0;
+
+/// Returns the angles about x, y and z, degrees, of a rotation about the fixed axes z, x, y, in this order.
+fn angles_deg(rotation: &Mat3) -> [f64; 3] {
+    let x = (-rotation[(1, 2)]).clamp(-1.0, 1.0).asin();
+    let y = rotation[(0, 2)].atan2(rotation[(2, 2)]);
+    let z = rotation[(1, 0)].atan2(rotation[(1, 1)]);
+    [x, y, z].map(f64::to_degrees)
+}
+
 /// Returns the rotation about the fixed axes z, x, y, in this order.
 fn rotation(about_z_deg: f64, about_x_deg: f64, about_y_deg: f64) -> Mat3 {
     let (sz, cz) = about_z_deg.to_radians().sin_cos();
@@ -288,7 +385,17 @@ fn rotation(about_z_deg: f64, about_x_deg: f64, about_y_deg: f64) -> Mat3 {
 pub(in crate::case) fn middle_of_mesh(mesh: &TriangleMesh) -> Vec3 {
     /// Spacing of the points among which the dishes are searched, mm.
     const SPACING_MM: f64 = 0.5;
-    middle_of_points(&mesh.seen_from_above(SPACING_MM))
+    /// Cosine of the steepest part of a surface; a point on a wall that is not quite vertical would be lower than any dish.
+    const STEEPEST: f64 = 0.1;
+    let is_wall = |[a, b, c]: [Vec3; 3]| {
+        let normal = (b - a).cross(&(c - a));
+        normal.y.abs() < STEEPEST * normal.norm()
+    };
+    let mut surface = mesh.clone();
+    let triangles = 0..mesh.triangles.len();
+    let kept = triangles.filter(|&triangle| !is_wall(mesh.corners(triangle)));
+    surface.triangles = kept.map(|triangle| mesh.triangles[triangle]).collect();
+    middle_of_points(&surface.seen_from_above(SPACING_MM))
 }
 
 pub(super) fn middle_of_points(points: &[Vec3]) -> Vec3 {
@@ -397,7 +504,8 @@ mod tests {
 
     #[test]
     fn verify_a_left_knee_becomes_its_mirror_image() {
-        let placing = Placing::new(LengthUnit::Metre, &Axes::ISB, Side::Left).unwrap();
+        let placing = Placing::new(LengthUnit::Metre, &Axes::ISB, (None, None), Side::Left);
+        let placing = placing.unwrap();
         let placed = placing.point(&Vec3::new(0.001, 0.002, 0.003));
         assert!((placed - Vec3::new(1.0, 2.0, -3.0)).norm() < 1e-12);
         let mesh = TriangleMesh {

@@ -3,14 +3,14 @@
 use std::fs::File;
 use std::path::{Path, PathBuf};
 
-use condyle::Vec3;
 use condyle::anatomy::{Orientation, Sureness};
 use condyle::geometry::{
-    GenericFemur, GenericFemurShape, GenericInsertShape, Meshing, TriangleMesh,
+    Dishes, GenericFemur, GenericFemurShape, GenericInsertShape, Meshing, TriangleMesh,
 };
+use condyle::{Mat3, Vec3};
 use tempfile::TempDir;
 
-use crate::case::{Body, BuildWarning, Case, Drafted, Preset, Side};
+use crate::case::{Body, BuildWarning, Built, Case, Drafted, Preset, Side};
 use condyle_mesh::files::Disk;
 use condyle_mesh::formats::{read_surface, write_stl};
 
@@ -282,4 +282,116 @@ fn a_draft_puts_the_origin_between_dishes_that_lie_off_that_of_their_file() {
         (at_home.0 - away.0).abs() < 1.0 && (at_home.1 - away.1).abs() < 1.0,
         "{starts:?}"
     );
+}
+
+/// The case drafted of a pair that lies turned and far away, and what is built of it.
+fn drafted(pair: &Pair, place: impl Fn(&Vec3) -> Vec3) -> (String, Built) {
+    let placed = Pair {
+        femur: pair.femur.clone().mapped(&place),
+        insert: pair.insert.clone().mapped(&place),
+    };
+    let (folder, femur, insert) = written(&placed, &Orientation::ISB, 1.0);
+    let meshes = [femur.as_path(), insert.as_path()];
+    let drafted = Drafted::new(Preset::StanmoreForce, None, meshes, folder.path());
+    let text = drafted.unwrap().text;
+    let case = Case::parse(&text, "case.toml", folder.path()).unwrap();
+    assert_eq!(case.misfit_remarks(), [""; 0], "{text}");
+    (text, case.build(1).unwrap())
+}
+
+/// Lowest places of the dishes, and the start of the flexion axis, both mm.
+fn landmarks(built: &Built) -> [Vec3; 3] {
+    let test = &built.test;
+    let dishes = Dishes::find(&test.insert.surface().positions).unwrap();
+    let start = Vec3::new(test.start_mm.0, 0.0, test.start_mm.1);
+    // The draft takes the middle of the dishes or the origin of the file: only differences are the same.
+    let middle = dishes.middle_mm();
+    [
+        dishes.medial_mm - middle,
+        dishes.lateral_mm - middle,
+        start - Vec3::new(middle.x, 0.0, middle.z),
+    ]
+}
+
+#[test]
+fn a_pair_that_lies_turned_and_far_away_comes_together_as_the_square_one() {
+    let mut pairs = real("lies_turned");
+    pairs.push(generic());
+    for pair in &pairs {
+        let (square, built) = drafted(pair, |v| *v);
+        assert!(
+            square.contains("# rotation_deg =") && square.contains("# origin_mm ="),
+            "{square}"
+        );
+        let at_home = landmarks(&built);
+        for (axis, degrees) in [
+            (Vec3::x(), 10.0),
+            (Vec3::y(), 20.0),
+            (Vec3::new(1.0, 2.0, -1.0), 27.0),
+        ] {
+            let cross = axis.normalize().cross_matrix();
+            let (sine, cosine) = f64::to_radians(degrees).sin_cos();
+            let turn = Mat3::identity() + cross * sine + cross * cross * (1.0 - cosine);
+            let shift = Vec3::new(1000.0, -700.0, 300.0);
+            let (text, built) = drafted(pair, |v| turn * v + shift);
+            assert_eq!(text.matches("\nrotation_deg = [").count(), 2, "{text}");
+            assert!(text.contains("\norigin_mm = ["), "{text}");
+            // A degree at the dishes, 23 mm off the middle; flat ones have their lowest places anywhere within a few millimetres.
+            for (here, there) in at_home.iter().zip(landmarks(&built)) {
+                assert!(
+                    (here - there).norm() < 3.0,
+                    "{degrees} {here} {there}\n{text}"
+                );
+            }
+        }
+    }
+}
+
+#[test]
+fn bodies_that_are_others_are_refused_by_a_draft() {
+    let pair = generic();
+    let refused = |femur: &TriangleMesh, insert: &TriangleMesh| {
+        let pair = Pair {
+            femur: femur.clone(),
+            insert: insert.clone(),
+        };
+        let (folder, femur, insert) = written(&pair, &Orientation::ISB, 1.0);
+        let meshes = [femur.as_path(), insert.as_path()];
+        let drafted = Drafted::new(Preset::StanmoreForce, None, meshes, folder.path());
+        drafted.unwrap_err().to_string()
+    };
+    let said = refused(&pair.insert, &pair.femur);
+    assert!(
+        said.contains("f.stl is an insert and") && said.contains("exchange them"),
+        "{said}"
+    );
+    let narrow = pair
+        .insert
+        .clone()
+        .mapped(|v| Vec3::new(v.x, v.y, 0.4 * v.z));
+    let said = refused(&pair.femur, &narrow);
+    assert!(
+        said.contains("an insert of one compartment; condyle tests whole knees"),
+        "{said}"
+    );
+    let tray = TriangleMesh::block(Vec3::new(-23.0, 0.0, -36.0), Vec3::new(23.0, 5.0, 36.0));
+    let said = refused(&pair.femur, &tray);
+    assert!(
+        said.contains("a tray, flat above and below; give the polyethylene"),
+        "{said}"
+    );
+}
+
+#[test]
+fn bodies_of_different_sizes_are_reported() {
+    let pair = generic();
+    let small = Pair {
+        femur: pair.femur.mapped(|v| 0.7 * v),
+        insert: pair.insert,
+    };
+    let (folder, ..) = written(&small, &Orientation::ISB, 1.0);
+    let text = "[femur]\nshape = \"mesh\"\nfile = \"f.stl\"\n[insert]\nshape = \"mesh\"\nfile = \"i.stl\"\n";
+    let case = Case::parse(text, "case.toml", folder.path()).unwrap();
+    let said = case.misfit_remarks().join("\n");
+    assert!(said.contains("unlike those of one implant"), "{said}");
 }
