@@ -19,6 +19,10 @@ use crate::{
 const STEPS_BY_RATIO: f64 = 2.3;
 const STEPS_LESS: f64 = 0.77;
 
+/// The nodes in contact around a node determine no slope across their line if the determinant of their directions is at most
+/// this part of the square of the trace. Rounding leaves 1e-16 of it; lines that bend by a degree have 1e-4.
+const IN_LINE: f64 = 1e-9;
+
 /// A fit is rejected if it misses the square of the pressure at its node by more than this part.
 const MAX_MISSED: f64 = 0.1;
 
@@ -89,6 +93,10 @@ impl<'a> NodePressures<'a> {
                 matrix += flat * flat.transpose() * weight;
                 right += flat * ((other_own - own) * weight);
             }
+        }
+        // For nodes in one line the matrix is singular, and rounding would decide between no slope and any.
+        if matrix.determinant() <= IN_LINE * matrix.trace().powi(2) {
+            return None;
         }
         let slope = matrix.cholesky()?.solve(&right);
         Some(along[0] * slope.x + along[1] * slope.y)
