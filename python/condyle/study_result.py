@@ -99,7 +99,9 @@ def _read(folder: Path) -> dict[str, NDArray[Any]]:
         rows = found.fetchall()
     database.close()
     columns = zip(*rows) if rows else ([] for _ in names)
-    return {name: _array(np, name, column) for name, column in zip(names, columns)}
+    table = {name: _array(np, name, column) for name, column in zip(names, columns)}
+    table.pop("checksum", None)
+    return table
 
 
 def _array(np: Any, name: str, column: Any) -> NDArray[Any]:

@@ -21,7 +21,11 @@ use crate::{
 
 /// Name of the file in the study's folder.
 pub(crate) const DATABASE: &str = "study.db";
-const FORMAT: &str = "1";
+/// Name of the file under which a new database is created.
+const NEW_DATABASE: &str = "study.db.part";
+const FORMAT: &str = "2";
+/// The last column of the tests: the checksum of the others, so that damage to the file is no result.
+const CHECKSUM: &str = "checksum";
 /// Longest time for which a reading process may delay a write.
 const MAX_WAIT: Duration = Duration::from_secs(60);
 
@@ -51,6 +55,10 @@ impl Store {
                 "the folder is not empty and holds no study; give another one with --out",
             ));
         }
+        if !path.exists() {
+            Self::create(plan, shard, &out.join(NEW_DATABASE))?;
+            fs::rename(out.join(NEW_DATABASE), &path).map_err(StudyError::refused(&path))?;
+        }
         let mut store = Self::connect(path)?;
         store._lock = lock;
         store.checked(|connection| {
@@ -58,12 +66,6 @@ impl Store {
             // fraction of the time of a synchronous commit.
             connection.execute_batch("PRAGMA journal_mode = WAL; PRAGMA synchronous = NORMAL;")
         })?;
-        let tables = "SELECT count(*) FROM sqlite_schema WHERE name = 'study'";
-        let tables: i64 = store.checked(|one| one.query_row(tables, [], |row| row.get(0)))?;
-        if tables == 0 {
-            store.create(plan, shard)?;
-            return Ok(store);
-        }
         store.check_tests(out, plan)?;
         if store.fact("shard")? != Some(shard.to_string()) {
             let problem = "the folder holds another study, or another shard of this one; give another one with --out, \
@@ -100,7 +102,51 @@ impl Store {
             _lock: None,
         };
         store.checked(|connection| connection.busy_timeout(MAX_WAIT))?;
+        store.check_rows()?;
         Ok(store)
+    }
+
+    /// Rejects a database without tables, and one whose tests are not those that were stored.
+    fn check_rows(&self) -> Result<(), StudyError> {
+        let damaged = |what: &str| {
+            let problem = format!(
+                "{what}: the file is damaged; restore it from a copy, or remove it and run the study again"
+            );
+            StudyError::folder(&self.path, &problem)
+        };
+        let Some(tables) = self.tables()? else {
+            return Err(damaged("it holds no study"));
+        };
+        if self.fact("format")?.as_deref() != Some(FORMAT) {
+            let problem = "it was written by another version of condyle; read it with that version, or remove it";
+            return Err(StudyError::folder(&self.path, problem));
+        }
+        let wrong = self.checked(|connection| {
+            let mut statement = connection.prepare("SELECT * FROM tests ORDER BY \"row\"")?;
+            let places = statement.column_count();
+            let mut rows = statement.query([])?;
+            while let Some(row) = rows.next()? {
+                let cells: rusqlite::Result<Vec<Value>> =
+                    (0..places).map(|place| row.get(place)).collect();
+                let mut cells = cells?;
+                if cells.pop() != Some(Value::Text(checksum(&tables, &cells))) {
+                    return Ok(Some(row.get_ref(0)?.as_i64().unwrap_or(-1)));
+                }
+            }
+            Ok(None)
+        })?;
+        match wrong {
+            Some(row) => Err(damaged(&format!("row {row} does not have its checksum"))),
+            None => Ok(()),
+        }
+    }
+
+    /// Returns the declaration of the table of tests, in bytes that need not be text; none if there is no such table.
+    fn tables(&self) -> Result<Option<Vec<u8>>, StudyError> {
+        let query = "SELECT sql FROM sqlite_schema WHERE name = ?1";
+        self.first_row(query, "tests", |row| {
+            Ok(row.get_ref(0)?.as_bytes().unwrap_or_default().to_vec())
+        })
     }
 
     /// Adds the name of the file to errors of `work`.
@@ -111,7 +157,13 @@ impl Store {
         work(&self.connection).map_err(StudyError::refused(&self.path))
     }
 
-    fn create(&self, plan: &Plan, shard: Shard) -> Result<(), StudyError> {
+    /// Creates the database of a study without tests at `path`; what a killed study has left there is removed.
+    fn create(plan: &Plan, shard: Shard, path: &Path) -> Result<(), StudyError> {
+        let refused = StudyError::refused(path);
+        match fs::remove_file(path) {
+            Err(error) if error.kind() != io::ErrorKind::NotFound => return Err(refused(error)),
+            _ => {}
+        }
         let study = plan.study();
         let (inputs, outputs) = plan.columns();
         let mut columns = vec!["\"row\" INTEGER PRIMARY KEY".to_owned()];
@@ -121,6 +173,7 @@ impl Store {
         columns.extend(["\"status\" TEXT NOT NULL", "\"reason\" TEXT"].map(str::to_owned));
         columns.extend(inputs.iter().map(|key| quoted(key)));
         columns.extend(outputs.iter().map(|key| format!("{} REAL", quoted(key))));
+        columns.push(format!("{} TEXT NOT NULL", quoted(CHECKSUM)));
         let tables = format!(
             "CREATE TABLE study (name TEXT PRIMARY KEY, value TEXT NOT NULL) WITHOUT ROWID;
              CREATE TABLE tests ({});",
@@ -134,21 +187,21 @@ impl Store {
             ("tests", &plan.tests().to_string()),
             ("study.toml", &study.text),
         ];
-        self.checked(|connection| {
+        let created = || {
+            let connection = Connection::open(path)?;
             let transaction = connection.unchecked_transaction()?;
             transaction.execute_batch(&tables)?;
             for (name, value) in facts {
                 transaction.execute("INSERT INTO study VALUES (?1, ?2)", [name, value])?;
             }
             transaction.commit()
-        })
+        };
+        created().map_err(|error: rusqlite::Error| StudyError::refused(path)(error))
     }
 
     /// Rejects a database with the tests of another plan.
     fn check_tests(&self, folder: &Path, plan: &Plan) -> Result<(), StudyError> {
-        let is_format = self.fact("format")?.as_deref() == Some(FORMAT);
-        let is_same = self.fact("inputs_blake3")?.as_deref() == Some(plan.inputs_blake3());
-        if is_format && is_same {
+        if self.fact("inputs_blake3")?.as_deref() == Some(plan.inputs_blake3()) {
             return Ok(());
         }
         let problem = "the folder holds another study; give another one with --out, or remove it";
@@ -202,10 +255,13 @@ impl Store {
     /// # Errors
     /// The database cannot be written, for instance because the disk is full.
     pub fn keep(&self, plan: &Plan, found: &[(Test, TestResult)]) -> Result<(), StudyError> {
-        let rows: Vec<Vec<Value>> = found
-            .iter()
-            .map(|(test, result)| cells(plan, test, result))
-            .collect();
+        let tables = self.tables()?.unwrap_or_default();
+        let row = |(test, result): &(Test, TestResult)| {
+            let mut cells = cells(plan, test, result);
+            cells.push(Value::Text(checksum(&tables, &cells)));
+            cells
+        };
+        let rows: Vec<Vec<Value>> = found.iter().map(row).collect();
         let Some(first) = rows.first() else {
             return Ok(());
         };
@@ -341,7 +397,8 @@ impl Store {
     pub fn write_csv(&self, out: &mut dyn Write) -> Result<io::Result<()>, StudyError> {
         self.checked(|connection| {
             let mut statement = connection.prepare("SELECT * FROM tests ORDER BY \"row\"")?;
-            let names: Vec<String> = statement.column_names().map(csv_cell).collect();
+            let mut names: Vec<String> = statement.column_names().map(csv_cell).collect();
+            names.retain(|name| name != CHECKSUM);
             let mut written = writeln!(out, "{}", names.join(","));
             let mut rows = statement.query([])?;
             while let Some(row) = rows.next()? {
@@ -411,12 +468,13 @@ pub(crate) struct Column {
     pub words: Vec<String>,
 }
 
-/// Returns whether a folder exists and holds anything besides the lock of a study or run.
+/// Returns whether a folder exists and holds anything besides the lock of a study or run and a database that was
+/// not completed.
 pub(crate) fn holds_anything(folder: &Path) -> Result<bool, StudyError> {
+    let own = ["in_use", NEW_DATABASE];
     match fs::read_dir(folder) {
-        Ok(mut entries) => {
-            Ok(entries.any(|entry| entry.is_ok_and(|one| one.file_name() != "in_use")))
-        }
+        Ok(mut entries) => Ok(entries
+            .any(|entry| entry.is_ok_and(|one| !own.iter().any(|own| one.file_name() == *own)))),
         Err(error) if error.kind() == io::ErrorKind::NotFound => Ok(false),
         Err(source) => Err(StudyError::refused(folder)(source)),
     }
@@ -464,10 +522,106 @@ fn cells(plan: &Plan, test: &Test, result: &TestResult) -> Vec<Value> {
     cells
 }
 
+/// Returns the checksum of a row: of the declaration of its table and of the type and value of every cell.
+fn checksum(tables: &[u8], cells: &[Value]) -> String {
+    let mut hasher = blake3::Hasher::new();
+    hasher.update(tables);
+    for cell in cells {
+        let cell = match cell {
+            // SQLite stores -0 as 0.
+            Value::Real(number) => Value::Real(number + 0.0),
+            other => other.clone(),
+        };
+        hasher.update(format!("{cell:?}").as_bytes());
+    }
+    hasher.finalize().to_hex().to_string()
+}
+
 fn csv_cell(text: &str) -> String {
+    // A spreadsheet would take it for a formula.
+    if text.starts_with(['=', '+', '-', '@']) {
+        return csv_cell(&format!("'{text}"));
+    }
     if text.contains([',', '"', '\n', '\r']) {
         format!("\"{}\"", text.replace('"', "\"\""))
     } else {
         text.to_owned()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const STUDY: &str = "case = \"case.toml\"\n[design]\nsize = 3\n\
+        [[vary]]\nkey = \"contact.friction\"\nlow = 0.02\nhigh = 0.1\n";
+
+    /// Returns a folder with a study of one stored test, and its plan.
+    fn stored() -> (tempfile::TempDir, Plan) {
+        let folder = tempfile::tempdir().unwrap();
+        fs::write(folder.path().join("case.toml"), "").unwrap();
+        fs::write(folder.path().join("study.toml"), STUDY).unwrap();
+        let plan = Plan::read(&folder.path().join("study.toml")).unwrap();
+        let store = Store::take(&plan, &folder.path().join("out")).unwrap();
+        let outputs = TestOutputs {
+            values: (0..plan.columns().1.len())
+                .map(|one| -0.0 + one as f64)
+                .collect(),
+            doubts: String::new(),
+        };
+        store
+            .keep(&plan, &[(plan.test(0).unwrap(), Ok(outputs))])
+            .unwrap();
+        drop(store);
+        (folder, plan)
+    }
+
+    /// Returns why a study is refused after `damage` to its database.
+    fn refusal(damage: impl Fn(&Path)) -> String {
+        let (folder, plan) = stored();
+        let out = folder.path().join("out");
+        assert!(Store::existing(&out, &plan).is_ok());
+        damage(&out.join(DATABASE));
+        let taken = Store::take(&plan, &out).err().unwrap().to_string();
+        assert_eq!(Store::read(&out).err().unwrap().to_string(), taken);
+        taken
+    }
+
+    #[test]
+    fn a_damaged_database_is_an_error_and_neither_a_result_nor_a_new_study() {
+        let changed = |change: &'static str| {
+            refusal(move |path| {
+                let changed = Connection::open(path).unwrap().execute(change, []);
+                assert_eq!(changed.unwrap(), 1);
+            })
+        };
+        for change in [
+            "UPDATE tests SET mass_loss_mg = mass_loss_mg + 1e-9",
+            "UPDATE tests SET \"contact.friction\" = 0.05",
+            "UPDATE tests SET \"row\" = 1",
+        ] {
+            let said = changed(change);
+            assert!(said.contains("does not have its checksum"), "{said}");
+        }
+        let said = refusal(|path| fs::write(path, "").unwrap());
+        assert!(said.contains("it holds no study"), "{said}");
+    }
+
+    #[test]
+    fn a_damaged_name_of_a_column_is_an_error() {
+        let said = refusal(|path| {
+            let mut bytes = fs::read(path).unwrap();
+            let place = bytes.windows(12).position(|name| name == b"mass_loss_mg");
+            bytes[place.unwrap() + 5] = 0xff;
+            fs::write(path, bytes).unwrap();
+        });
+        assert!(said.contains("does not have its checksum"), "{said}");
+    }
+
+    #[test]
+    fn a_name_is_no_formula_of_a_spreadsheet() {
+        assert_eq!(csv_cell("=cmd|' /C calc'!A0"), "'=cmd|' /C calc'!A0");
+        assert_eq!(csv_cell("-1,5"), "\"'-1,5\"");
+        assert_eq!(csv_cell("a=b"), "a=b");
     }
 }

@@ -150,7 +150,7 @@ fn stand_in(character: char) -> char {
 }
 
 /// Returns true for control characters and for those that change the direction of text.
-fn steers(character: char) -> bool {
+pub(super) fn steers(character: char) -> bool {
     character.is_control()
         || matches!(character, '\u{200e}' | '\u{200f}' | '\u{202a}'..='\u{202e}' | '\u{2066}'..='\u{2069}')
 }

@@ -6,9 +6,10 @@ use std::ops::Range;
 use toml::Spanned;
 use toml::de::{DeString, DeTable, DeValue};
 
-use super::fault::{explain, idle, missing_key, syntax, type_fault};
+use super::fault::{Fault, explain, idle, missing_key, syntax, type_fault};
 use super::key::{Key, names, type_name};
 use super::problem::{Base, Log, Problems, Source};
+use super::render::steers;
 use super::setting::Setting;
 
 /// A table of a file; an absent one has no keys.
@@ -225,6 +226,7 @@ pub(crate) fn read_part<'a, T>(
     }
     // After a syntax error, keys may be in the wrong tables: their problems would mislead.
     let found = if errors.is_empty() {
+        report_steering(document.get_ref().values(), &mut log);
         read(&mut document.into_inner(), &mut log)
     } else {
         None
@@ -233,6 +235,26 @@ pub(crate) fn read_part<'a, T>(
     match found {
         Some(found) if problems.is_empty() => Ok(found),
         Some(_) | None => Err(Problems::new(problems, source)),
+    }
+}
+
+/// Reports texts with characters that steer a terminal: names reach tables, pages and pictures as they are written.
+fn report_steering<'a>(values: impl Iterator<Item = &'a Spanned<DeValue<'a>>>, log: &mut Log<'_>) {
+    for value in values {
+        match value.get_ref() {
+            DeValue::String(text) => {
+                if let Some(found) = text.chars().find(|&one| steers(one) && one != '\n') {
+                    let message = format!(
+                        "this text holds the control character {}",
+                        found.escape_unicode()
+                    );
+                    log.problem(value.span(), Fault::new(message, "remove it"));
+                }
+            }
+            DeValue::Array(items) => report_steering(items.iter(), log),
+            DeValue::Table(table) => report_steering(table.values(), log),
+            _ => {}
+        }
     }
 }
 

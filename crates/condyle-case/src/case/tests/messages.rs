@@ -48,6 +48,11 @@ fn control_characters_of_a_case_do_not_reach_the_terminal() {
     }
     assert_shows(&refusal(key), &["`a\\u{1b}[31m\\u{9b}`"]);
     assert_shows(&refusal(raw), &[" 2 | file = \"?[31m\""]);
+    // A title that is otherwise good would reach pages and tables.
+    assert_shows(
+        &refusal("title = \"a\\u001b[31m\"\n"),
+        &["this text holds the control character \\u{1b}"],
+    );
 }
 
 #[test]
