@@ -55,6 +55,16 @@ pub enum Command {
     Calibrate(Calibrate),
     /// Find the constants of the wear law with which runs reproduce the measured wear rates.
     CalibrateWear(CalibrateWear),
+    /// Print the completions of commands and options for a shell.
+    Completions {
+        /// The shell.
+        shell: clap_complete::Shell,
+    },
+    /// Write a man page of every command into a folder.
+    Man {
+        /// The folder; it is created if it does not exist.
+        folder: PathBuf,
+    },
 }
 
 #[derive(Args)]

@@ -5,6 +5,7 @@ mod calibrate;
 mod check;
 mod compare;
 mod machine;
+mod manual;
 mod new;
 mod output;
 mod progress;
@@ -62,5 +63,7 @@ fn run_command() -> Done {
         Command::Compare(arguments) => compare::compare(&arguments),
         Command::Calibrate(arguments) => calibrate::calibrate(&arguments),
         Command::CalibrateWear(arguments) => calibrate::calibrate_wear(&arguments),
+        Command::Completions { shell } => manual::completions(shell),
+        Command::Man { folder } => manual::man(&folder),
     }
 }

@@ -82,3 +82,19 @@ fn a_full_disk_behind_standard_output_costs_no_results() {
     assert_eq!(bench.summary("out")[&catalogue::UPDATES], 3.0);
     assert!(fs::exists(bench.path("out/report.html")).unwrap());
 }
+
+#[test]
+fn shells_complete_every_command_and_each_has_a_man_page() {
+    let bench = Bench::new();
+    for shell in ["bash", "zsh", "fish", "powershell"] {
+        let said = bench.say(&["completions", shell]);
+        assert_eq!(said.code, Some(0), "{}", said.err);
+        assert!(said.out.contains("calibrate-wear"), "{shell}");
+    }
+    let said = bench.say(&["man", "pages"]);
+    assert_eq!(said.code, Some(0), "{}", said.err);
+    for page in ["condyle.1", "condyle-run.1", "condyle-study-export.1"] {
+        let text = fs::read_to_string(bench.path("pages").join(page)).unwrap();
+        assert!(text.contains(".SH SYNOPSIS"), "{page}");
+    }
+}
