@@ -112,12 +112,11 @@ fn rows_of_insert(insert: &InsertFacts) -> Vec<Row> {
     );
     rows.push(("  mesh", mesh));
     if let Some([medial, lateral]) = insert.dish_thickness_mm {
-        let thickness = format!(
-            "{medial:.2} mm medial, {lateral:.2} mm lateral at the thinnest; {:.2} mm anywhere inside the rim",
-            insert.least_thickness_mm
-        );
+        let thickness = format!("{medial:.2} mm medial, {lateral:.2} mm lateral at the thinnest");
         rows.push(("  thickness over the dishes", thickness));
     }
+    let least = format!("{:.2} mm at the thinnest", insert.least_thickness_mm);
+    rows.push(("  thickness inside the rim", least));
     if let Some(middle) = insert.dishes_middle_mm {
         rows.push(("  dish middle from origin", from_origin(middle)));
     }

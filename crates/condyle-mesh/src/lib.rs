@@ -33,6 +33,7 @@ mod divided_mesh;
 pub mod files;
 pub mod formats;
 pub mod repair;
+mod roughness;
 mod triangle_mesh;
 
 pub use coarse::coarser;

@@ -14,8 +14,8 @@ use condyle_mesh::repair::{CheckedMesh, RepairError};
 use thiserror::Error;
 
 use super::build::{
-    Body, BuildError, MAX_ACROSS_MM, WrittenRotation, advice, checks_of, cut_at, heights_to_write,
-    longest_mm, middle_of_mesh, rounded_up, usual_unit,
+    Body, BuildError, MAX_ACROSS_MM, WrittenRotation, advice, checked, checks_of, cut_at,
+    heights_to_write, longest_mm, middle_of_mesh, rounded_up, usual_unit,
 };
 use super::contents::Case;
 use super::frame::{Axes, LengthUnit, Side};
@@ -239,9 +239,7 @@ impl<'a> Concluded<'a> {
     fn shell(&self, lies: &WrittenRotation) -> Result<CheckedMesh, BuildError> {
         let rotation = lies.rotation();
         let placed = self.mesh.clone().mapped(|vertex| rotation * vertex);
-        checks_of(self.body, None)
-            .check(placed)
-            .map_err(|error| BuildError::shell(&self.file, &error))
+        checked(&self.file, placed, checks_of(self.body, None))
     }
 
     fn keys(&self, lies: &WrittenRotation) -> String {

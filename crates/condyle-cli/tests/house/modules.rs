@@ -63,6 +63,7 @@ const MAY_USE: &[(&str, &[&str])] = &[
     ),
     ("condyle_mesh::repair", &["condyle_mesh::triangle_mesh"]),
     ("condyle_mesh::coarse", &["condyle_mesh::triangle_mesh"]),
+    ("condyle_mesh::roughness", &["condyle_mesh::triangle_mesh"]),
     ("condyle_mesh::files", &[]),
     (
         "condyle_mesh::formats",

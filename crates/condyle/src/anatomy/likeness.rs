@@ -54,6 +54,7 @@ impl Likeness {
             return Some(Self::Tray);
         }
         let extents = extents(mesh);
+        let femur = || Upright::of_femur(mesh).map(|_| Self::Femur);
         // Without a backside, condyles from behind look like dishes.
         let has_backside = flat.share > MIN_BACKSIDE;
         let insert = || {
@@ -61,13 +62,13 @@ impl Likeness {
                 .filter(|_| has_backside)
                 .map(|_| Self::Insert)
         };
-        let femur = || Upright::of_femur(mesh).map(|_| Self::Femur);
-        if extents[2] < MAX_THIN * extents[0] {
-            insert()
-                .or_else(|| one_compartment(&extents))
-                .or_else(femur)
-        } else {
-            femur().or_else(insert)
+        if extents[2] > MAX_THIN * extents[0] {
+            // An insert that lies oblique has a high box.
+            return femur().or_else(insert);
+        }
+        match Upright::of_insert(mesh) {
+            Some(_) => has_backside.then_some(Self::Insert),
+            None => one_compartment(&extents).or_else(femur),
         }
     }
 }

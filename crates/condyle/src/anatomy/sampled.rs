@@ -8,8 +8,9 @@ use crate::{Mat3, Vec3, geometry::TriangleMesh};
 const POINTS: usize = 500;
 /// Every so many points serve for the coarse search.
 const FEW: usize = 3;
-/// Cosine of 3 degrees, within which normals count as parallel: the facets of a scanned plane scatter by less.
-const PARALLEL: f64 = 0.998_63;
+/// Cosine of 6 degrees, within which normals count as parallel: most facets of a plane scanned with a noise of 0.05 mm lie
+/// within it.
+const PARALLEL: f64 = 0.994_52;
 /// Distance beyond which a mirrored point has no partner, as a share of the longest extent.
 const FAR: f64 = 0.06;
 

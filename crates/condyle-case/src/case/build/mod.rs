@@ -26,5 +26,5 @@ pub(super) use misfit::advice;
 pub(super) use {
     checks::{MAX_ACROSS_MM, longest_mm, usual_unit},
     insert::{cut_at, heights_to_write, rounded_up},
-    placing::{WrittenRotation, checks_of, middle_of_mesh},
+    placing::{WrittenRotation, checked, checks_of, middle_of_mesh},
 };

@@ -162,8 +162,7 @@ pub(super) fn parsed_shell(
         );
         return Err(BuildError::mesh(file, &["clip_below_mm"], message));
     }
-    let shell = checks.check(mesh);
-    let mut shell = shell.map_err(|error| BuildError::shell(file, &error))?;
+    let mut shell = checked(file, mesh, checks)?;
     // A closed shell shows its inside; an open one must face the other body.
     let must_face_up = checks.touching == Touching::FromAbove;
     if !shell.closed && faces_up(&shell.mesh) != must_face_up {
@@ -173,13 +172,45 @@ pub(super) fn parsed_shell(
     Ok(shell)
 }
 
+/// Checks a mesh in place; the noise of a scan is named before the crossings that it causes.
+pub(in crate::case) fn checked(
+    file: &Path,
+    mesh: TriangleMesh,
+    checks: Checks,
+) -> Result<CheckedMesh, BuildError> {
+    let noise = noise(&mesh);
+    checks.check(mesh).map_err(|error| match noise {
+        Some(noise) => {
+            BuildError::mesh(file, &["file"], format_args!("{noise}; as it is, {error}"))
+        }
+        None => BuildError::shell(file, &error),
+    })
+}
+
+/// Scatter beyond which a surface is noisy, mm: the same at the contact changes the highest pressure by some 5 %.
+const MAX_SCATTER_MM: f64 = 0.01;
+/// Largest noise of a scan of an implant, mm: beyond it, coarse facets scatter.
+const MAX_NOISE_MM: f64 = 0.3;
+
+/// Describes the noise of a mesh.
+fn noise(mesh: &TriangleMesh) -> Option<String> {
+    let scatter_mm = mesh.scatter_mm()?;
+    (MAX_SCATTER_MM..MAX_NOISE_MM).contains(&scatter_mm).then(|| {
+        format!(
+            "its vertices scatter by about {scatter_mm:.3} mm about a smooth surface, as by the noise of a scan, \
+             and up to {MAX_SCATTER_MM} mm is acceptable; the highest pressure is not to be believed: smooth it, or take the \
+             body from CAD"
+        )
+    })
+}
+
 /// Adds a warning for each repair of a file, and for each suspicious property.
 pub(super) fn warn(file: &DataFile, shell: &CheckedMesh, warnings: &mut Vec<BuildWarning>) {
     if let Some(piece) = stray_piece(&shell.mesh) {
         let remark = format!("{}; delete it unless it belongs to the body", piece.text);
         warnings.push(BuildWarning::mesh(file, remark).with(Finding::StrayPiece));
     }
-    let mut remarks = Vec::new();
+    let mut remarks: Vec<String> = noise(&shell.mesh).into_iter().collect();
     if !shell.left_out.is_empty() {
         let parts = parts_listed(&shell.left_out);
         remarks.push(format!(

@@ -395,3 +395,28 @@ fn bodies_of_different_sizes_are_reported() {
     let said = case.misfit_remarks().join("\n");
     assert!(said.contains("unlike those of one implant"), "{said}");
 }
+
+/// A part of a tenth of a millimetre that differs from vertex to vertex, as the noise of a scan.
+fn scanned(mesh: &TriangleMesh, noise_mm: f64) -> TriangleMesh {
+    mesh.clone().mapped(|v| {
+        let part = |along: f64| ((v.x + 3.0 * v.y + 7.0 * v.z) * along).sin();
+        v + Vec3::new(part(911.0), part(1777.0), part(2903.0)) * (noise_mm * 2f64.sqrt())
+    })
+}
+
+#[test]
+fn the_noise_of_a_scan_is_named_with_its_size() {
+    let mut pairs = real("noise_of_a_scan");
+    pairs.push(generic());
+    for pair in &pairs {
+        for (noise_mm, is_told) in [(0.0, false), (0.03, true)] {
+            let noisy = Pair {
+                femur: scanned(&pair.femur, noise_mm),
+                insert: scanned(&pair.insert, noise_mm),
+            };
+            let said = refused(&noisy, r#"["anterior", "superior", "right"]"#, "mm");
+            let is_named = said.contains("as by the noise of a scan");
+            assert_eq!(is_named, is_told, "{noise_mm} {said}");
+        }
+    }
+}
