@@ -1,5 +1,6 @@
 //! Files that a file names, and columns of numbers in a CSV file, with the place of each.
 
+use std::borrow::Cow;
 use std::ops::Range;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -121,7 +122,7 @@ impl Setting for DataFile {
 
 /// A CSV file: names of its columns, and rows of unparsed cells.
 pub(crate) struct Columns<'a> {
-    text: &'a str,
+    text: Cow<'a, str>,
     header: Vec<Range<usize>>,
     rows: Vec<Vec<Range<usize>>>,
 }
@@ -145,22 +146,18 @@ impl<'a> Columns<'a> {
     /// The header is the last line above the numbers with as many names as they have columns, and
     /// may be a comment; a name ends at a blank, so that a remark may follow the last.
     pub(crate) fn split(text: &'a str, file: &str, example: &str) -> Result<Self, Vec<Placed>> {
+        // As many bytes, so that places stay: spreadsheets of some languages write semicolons and decimal commas.
+        let shown = if text.lines().any(has_semicolons) {
+            Cow::Owned(text.replace(',', ".").replace(';', ","))
+        } else {
+            Cow::Borrowed(text)
+        };
+        let text = shown.as_ref();
         let is_data = |line: &Range<usize>| {
             let first = text[line.clone()].split(',').next().unwrap_or_default();
             first.trim().parse::<f64>().is_ok()
         };
         let lines: Vec<Range<usize>> = lines(text).collect();
-        if let Some(line) = lines
-            .iter()
-            .find(|line| has_semicolons(&text[(*line).clone()]))
-        {
-            let fault = Fault::new(
-                format!("{file} has semicolons between its columns"),
-                "save it with commas between the columns and points in the numbers: spreadsheets of some languages write \
-                 semicolons and decimal commas",
-            );
-            return Err(vec![(line.clone(), fault)]);
-        }
         let start = lines.iter().position(is_data).unwrap_or(lines.len());
         let columns = lines.get(start).map_or(2, |line| cells(text, line).len());
         if columns < 2 {
@@ -191,14 +188,16 @@ impl<'a> Columns<'a> {
         };
         let is_row = |line: &&Range<usize>| !text[(*line).clone()].trim_start().starts_with('#');
         let rows = lines[start..].iter().filter(is_row);
+        let header = cells(text, header).into_iter().map(name).collect();
+        let rows = rows.map(|line| cells(text, line)).collect();
         Ok(Self {
-            text,
-            header: cells(text, header).into_iter().map(name).collect(),
-            rows: rows.map(|line| cells(text, line)).collect(),
+            text: shown,
+            header,
+            rows,
         })
     }
 
-    pub(crate) fn names(&self) -> Vec<&'a str> {
+    pub(crate) fn names(&self) -> Vec<&str> {
         let name = |span: &Range<usize>| &self.text[span.clone()];
         self.header.iter().map(name).collect()
     }

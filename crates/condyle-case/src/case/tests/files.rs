@@ -84,18 +84,25 @@ fn file_that_is_not_text_cannot_be_read() {
 }
 
 #[test]
-fn csv_with_semicolons_and_decimal_commas_is_named_as_such() {
-    for rows in ["0;100,5\n100;800,2\n", "0,0;100,5\n99,5;800,2\n"] {
-        let shown = refused(&format!("percent;knee_deg\n{rows}"), "");
-        assert_shows(
-            &shown,
-            &[
-                "wave.csv has semicolons between its columns",
-                "wave.csv:2:1]",
-                "commas between the columns and points in the numbers",
-            ],
-        );
-    }
+fn csv_with_semicolons_and_decimal_commas_is_read() {
+    let samples = samples(|percent| 0.5 * percent.min(100.0 - percent) + 0.25);
+    let with_points = format!("percent,knee_deg\n{samples}");
+    let with_commas = with_points.replace(',', ";").replace('.', ",");
+    let [one, other] = [with_points, with_commas].map(|csv| {
+        let test = with_csv(&csv, "").unwrap().build(1).unwrap().test;
+        format!("{:?}", test.activities)
+    });
+    assert_eq!(one, other);
+    // What is wrong is shown at its place as it is written.
+    let shown = refused("percent;knee_deg\n0,0;100,5\n50,0;many\n99,5;800,2\n", "");
+    assert_shows(
+        &shown,
+        &[
+            "`many` in column `knee_deg`",
+            "wave.csv:3:6]",
+            " 3 | 50,0;many",
+        ],
+    );
 }
 
 #[test]
