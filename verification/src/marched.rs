@@ -27,7 +27,8 @@ pub(crate) fn built(case: &Case) -> WearTest {
 /// A march that has not gone yet, and the foundation that its test is made with.
 pub(crate) fn started(case: &Case) -> (March, Foundation) {
     let march = March::start(built(case)).expect("a knee");
-    (march, case.foundation())
+    let foundation = case.foundation(march.insert());
+    (march, foundation)
 }
 
 /// The bodies of a march as worn so far, `surface` that of its insert.

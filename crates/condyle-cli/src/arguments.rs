@@ -140,9 +140,12 @@ pub enum Machine {
 pub struct New {
     /// The case file to write; it must not be there yet.
     pub case: PathBuf,
-    /// The simulator.
-    #[arg(long, default_value = Preset::StanmoreForce.word(), value_parser = presets())]
-    pub preset: Preset,
+    /// The simulator [default: stanmore-force, or that of --joint].
+    #[arg(long, value_parser = presets())]
+    preset: Option<Preset>,
+    /// The joint, for its usual simulator.
+    #[arg(long, value_parser = joints(), conflicts_with = "preset")]
+    joint: Option<Preset>,
     /// A mesh of the femoral component: its unit and axes are concluded from the shape.
     #[arg(long, value_name = "MESH", requires = "insert")]
     pub femur: Option<PathBuf>,
@@ -152,6 +155,12 @@ pub struct New {
     /// The side of the knee, right or left; by default the side that the femur's trochlea shows.
     #[arg(long, value_parser = sides(), requires = "femur")]
     pub side: Option<Side>,
+    /// A mesh of the head of a hip: its ball is found in it.
+    #[arg(long, value_name = "MESH", requires = "cup", conflicts_with_all = ["femur", "insert"])]
+    pub head: Option<PathBuf>,
+    /// A mesh of the cup of a hip, closed: its socket and the direction in which it opens are found in it.
+    #[arg(long, value_name = "MESH", requires = "head")]
+    pub cup: Option<PathBuf>,
 }
 
 #[derive(Args)]
@@ -406,6 +415,34 @@ fn presets() -> impl TypedValueParser<Value = Preset> {
     let possible = |preset: &Preset| PossibleValue::new(preset.word()).help(preset.about());
     PossibleValuesParser::new(Preset::ALL.iter().map(possible))
         .try_map(|word| Preset::from_word(&word).ok_or("it is none of the presets"))
+}
+
+impl New {
+    /// Returns the simulator of the case.
+    pub fn preset(&self) -> Preset {
+        let usual = match self.head {
+            Some(_) => Preset::Iso142421Like,
+            None => Preset::StanmoreForce,
+        };
+        self.preset.or(self.joint).unwrap_or(usual)
+    }
+}
+
+/// The usual simulator of a joint.
+const OF_JOINT: [(&str, Preset); 4] = [
+    ("knee", Preset::StanmoreForce),
+    ("hip", Preset::Iso142421Like),
+    ("disc", Preset::Iso181921LumbarLike),
+    ("ankle", Preset::Iso22622Like),
+];
+
+fn joints() -> impl TypedValueParser<Value = Preset> {
+    PossibleValuesParser::new(OF_JOINT.map(|(joint, _)| joint)).try_map(|word| {
+        let found = OF_JOINT.into_iter().find(|(joint, _)| *joint == word);
+        found
+            .map(|(_, preset)| preset)
+            .ok_or("it is none of the joints")
+    })
 }
 
 fn percent(word: &str) -> Result<f64, String> {

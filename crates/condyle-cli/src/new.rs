@@ -45,9 +45,9 @@ pub fn new(arguments: &New) -> Done {
         }
         _ => {}
     }
-    let picture = match &arguments.femur {
+    let picture = match arguments.femur.as_ref().or(arguments.head.as_ref()) {
         Some(_) => settled(path)?.map(|picture| format!("look at {}; ", picture.display())),
-        // The generic implant always starts.
+        // The bodies by dimensions always start.
         None => None,
     };
     let (path, picture) = (path.display(), picture.unwrap_or_default());
@@ -78,15 +78,19 @@ fn settled(case: &Path) -> Result<Option<PathBuf>, Failure> {
     Ok(drawn.is_ok().then_some(picture))
 }
 
-/// Returns the case to write: of two meshes if they are given, else of the generic implant.
+/// Returns the case to write: of two meshes if they are given, else with the bodies that suit the machine.
 fn text(arguments: &New) -> Result<String, DraftError> {
-    let (Some(femur), Some(insert)) = (&arguments.femur, &arguments.insert) else {
-        return Ok(template(arguments.preset));
-    };
+    let preset = arguments.preset();
     let folder = arguments.case.parent();
     let folder = folder.filter(|folder| *folder != Path::new(""));
     let folder = folder.unwrap_or(Path::new("."));
-    let drafted = Drafted::new(arguments.preset, arguments.side, [femur, insert], folder)?;
+    let drafted = if let (Some(femur), Some(insert)) = (&arguments.femur, &arguments.insert) {
+        Drafted::new(preset, arguments.side, [femur, insert], folder)?
+    } else if let (Some(head), Some(cup)) = (&arguments.head, &arguments.cup) {
+        Drafted::hip(preset, [head, cup], folder)?
+    } else {
+        return Ok(template(preset));
+    };
     drafted.remarks.iter().for_each(note);
     Ok(drafted.text)
 }

@@ -39,7 +39,7 @@ fn built(case: &Case) -> WearTest {
 
 /// Its law of contact without any shortcut.
 fn plain(case: &Case) -> Foundation {
-    let mut law = case.foundation();
+    let mut law = case.foundation(&built(case).insert);
     law.settings.search = Search::BruteForce;
     law.settings.sample_reuse_mm = 0.0;
     law
@@ -194,7 +194,7 @@ fn assert_small_steps_are_exact(name: &str) {
     let Some(case) = case(name) else { return };
     let march = March::start(built(&case)).expect("a shipped case settles");
     let (test, state) = (march.test(), march.state());
-    let (surface, law) = (march.insert().surface(), case.foundation());
+    let (surface, law) = (march.insert().surface(), case.foundation(march.insert()));
     let chain = Chain::new(test.machine(), state.zero_mm, test.flexion_axis_mm);
     let mut walked = anew(&march, &surface, &law);
     let mut simulator = Simulator::new(test.machine(), &chain, walked.as_mut(), &test.time);

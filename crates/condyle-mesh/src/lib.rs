@@ -6,7 +6,7 @@
 //!    from a disk or from memory ([`files`]).
 //! 2. **A triangle mesh becomes a surface.** [`repair`] welds, closes and orients it, and lists the defects that it
 //!    cannot repair. [`CurvedMesh`] takes its facets as samples of a curved surface, and
-//!    [`DividedMesh`] divides those that are long.
+//!    [`DividedMesh`] divides those that are long. [`FittedSphere`] finds its ball or socket.
 //! 3. **A surface becomes hexahedra.** [`columns`] fills the space below it with columns along y.
 //!
 //! ```
@@ -31,6 +31,7 @@ pub mod columns;
 mod curved_mesh;
 mod divided_mesh;
 pub mod files;
+mod fitted_sphere;
 pub mod formats;
 pub mod repair;
 mod roughness;
@@ -40,4 +41,5 @@ pub use coarse::coarser;
 pub use condyle_fem::Vec3;
 pub use curved_mesh::{CurvedMesh, Foot};
 pub use divided_mesh::DividedMesh;
+pub use fitted_sphere::{FittedSphere, Roundness};
 pub use triangle_mesh::{TriangleMesh, bounds, hit};

@@ -92,19 +92,63 @@ impl TriangleMesh {
 
     /// Divides every triangle in four at the middles of its sides, which `middle_of` places between two corners.
     pub fn in_four(&self, middle_of: impl Fn(&Vec3, &Vec3) -> Vec3) -> Self {
+        self.divided(|_, _| true, middle_of)
+    }
+
+    /// Divides triangles at the middles of sides until no side is longer than `max_mm`, as in [`TriangleMesh::in_four`].
+    pub fn with_sides_up_to(
+        mut self,
+        max_mm: f64,
+        middle_of: impl Fn(&Vec3, &Vec3) -> Vec3,
+    ) -> Self {
+        let is_long = |a: &Vec3, b: &Vec3| (b - a).norm() > max_mm;
+        loop {
+            let count = self.triangles.len();
+            self = self.divided(is_long, &middle_of);
+            if self.triangles.len() == count {
+                return self;
+            }
+        }
+    }
+
+    fn divided(
+        &self,
+        is_divided: impl Fn(&Vec3, &Vec3) -> bool,
+        middle_of: impl Fn(&Vec3, &Vec3) -> Vec3,
+    ) -> Self {
         let mut vertices = self.vertices.clone();
         // Only looked up: its order does not matter.
         let mut middles = std::collections::HashMap::new();
         let mut middle = |a: u32, b: u32| {
-            *middles.entry((a.min(b), a.max(b))).or_insert_with(|| {
-                vertices.push(middle_of(&vertices[a as usize], &vertices[b as usize]));
-                vertices.len() as u32 - 1
+            let ends = [a.min(b), a.max(b)];
+            let [from, to] = ends.map(|end| self.vertices[end as usize]);
+            is_divided(&from, &to).then(|| {
+                *middles.entry(ends).or_insert_with(|| {
+                    vertices.push(middle_of(&from, &to));
+                    vertices.len() as u32 - 1
+                })
             })
         };
         let mut triangles = Vec::with_capacity(4 * self.triangles.len());
         for &[a, b, c] in &self.triangles {
-            let (ab, bc, ca) = (middle(a, b), middle(b, c), middle(c, a));
-            triangles.extend([[a, ab, ca], [ab, b, bc], [ca, bc, c], [ab, bc, ca]]);
+            match (middle(a, b), middle(b, c), middle(c, a)) {
+                (Some(ab), Some(bc), Some(ca)) => {
+                    triangles.extend([[a, ab, ca], [ab, b, bc], [ca, bc, c], [ab, bc, ca]]);
+                }
+                (Some(ab), Some(bc), None) => {
+                    triangles.extend([[ab, b, bc], [a, ab, bc], [a, bc, c]]);
+                }
+                (None, Some(bc), Some(ca)) => {
+                    triangles.extend([[bc, c, ca], [b, bc, ca], [b, ca, a]]);
+                }
+                (Some(ab), None, Some(ca)) => {
+                    triangles.extend([[ca, a, ab], [c, ca, ab], [c, ab, b]]);
+                }
+                (Some(ab), None, None) => triangles.extend([[a, ab, c], [ab, b, c]]),
+                (None, Some(bc), None) => triangles.extend([[b, bc, a], [bc, c, a]]),
+                (None, None, Some(ca)) => triangles.extend([[c, ca, b], [ca, a, b]]),
+                (None, None, None) => triangles.push([a, b, c]),
+            }
         }
         Self {
             vertices,

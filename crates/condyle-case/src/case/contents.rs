@@ -98,12 +98,19 @@ impl Case {
     /// Reports a cup or trough on a machine for knees, without its counterface, or smaller than that.
     fn check_round_bearing(&self, insert: &Section<'_>, log: &mut Log<'_>) {
         let (bearing, partner, preset, radius_mm) = match &self.insert.shape {
-            InsertShape::Cup(cup) => ("cup", "sphere", "iso-14242-1-like", cup.shape.radius_mm),
+            InsertShape::Cup(cup) => (
+                "cup",
+                "sphere",
+                "iso-14242-1-like",
+                Some(cup.shape.radius_mm),
+            ),
+            // Its radius is known once its file is read.
+            InsertShape::CupMesh(_) => ("cup", "sphere", "iso-14242-1-like", None),
             InsertShape::Trough(trough) => (
                 "trough",
                 "cylinder",
                 "iso-22622-like",
-                trough.shape.radius_mm,
+                Some(trough.shape.radius_mm),
             ),
             _ => return,
         };
@@ -125,9 +132,10 @@ impl Case {
             FemurShape::Cylinder(cylinder) if bearing == "trough" => Some(cylinder.radius_mm),
             _ => None,
         };
-        match within {
-            Some(inner_mm) if inner_mm < radius_mm => {}
-            Some(inner_mm) => report(
+        match (within, radius_mm) {
+            (Some(_), None) => {}
+            (Some(inner_mm), Some(radius_mm)) if inner_mm < radius_mm => {}
+            (Some(inner_mm), Some(radius_mm)) => report(
                 "radius_mm",
                 format!(
                     "the {bearing} of radius {radius_mm} mm is not larger than its {partner} of {inner_mm} mm"
@@ -136,7 +144,7 @@ impl Case {
                     "its radius is that of the {partner} and the radial clearance, 0.02 to 0.4 mm"
                 ),
             ),
-            None => report(
+            (None, _) => report(
                 "shape",
                 format!("a {bearing} needs a {partner}"),
                 format!("write [femur] shape = \"{partner}\" with its radius_mm"),

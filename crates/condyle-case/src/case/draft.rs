@@ -82,13 +82,22 @@ impl Drafted {
             "title = \"Untitled\"\nside = \"{}\"\n{femur_keys}start_mm = [{x:.1}, {z:.1}]\n{insert_keys}{machine}",
             side.word()
         );
-        let mut text = Case::parse(&keys, "draft", folder)?.as_draft_in(folder);
+        let text = Case::parse(&keys, "draft", folder)?.as_draft_in(folder);
+        Ok(Self::with_remarks(text, of_femur, of_insert))
+    }
+
+    /// Writes remarks above the tables of both bodies.
+    pub(super) fn with_remarks(
+        mut text: String,
+        of_femur: Vec<String>,
+        of_insert: Vec<String>,
+    ) -> Self {
         for (table, remarks) in [("[femur]\n", &of_femur), ("[insert]\n", &of_insert)] {
             let lines: String = remarks.iter().map(|line| format!("# {line}\n")).collect();
             text = text.replacen(&format!("\n{table}"), &format!("\n{lines}{table}"), 1);
         }
         let remarks = [of_femur, of_insert].concat();
-        Ok(Self { text, remarks })
+        Self { text, remarks }
     }
 }
 

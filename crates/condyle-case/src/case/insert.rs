@@ -70,6 +70,24 @@ settings! {
         layers: u64 = 6, in within(1.0, 40.0);
     }
 
+    /// The cup of a hip whose closed triangle mesh is turned into columns of hexahedra along the radii of its socket. The centre of the socket comes to the origin.
+    CupMeshInsert {
+        /// STL, OBJ, PLY or VTP file, relative to the case file.
+        file: DataFile;
+        /// Unit of length of the file.
+        length_unit: LengthUnit = LengthUnit::Millimetre;
+        /// Direction in the file in which the cup opens, [x, y, z]; from the middle of its socket to the centre if not given.
+        opens_along: Option<[f64; 3]> = None, in within(-1.0, 1.0);
+        /// Angle between the plane of the opening and the plane across the load, in the frontal plane.
+        inclination_deg: f64 = CupShape::default().inclination_deg, in within(0.0, 90.0);
+        /// Rotation of the inclined cup about the load, + turns its opening from lateral to anterior.
+        anteversion_deg: f64 = CupShape::default().anteversion_deg, in within(-90.0, 90.0);
+        /// Edge of a hexahedron along the surface.
+        edge_mm: f64 = 1.0, in within(0.1, 10.0);
+        /// Hexahedra through the thickness.
+        layers: u64 = 6, in within(1.0, 40.0);
+    }
+
     /// A cylindrical trough along z, such as the bearing of an ankle.
     TroughInsert {
         /// Its dimensions.
@@ -157,6 +175,8 @@ variants! {
         Hexahedra(HexahedralInsert) = "hexahedra",
         /// The cup of a hip.
         Cup(CupInsert) = "cup",
+        /// The cup of a hip as a triangle mesh.
+        CupMesh(CupMeshInsert) = "cup-mesh",
         /// A cylindrical trough, such as the bearing of an ankle.
         Trough(TroughInsert) = "trough",
         /// A pin.
@@ -171,11 +191,7 @@ impl Insert {
         match &self.shape {
             InsertShape::Mesh(mesh) => Some(&mesh.axes),
             InsertShape::Hexahedra(mesh) => Some(&mesh.axes),
-            InsertShape::Generic(_)
-            | InsertShape::Cup(_)
-            | InsertShape::Trough(_)
-            | InsertShape::Pin(_)
-            | InsertShape::Flat(_) => None,
+            _ => None,
         }
     }
 
@@ -183,12 +199,9 @@ impl Insert {
     pub fn file(&self) -> Option<&DataFile> {
         match &self.shape {
             InsertShape::Mesh(mesh) => Some(&mesh.file),
+            InsertShape::CupMesh(mesh) => Some(&mesh.file),
             InsertShape::Hexahedra(mesh) => Some(&mesh.file),
-            InsertShape::Generic(_)
-            | InsertShape::Cup(_)
-            | InsertShape::Trough(_)
-            | InsertShape::Pin(_)
-            | InsertShape::Flat(_) => None,
+            _ => None,
         }
     }
 
@@ -196,12 +209,9 @@ impl Insert {
     pub(super) fn file_mut(&mut self) -> Option<&mut DataFile> {
         match &mut self.shape {
             InsertShape::Mesh(mesh) => Some(&mut mesh.file),
+            InsertShape::CupMesh(mesh) => Some(&mut mesh.file),
             InsertShape::Hexahedra(mesh) => Some(&mut mesh.file),
-            InsertShape::Generic(_)
-            | InsertShape::Cup(_)
-            | InsertShape::Trough(_)
-            | InsertShape::Pin(_)
-            | InsertShape::Flat(_) => None,
+            _ => None,
         }
     }
 

@@ -10,6 +10,8 @@ mod contact;
 mod contents;
 #[cfg(feature = "file-system")]
 mod draft;
+#[cfg(feature = "file-system")]
+mod draft_hip;
 mod drive;
 mod femur;
 mod frame;

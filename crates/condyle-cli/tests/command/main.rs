@@ -16,6 +16,7 @@ mod cross_linked;
 mod determinism;
 mod femur_meshes;
 mod folders;
+mod hips;
 mod interrupt;
 mod left_knee;
 mod machines;

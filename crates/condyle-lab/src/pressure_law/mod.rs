@@ -203,7 +203,7 @@ fn fitted(
     };
     let material = &case.material;
     let modulus_mpa = confined_modulus(material.youngs_modulus_mpa, material.poissons_ratio);
-    let mut law = with_foundation(case).foundation();
+    let mut law = with_foundation(case).foundation(insert);
     law.pressure = PressureLaw::Linear { modulus_mpa };
     // Forces are balanced more exactly than extrapolated samples of the femur allow.
     law.settings.sample_reuse_mm = 0.0;

@@ -183,12 +183,12 @@ impl Insert {
         }
     }
 
-    /// Sets the thickness below every node, for a shape whose columns have the same length everywhere: at a rim, where the
-    /// normal misses the backside, it cannot be measured.
-    pub(super) fn with_thickness_mm(mut self, thickness_mm: f64) -> Self {
+    /// Sets the thickness below every surface node, for a shape whose columns give it: at a rim, where the normal misses the
+    /// backside, it cannot be measured.
+    pub(super) fn with_thickness_mm(mut self, thickness_mm: Vec<f64>) -> Self {
         let unworn = Arc::get_mut(&mut self.unworn).expect("a new insert shares nothing");
-        unworn.thickness_mm.fill(thickness_mm);
-        self.thickness_mm.fill(thickness_mm);
+        unworn.thickness_mm.clone_from(&thickness_mm);
+        self.thickness_mm = thickness_mm;
         self
     }
 

@@ -38,17 +38,7 @@ impl Default for CupShape {
 impl CupShape {
     /// Returns the unit vector from the centre to the pole of the cup, its deepest point.
     pub fn pole(&self) -> Vec3 {
-        self.mounting() * -Vec3::y()
-    }
-
-    /// Returns the rotation from a cup that opens upwards to the mounted one.
-    fn mounting(&self) -> Mat3 {
-        let turn = |axis: Vec3, degrees: f64| {
-            nalgebra::Rotation3::from_scaled_axis(axis * degrees.to_radians())
-        };
-        // About x the pole goes from -y towards -z.
-        let mounted = turn(Vec3::y(), self.anteversion_deg) * turn(Vec3::x(), self.inclination_deg);
-        mounted.into_inner()
+        cup_mounting(self.inclination_deg, self.anteversion_deg) * -Vec3::y()
     }
 
     /// Meshes the cup, its centre at the origin.
@@ -59,7 +49,8 @@ impl CupShape {
     /// # Errors
     /// Too many nodes, and the errors of [`Insert::new`] for dimensions that are not positive.
     pub fn insert(&self, meshing: Meshing) -> Result<Insert, InsertError> {
-        let (mounting, opening) = (self.mounting(), self.opening_deg.to_radians());
+        let mounting = cup_mounting(self.inclination_deg, self.anteversion_deg);
+        let opening = self.opening_deg.to_radians();
         let place = |disc: Place, outward: f64| {
             let (sine, cosine) = (opening * disc.norm()).sin_cos();
             let around = disc.try_normalize(0.0).unwrap_or_default() * sine;
@@ -68,6 +59,15 @@ impl CupShape {
         };
         round_bearing(opening * self.radius_mm, self.thickness_mm, meshing, place)
     }
+}
+
+/// Returns the rotation from a cup that opens upwards to the mounted one; the angles are those of [`CupShape`].
+pub fn cup_mounting(inclination_deg: f64, anteversion_deg: f64) -> Mat3 {
+    let turn = |axis: Vec3, degrees: f64| {
+        nalgebra::Rotation3::from_scaled_axis(axis * degrees.to_radians())
+    };
+    // About x the pole goes from -y towards -z.
+    (turn(Vec3::y(), anteversion_deg) * turn(Vec3::x(), inclination_deg)).into_inner()
 }
 
 /// Dimensions of a cylindrical trough along z around the origin, its lowest line at y = -radius.
@@ -143,7 +143,8 @@ fn round_bearing(
         *node = place(Place::new(node.x, node.z), 1.0 - node.y);
     }
     let insert = Insert::new(built.mesh, &built.articulating, &built.backside)?;
-    Ok(insert.with_thickness_mm(thickness_mm))
+    let nodes = insert.surface_nodes().len();
+    Ok(insert.with_thickness_mm(vec![thickness_mm; nodes]))
 }
 
 #[cfg(test)]

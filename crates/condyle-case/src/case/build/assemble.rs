@@ -2,6 +2,7 @@
 
 use std::sync::Arc;
 
+use condyle::Vec3;
 use condyle::contact::{
     ContactLaw, Deformable, Foundation, FrictionModel, PressureLaw, confined_modulus,
     shell_modulus, softening_modulus,
@@ -17,6 +18,7 @@ use super::shared::SharedBodies;
 use crate::cache::{Keep, KeepNothing};
 use crate::case::contact::{DeformableContact, PlasticityChoice, PressureLawChoice};
 use crate::case::contents::Case;
+use crate::case::femur::FemurShape;
 use crate::case::insert::InsertShape;
 use crate::case::run_options::{IntegratorWord, Update};
 
@@ -54,6 +56,7 @@ impl Case {
             .found_or_made(self.insert_inputs(), |warnings| {
                 self.built_insert(&self.insert, warnings)
             })?;
+        self.check_head(&insert)?;
         let activities = self.built_activities(insert.dish_low_point_mm());
         let flexion_rad = start_flexion_rad(&activities[0].machine);
         let (_, side, limits) = self.insert_inputs();
@@ -70,7 +73,7 @@ impl Case {
             flexion_axis_mm: femur.flexion_axis_mm,
             start_mm: femur.start_mm,
             start_height_mm: match &self.insert.shape {
-                InsertShape::Cup(_) | InsertShape::Trough(_) => Some(0.0),
+                InsertShape::Cup(_) | InsertShape::CupMesh(_) | InsertShape::Trough(_) => Some(0.0),
                 _ => None,
             },
             insert,
@@ -103,7 +106,7 @@ impl Case {
         bodies: &SharedBodies,
     ) -> Result<Arc<dyn ContactLaw>, BuildError> {
         let Some(model) = self.contact.deformable() else {
-            return Ok(Arc::new(self.foundation()));
+            return Ok(Arc::new(self.foundation(insert)));
         };
         let is_explicit = self.time.integrator == IntegratorWord::Explicit;
         if model.friction_model == FrictionModel::StickSlip && is_explicit {
@@ -131,6 +134,24 @@ impl Case {
         let law = law.with_backside(backside, insert)?;
         self.load_compliance(&law, insert, keep)?;
         Ok(Arc::new(law))
+    }
+
+    /// Rejects a head that does not fit into its cup of triangles.
+    fn check_head(&self, cup: &Insert) -> Result<(), BuildError> {
+        let (InsertShape::CupMesh(mesh), FemurShape::Sphere(head)) =
+            (&self.insert.shape, &self.femur.shape)
+        else {
+            return Ok(());
+        };
+        let (cup_mm, head_mm) = (shell_mm(cup).0, head.radius_mm);
+        if head_mm < cup_mm {
+            return Ok(());
+        }
+        let message = format!(
+            "the cup of radius {cup_mm:.3} mm is not larger than its head of {head_mm} mm; check length_unit and the files"
+        );
+        let keys = &["file", "length_unit"];
+        Err(BuildError::mesh(mesh.file.path(), keys, message))
     }
 
     /// Rejects settings that cannot be combined with a resting backside.
@@ -171,14 +192,18 @@ impl Case {
         Err(BuildError::conflict("contact.deformable", keys, message))
     }
 
-    /// Returns the elastic foundation of this case.
-    pub fn foundation(&self) -> Foundation {
+    /// Returns the elastic foundation of this case under its `insert`.
+    pub fn foundation(&self, insert: &Insert) -> Foundation {
         let material = &self.material;
         let (e_mpa, v) = (material.youngs_modulus_mpa, material.poissons_ratio);
         let modulus_mpa = match &self.insert.shape {
             // A curved layer is softer than a flat one of the same thickness.
             InsertShape::Cup(cup) => {
                 shell_modulus(e_mpa, v, cup.shape.radius_mm, cup.shape.thickness_mm)
+            }
+            InsertShape::CupMesh(_) => {
+                let (radius_mm, thickness_mm) = shell_mm(insert);
+                shell_modulus(e_mpa, v, radius_mm, thickness_mm)
             }
             _ => confined_modulus(e_mpa, v),
         };
@@ -222,4 +247,14 @@ impl Case {
             ..TimeSettings::default()
         }
     }
+}
+
+/// Returns the median radius and thickness of a cup around the origin: its rim does not count.
+fn shell_mm(cup: &Insert) -> (f64, f64) {
+    let median = |mut values: Vec<f64>| {
+        values.sort_unstable_by(f64::total_cmp);
+        values[values.len() / 2]
+    };
+    let radii_mm = cup.surface().positions.iter().map(Vec3::norm).collect();
+    (median(radii_mm), median(cup.thickness_mm().to_vec()))
 }

@@ -5,19 +5,23 @@ use std::path::Path;
 
 use condyle::Vec3;
 use condyle::geometry::{
-    self, GenericInsertShape, Meshing, TriangleMesh, Underside, flat_insert, pin,
+    self, GenericInsertShape, Meshing, TriangleMesh, Underside, UnrolledCup, cup_mounting,
+    flat_insert, pin,
 };
 use condyle_fem::HexMesh;
 use condyle_mesh::columns::listed_holes;
 use condyle_mesh::formats::{HexFile, parse_surface, read_hexahedra, surface_bytes};
 use condyle_mesh::repair::{CheckedMesh, RepairError};
+use condyle_mesh::{FittedSphere, Roundness};
 
 use super::checks::{check_orientation, off_centre};
 use super::error::{Body, BuildError, BuildWarning, Finding};
-use super::placing::{checks_of, middle_of_mesh, middle_of_points, shell};
-use super::size::check_points;
+use super::placing::{checks_of, middle_of_mesh, middle_of_points, shell, warn};
+use super::size::{check_points, check_triangles};
 use crate::case::contents::Case;
-use crate::case::insert::{GenericInsert, HexahedralInsert, Insert, InsertShape, MeshInsert};
+use crate::case::insert::{
+    CupMeshInsert, GenericInsert, HexahedralInsert, Insert, InsertShape, MeshInsert,
+};
 use crate::case::run_options::Limits;
 use crate::config::DataFile;
 
@@ -38,6 +42,7 @@ impl Case {
         match &mut coarser.shape {
             InsertShape::Generic(insert) => insert.edge_mm *= 2.0,
             InsertShape::Cup(insert) => insert.edge_mm *= 2.0,
+            InsertShape::CupMesh(insert) => insert.edge_mm *= 2.0,
             InsertShape::Trough(insert) => insert.edge_mm *= 2.0,
             InsertShape::Pin(insert) => insert.edge_mm *= 2.0,
             InsertShape::Flat(insert) => insert.edge_mm *= 2.0,
@@ -88,6 +93,7 @@ impl Case {
                 check_node_count((side_mm, side_mm), meshing, limits)?;
                 insert.shape.insert(meshing)?
             }
+            InsertShape::CupMesh(insert) => self.cup_from_mesh(insert, warnings)?,
             InsertShape::Trough(insert) => {
                 let meshing = meshing(insert.edge_mm, insert.layers);
                 let size_mm = (insert.shape.length_mm, insert.shape.width_mm);
@@ -111,7 +117,8 @@ impl Case {
         // With a stray piece the positions of the dishes are unreliable.
         let is_stray = |warning: &BuildWarning| warning.finding == Finding::StrayPiece;
         let is_whole = !warnings.iter().any(is_stray);
-        if let Some(file) = insert.file().filter(|_| is_whole) {
+        let has_dishes = !matches!(insert.shape, InsertShape::CupMesh(_));
+        if let Some(file) = insert.file().filter(|_| is_whole && has_dishes) {
             warnings.extend(off_centre(file, placement, &built));
         }
         Ok(built)
@@ -161,6 +168,42 @@ impl Case {
             warnings.push(warning.with(Finding::Bridged(holes, edge_mm)));
         }
         Ok(built)
+    }
+
+    fn cup_from_mesh(
+        &self,
+        cup: &CupMeshInsert,
+        warnings: &mut Vec<BuildWarning>,
+    ) -> Result<geometry::Insert, BuildError> {
+        let (file, path) = (&cup.file, cup.file.path());
+        let mesh = parse_surface(path, &surface_bytes(file.files(), path)?)?;
+        let mesh = mesh.mapped(|vertex| vertex * cup.length_unit.in_mm());
+        check_triangles(path, &mesh, cup.length_unit)?;
+        let Some(socket) = FittedSphere::new(&mesh, Roundness::Concave) else {
+            let message = "this body has no spherical socket, as a cup has; check that it is the cup, not its head, and that its \
+                           triangles face outwards";
+            return Err(BuildError::mesh(path, &["file"], message));
+        };
+        let meshing = meshing(cup.edge_mm, cup.layers);
+        // A hemisphere has the area of a square with sides of 2.5 radii.
+        let side_mm = 2.5 * socket.radius_mm;
+        check_node_count((side_mm, side_mm), meshing, &self.limits)?;
+        let opens_along = cup.opens_along.map_or(socket.opens_along, Vec3::from);
+        if opens_along.norm() == 0.0 {
+            let message = "`opens_along` has no direction; write that from the pole of the socket to its centre";
+            return Err(BuildError::mesh(path, &["opens_along"], message));
+        }
+        let unrolled = UnrolledCup::new(&mesh, &socket, opens_along, cup.edge_mm);
+        let shell = checks_of(Body::Insert, None).check(unrolled.mesh.clone());
+        let shell = shell.map_err(|error| BuildError::shell(path, &error))?;
+        if !shell.closed {
+            let message = "the cup is open, so its thickness is unknown; give its closed surface";
+            return Err(BuildError::mesh(path, &["file"], message));
+        }
+        warn(file, &shell, warnings);
+        let mounting = cup_mounting(cup.inclination_deg, cup.anteversion_deg);
+        let built = unrolled.insert(&shell.mesh, meshing, &mounting);
+        built.map_err(|error| BuildError::shell_insert(path, &error))
     }
 
     fn insert_from_hexahedra(

@@ -131,8 +131,8 @@ pub(in crate::case) fn advice(body: Body, likeness: Likeness) -> Option<&'static
         | (Body::Insert, Likeness::Insert) => None,
         (_, Likeness::Femur | Likeness::Insert) => Some("exchange femur and insert"),
         (_, Likeness::Head(_) | Likeness::Cup) => Some(
-            "a hip is given by dimensions: condyle new hip.toml --preset iso-14242-1-like, with [femur] shape = \"sphere\" and \
-             [insert] shape = \"cup\"",
+            "draft a hip from the files of both: condyle new hip.toml --head HEAD --cup CUP; or by dimensions: condyle new \
+             hip.toml --joint hip",
         ),
         (_, Likeness::Tray) => Some("give the polyethylene that lies on it"),
         (_, Likeness::OneCompartment) => Some(

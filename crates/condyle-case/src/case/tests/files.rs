@@ -242,7 +242,8 @@ fn verify_a_strain_table_is_read_back_from_its_file_and_its_case() {
     let text = "[contact.foundation]\nlaw = \"tabulated-strain\"\nstrain_table_file = \"curve.csv\"\npeak_error_percent = 4.5\n";
     let from_file = Case::parse(text, "case.toml", folder.path()).unwrap();
     assert_eq!(from_file.contact, case.contact);
-    let foundation = case.foundation();
+    let insert = case.build(1).unwrap().test.insert;
+    let foundation = case.foundation(&insert);
     let pressure = foundation.pressure.pressure(0.02, 8.0).0;
     assert!((pressure - 2.5).abs() < 1e-12, "{pressure}");
 }
