@@ -2,7 +2,7 @@
 
 use nalgebra::{Matrix4, Vector4};
 
-use crate::{TriangleMesh, Vec3};
+use crate::{Vec3, triangle_mesh::TriangleMesh};
 
 /// The side of a sphere on which the material is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -63,39 +63,7 @@ impl FittedSphere {
     /// throughout; the facets of an open one have no inside, and any sphere is found.
     pub fn new(mesh: &TriangleMesh, roundness: Roundness) -> Option<Self> {
         let facets = facets(mesh, roundness);
-        let area_mm2: f64 = facets.iter().map(|facet| facet.area_mm2).sum();
-        let mut until_mm2 = 0.0;
-        let until = facets.iter().map(|facet| {
-            until_mm2 += facet.area_mm2;
-            until_mm2
-        });
-        let until: Vec<f64> = until.collect();
-        let at = |share: f64| {
-            let index = until.partition_point(|&until_mm2| until_mm2 < share * area_mm2);
-            facets.get(index)
-        };
-        let judges: Vec<Facet> = (0..JUDGES)
-            .filter_map(|n| at((n as f64 + 0.5) / JUDGES as f64).copied())
-            .collect();
-        let mut best: (usize, Option<(Vec3, f64)>) = (0, None);
-        for n in 1..=PROPOSALS {
-            // The additive sequence of the plastic number fills the square of pairs evenly.
-            let share = |step: f64| (n as f64 * step).fract();
-            let (Some(one), Some(other)) = (at(share(0.754_877_666_2)), at(share(0.569_840_291_0)))
-            else {
-                continue;
-            };
-            let Some((centre, radius)) = proposal(one, other) else {
-                continue;
-            };
-            let agree = judges.iter();
-            let agree = agree.filter(|judge| is_on(judge, &centre, radius, TOLERANCES[0]));
-            let count = agree.count();
-            if count > best.0 {
-                best = (count, Some((centre, radius)));
-            }
-        }
-        let (mut centre, mut radius) = best.1?;
+        let (mut centre, mut radius) = best_proposal(&facets)?;
         let mut part: Vec<&Facet> = Vec::new();
         for tolerance in &TOLERANCES[1..] {
             let on = facets.iter();
@@ -156,6 +124,43 @@ fn facets(mesh: &TriangleMesh, roundness: Roundness) -> Vec<Facet> {
         facets = facets.iter().map(turned).collect();
     }
     facets
+}
+
+/// Returns the centre and radius of the proposed sphere with the largest part of the surface on it.
+fn best_proposal(facets: &[Facet]) -> Option<(Vec3, f64)> {
+    let area_mm2: f64 = facets.iter().map(|facet| facet.area_mm2).sum();
+    let mut until_mm2 = 0.0;
+    let until = facets.iter().map(|facet| {
+        until_mm2 += facet.area_mm2;
+        until_mm2
+    });
+    let until: Vec<f64> = until.collect();
+    let at = |share: f64| {
+        let index = until.partition_point(|&until_mm2| until_mm2 < share * area_mm2);
+        facets.get(index)
+    };
+    let judges: Vec<Facet> = (0..JUDGES)
+        .filter_map(|n| at((n as f64 + 0.5) / JUDGES as f64).copied())
+        .collect();
+    let mut best: (usize, Option<(Vec3, f64)>) = (0, None);
+    for n in 1..=PROPOSALS {
+        // The additive sequence of the plastic number fills the square of pairs evenly.
+        let share = |step: f64| (n as f64 * step).fract();
+        let (Some(one), Some(other)) = (at(share(0.754_877_666_2)), at(share(0.569_840_291_0)))
+        else {
+            continue;
+        };
+        let Some((centre, radius)) = proposal(one, other) else {
+            continue;
+        };
+        let agree = judges.iter();
+        let agree = agree.filter(|judge| is_on(judge, &centre, radius, TOLERANCES[0]));
+        let count = agree.count();
+        if count > best.0 {
+            best = (count, Some((centre, radius)));
+        }
+    }
+    best.1
 }
 
 /// Returns centre and radius of the sphere that two facets touch, if their normals lead to its centre.

@@ -3,6 +3,7 @@
 use std::f64::consts::TAU;
 
 use condyle_mesh::{TriangleMesh, Vec3, formats::write_stl};
+use condyle_results::catalogue;
 
 use crate::bench::Bench;
 
@@ -78,7 +79,7 @@ fn write(bench: &Bench, name: &str, body: TriangleMesh) {
 fn mass_mg(bench: &Bench, case: &str, out: &str) -> f64 {
     let said = bench.say(&["run", case, "--out", out]);
     assert_eq!(said.code, Some(0), "{}", said.err);
-    bench.summary(out).mass_loss_mg
+    bench.summary(out)[&catalogue::MASS_LOSS_MG]
 }
 
 #[test]

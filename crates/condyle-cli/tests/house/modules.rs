@@ -61,6 +61,10 @@ const MAY_USE: &[(&str, &[&str])] = &[
             "condyle_mesh::triangle_mesh",
         ],
     ),
+    (
+        "condyle_mesh::fitted_sphere",
+        &["condyle_mesh::triangle_mesh"],
+    ),
     ("condyle_mesh::repair", &["condyle_mesh::triangle_mesh"]),
     ("condyle_mesh::coarse", &["condyle_mesh::triangle_mesh"]),
     ("condyle_mesh::roughness", &["condyle_mesh::triangle_mesh"]),
