@@ -206,27 +206,6 @@ fn fitted(part: &[&Facet]) -> Option<(Vec3, f64)> {
 mod tests {
     use super::*;
 
-    /// Returns a part of a body of revolution about y, through the points (radius, height), in facets around.
-    fn revolved(profile: &[(f64, f64)], around: u32) -> TriangleMesh {
-        let mut mesh = TriangleMesh::default();
-        for &(radius, height) in profile {
-            for n in 0..around {
-                let (sine, cosine) =
-                    (std::f64::consts::TAU * f64::from(n) / f64::from(around)).sin_cos();
-                mesh.vertices
-                    .push(Vec3::new(radius * cosine, height, radius * sine));
-            }
-        }
-        for ring in 0..profile.len() as u32 - 1 {
-            for n in 0..around {
-                let (a, b) = (ring * around + n, ring * around + (n + 1) % around);
-                mesh.triangles
-                    .extend([[a, a + around, b], [b, a + around, b + around]]);
-            }
-        }
-        mesh
-    }
-
     /// Returns a liner of 16 and 24 mm that opens upwards, with a flat bottom outside, in coarse facets.
     fn liner() -> TriangleMesh {
         let arc = |radius: f64, from: f64, to: f64| {
@@ -236,7 +215,7 @@ mod tests {
             })
         };
         let profile: Vec<(f64, f64)> = arc(24.0, 1e-6, 85.0).chain(arc(16.0, 85.0, 1e-6)).collect();
-        revolved(&profile, 24)
+        TriangleMesh::revolved(&profile, 24)
     }
 
     #[test]
@@ -285,7 +264,8 @@ mod tests {
             .map(|n| (9.0 * f64::from(n)).to_radians())
             .map(|angle| (14.0 * angle.sin(), -14.0 * angle.cos()))
             .collect();
-        let socket = FittedSphere::new(&revolved(&half, 20), Roundness::Concave).unwrap();
+        let socket =
+            FittedSphere::new(&TriangleMesh::revolved(&half, 20), Roundness::Concave).unwrap();
         assert!((socket.radius_mm - 14.0).abs() < 1e-9 && socket.opens_along.y > 0.99);
     }
 }

@@ -1,4 +1,4 @@
-//! How far the vertices of a mesh scatter about a smooth surface, as by the noise of a scan.
+//! The scatter of the vertices of a mesh about a smooth surface, as by the noise of a scan.
 
 use nalgebra::{SMatrix, SVector};
 

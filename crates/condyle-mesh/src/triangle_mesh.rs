@@ -1,6 +1,8 @@
 //! A surface of triangles, the box around points, and one flat triangle: its closest point, its height over a place, and its
 //! intersection with a ray.
 
+use std::f64::consts::TAU;
+
 use serde::{Deserialize, Serialize};
 
 use crate::Vec3;
@@ -156,6 +158,24 @@ impl TriangleMesh {
         }
     }
 
+    /// Returns the body of revolution about y through the points (radius, height) of a profile, in `around` facets around.
+    ///
+    /// It faces out if the material lies on the left of the profile, which starts and ends near the axis if it is closed.
+    pub fn revolved(profile: &[(f64, f64)], around: u32) -> Self {
+        let angle = |n: u32| TAU * f64::from(n) / f64::from(around);
+        let ring = |&(radius, height): &(f64, f64)| {
+            (0..around).map(move |n| {
+                let (sine, cosine) = angle(n).sin_cos();
+                Vec3::new(radius * cosine, height, radius * sine)
+            })
+        };
+        let rings = (profile.len() as u32).saturating_sub(1);
+        Self {
+            vertices: profile.iter().flat_map(ring).collect(),
+            triangles: (0..rings).flat_map(|n| band(n * around, around)).collect(),
+        }
+    }
+
     /// Returns a closed block from `low` to `high` of twelve triangles.
     pub fn block(low: Vec3, high: Vec3) -> Self {
         let corner = |i: u32| {
@@ -217,6 +237,14 @@ impl TriangleMesh {
         };
         seen.map(point).collect()
     }
+}
+
+/// Returns the triangles between a ring of vertices that starts at `first` and the next one.
+fn band(first: u32, around: u32) -> impl Iterator<Item = [u32; 3]> {
+    (0..around).flat_map(move |n| {
+        let (a, b) = (first + n, first + (n + 1) % around);
+        [[a, a + around, b], [b, a + around, b + around]]
+    })
 }
 
 /// Returns the lowest and highest coordinate of `points` along each axis; of none, infinity and minus infinity.

@@ -1,32 +1,12 @@
 //! Hips from the files of head and cup.
 
-use std::f64::consts::TAU;
-
 use condyle_mesh::{TriangleMesh, Vec3, formats::write_stl};
 use condyle_results::catalogue;
 
 use crate::bench::Bench;
 
-/// Returns a body of revolution about y through the points (radius, height), in 36 coarse facets around.
-fn revolved(profile: &[(f64, f64)]) -> TriangleMesh {
-    const AROUND: u32 = 36;
-    let mut mesh = TriangleMesh::default();
-    for &(radius, height) in profile {
-        for n in 0..AROUND {
-            let (sine, cosine) = (TAU * f64::from(n) / f64::from(AROUND)).sin_cos();
-            let place = Vec3::new(radius * cosine, height, radius * sine);
-            mesh.vertices.push(place);
-        }
-    }
-    for ring in 0..profile.len() as u32 - 1 {
-        for n in 0..AROUND {
-            let (a, b) = (ring * AROUND + n, ring * AROUND + (n + 1) % AROUND);
-            mesh.triangles
-                .extend([[a, a + AROUND, b], [b, a + AROUND, b + AROUND]]);
-        }
-    }
-    mesh
-}
+/// Coarse facets around a body.
+const AROUND: u32 = 36;
 
 /// Returns points of a circle about the origin, by the angle from straight down, in steps of six degrees.
 fn arc(radius: f64, from_deg: f64, to_deg: f64) -> impl Iterator<Item = (f64, f64)> {
@@ -39,7 +19,7 @@ fn arc(radius: f64, from_deg: f64, to_deg: f64) -> impl Iterator<Item = (f64, f6
 
 fn cup() -> TriangleMesh {
     let profile: Vec<(f64, f64)> = arc(22.1, 1e-6, 90.0).chain(arc(14.1, 90.0, 1e-6)).collect();
-    revolved(&profile)
+    TriangleMesh::revolved(&profile, AROUND)
 }
 
 /// Returns a liner with a cylinder and a flat bottom outside, and a chamfer along its rim.
@@ -52,14 +32,14 @@ fn liner() -> TriangleMesh {
         (15.0, 0.0),
     ];
     let profile: Vec<(f64, f64)> = outside.into_iter().chain(arc(14.1, 88.0, 1e-6)).collect();
-    revolved(&profile)
+    TriangleMesh::revolved(&profile, AROUND)
 }
 
 /// Returns a ball with a bore for its neck.
 fn head() -> TriangleMesh {
     let bore = [(6.0, 11.9), (5.0, 2.0), (1e-6, 2.0)];
     let profile: Vec<(f64, f64)> = arc(14.0, 1e-6, 150.0).chain(bore).collect();
-    revolved(&profile)
+    TriangleMesh::revolved(&profile, AROUND)
 }
 
 /// Writes a body in metres, turned and far from its origin.

@@ -1,4 +1,4 @@
-//! What a mesh resembles: bodies of a whole knee, or others that are mistaken for them.
+//! The body that a mesh resembles: one of a whole knee, or others that are mistaken for them.
 
 use std::{f64::consts::PI, fmt};
 
@@ -22,7 +22,7 @@ const MAX_THIN: f64 = 0.45;
 /// Length, width and thickness up to which a body is an insert of one compartment, mm: whole ones are wider.
 const MAX_OF_ONE_MM: [f64; 3] = [62.0, 34.0, 20.0];
 
-/// What a mesh resembles.
+/// The body that a mesh resembles.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Likeness {
     /// A whole femoral component.

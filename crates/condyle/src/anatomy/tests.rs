@@ -201,7 +201,7 @@ fn ball(radius: f64, is_half: bool) -> TriangleMesh {
 }
 
 #[test]
-fn a_head_a_cup_a_tray_and_one_compartment_are_told_from_a_knee() {
+fn a_head_a_cup_a_tray_and_one_compartment_are_distinguished_from_a_knee() {
     let of = |mesh: &TriangleMesh| Likeness::of(mesh);
     assert!(
         matches!(of(&ball(14.0, false)), Some(Likeness::Head(radius)) if (radius - 14.0).abs() < 0.2)

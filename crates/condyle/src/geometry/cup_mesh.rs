@@ -9,7 +9,8 @@ use nalgebra::Rotation3;
 use super::insert::{Insert, InsertError};
 use crate::{Mat3, Vec3};
 
-/// Distance to the sphere, as a share of its radius, within which a vertex is one of the socket: a tenth of the clearance of a hip.
+/// Distance to the sphere, as a share of its radius, within which a vertex is one of the socket: a tenth of
+/// the clearance of a hip.
 const ON_SOCKET: f64 = 1e-3;
 
 /// A cup of triangles, unrolled around the centre of its socket so that columns along y are radii.
@@ -27,7 +28,7 @@ impl UnrolledCup {
     /// Unrolls a cup in mm around its socket, which opens along `opens_along`; sides of triangles are divided down to
     /// `max_side_mm`, because a flat part outside the socket has no constant radius.
     pub fn new(
-        mesh: &TriangleMesh,
+        mesh: TriangleMesh,
         socket: &FittedSphere,
         opens_along: Vec3,
         max_side_mm: f64,
@@ -40,9 +41,7 @@ impl UnrolledCup {
             std::f64::consts::PI,
         ));
         let is_of_socket = |point: &Vec3| (point.norm() - radius_mm).abs() < ON_SOCKET * radius_mm;
-        let cup = mesh
-            .clone()
-            .mapped(|vertex| up * (vertex - socket.centre_mm));
+        let cup = mesh.mapped(|vertex| up * (vertex - socket.centre_mm));
         let cup = cup.with_sides_up_to(max_side_mm, |a, b| {
             let middle = (a + b) / 2.0;
             if is_of_socket(a) && is_of_socket(b) {
@@ -65,8 +64,8 @@ impl UnrolledCup {
         Self { mesh, radius_mm }
     }
 
-    /// Returns the cup in hexahedra, its centre at the origin, mounted as by [`cup_mounting`](super::cup_mounting); `shell` is the unrolled mesh,
-    /// checked and repaired.
+    /// Returns the cup in hexahedra, its centre at the origin, mounted as by
+    /// [`cup_mounting`](super::cup_mounting); `shell` is the unrolled mesh, checked and repaired.
     ///
     /// # Errors
     /// The errors of [`column_mesh`] and [`Insert::new`], and a hole in the socket.

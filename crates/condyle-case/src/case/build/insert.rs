@@ -193,7 +193,7 @@ impl Case {
             let message = "`opens_along` has no direction; write that from the pole of the socket to its centre";
             return Err(BuildError::mesh(path, &["opens_along"], message));
         }
-        let unrolled = UnrolledCup::new(&mesh, &socket, opens_along, cup.edge_mm);
+        let unrolled = UnrolledCup::new(mesh, &socket, opens_along, cup.edge_mm);
         let shell = checks_of(Body::Insert, None).check(unrolled.mesh.clone());
         let shell = shell.map_err(|error| BuildError::shell(path, &error))?;
         if !shell.closed {
