@@ -5,6 +5,8 @@ from __future__ import annotations
 from collections import deque
 from collections.abc import Callable, Iterator
 from functools import lru_cache
+from pathlib import Path
+from shlex import quote
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from . import _condyle
@@ -20,6 +22,29 @@ TASKS_AHEAD = 2000
 LAST_TASKS = 32
 # Attempts at a task whose worker dies; if all fail, the task itself is the likely cause.
 MAX_TRIES = 10
+
+
+# Seconds without a finished task after which the scheduler is asked whether it is there, and seconds that it has for an
+# answer: a scheduler with much to do answers within a few.
+ASK_AFTER_S = 5.0
+ANSWER_WITHIN_S = 20.0
+
+
+class Cluster:
+    """The scheduler of a ``dask.distributed.Client``, whose death a future never reports."""
+
+    def __init__(self, client: Any) -> None:
+        self._client = client
+
+    def answers(self) -> bool:
+        """Whether the scheduler answers in time."""
+        client = self._client
+        try:
+            client.sync(client.scheduler.identity, callback_timeout=ANSWER_WITHIN_S)
+        # Dask raises its own errors, those of sockets and those of time limits, by version.
+        except Exception:
+            return False
+        return True
 
 
 class Source(NamedTuple):
@@ -58,6 +83,7 @@ def _study_of(source: Source) -> _condyle.RawStudy:
 
 def run_on(
     executor: Executor,
+    cluster: Cluster | None,
     study: _condyle.RawStudy,
     source: Source,
     out: str,
@@ -69,15 +95,17 @@ def run_on(
     try:
         missing = held.missing(study)
         tasks = deque(_Task(rows, 1) for rows in _parts(missing, tests_a_task))
-        _run_all(executor, study, source, held, tasks, study.tests - len(missing), listener)
+        _run_all(executor, cluster, study, source, out, held, tasks, study.tests - len(missing), listener)
     finally:
         held.close()
 
 
 def _run_all(
     executor: Executor,
+    cluster: Cluster | None,
     study: _condyle.RawStudy,
     source: Source,
+    out: str,
     held: _condyle.RawHeldStudy,
     tasks: deque[_Task],
     kept: int,
@@ -92,7 +120,11 @@ def _run_all(
             while tasks and len(sent) < TASKS_AHEAD:
                 task = tasks.popleft()
                 sent[executor.submit(run_rows, source, task.rows)] = task
-            for future in wait(sent, return_when=FIRST_COMPLETED).done:
+            finished = wait(sent, ASK_AFTER_S, return_when=FIRST_COMPLETED).done
+            if not finished and cluster is not None and not cluster.answers():
+                cause = f"the Dask scheduler has not answered for {ANSWER_WITHIN_S:.0f} s"
+                raise StudyInterrupted(kept, study.tests, cause, _resume(source.path, out))
+            for future in finished:
                 task = sent.pop(future)
                 found = _found(future, task)
                 if found is None:
@@ -104,6 +136,13 @@ def _run_all(
     finally:
         for future in sent:
             future.cancel()
+
+
+def _resume(study: str, out: str) -> str:
+    """What resumes a study that lost its cluster."""
+    again = "the same call with a new client resumes"
+    # A study from text has no file that the command could read.
+    return f"{again}, or: condyle study {quote(study)} --out {quote(out)}" if Path(study).is_file() else again
 
 
 def _found(future: Future[Any], task: _Task) -> list[tuple[int, tuple[list[float], str] | str]] | None:

@@ -98,16 +98,21 @@ class Interrupted(CondyleError):
 
 
 class StudyInterrupted(CondyleError):
-    """A study whose progress callback returned ``False``; the same call resumes it."""
+    """A study whose progress callback returned ``False``, or whose cluster was lost; the same call resumes it."""
 
     kept: int
     """Tests in the folder."""
     tests: int
     """Number of tests."""
 
-    def __init__(self, kept: int, tests: int) -> None:
-        super().__init__(kept, tests)
-        self.kept, self.tests = kept, tests
+    cause: str
+    """What stopped the study."""
+    resume: str
+    """What resumes it."""
+
+    def __init__(self, kept: int, tests: int, cause: str = "interrupted", resume: str = "the same call resumes") -> None:
+        super().__init__(kept, tests, cause, resume)
+        self.kept, self.tests, self.cause, self.resume = kept, tests, cause, resume
 
     def __str__(self) -> str:
-        return f"interrupted: {self.kept} of {self.tests} tests are done; the same call resumes"
+        return f"{self.cause}: {self.kept} of {self.tests} tests are done; {self.resume}"

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 
 from . import _condyle
 from ._toml import document, value_text
-from ._workers import Source, run_on
+from ._workers import Cluster, Source, run_on
 from .case import Case
 from .progress import StudyProgress, listening
 from .study_result import StudyResult
@@ -134,21 +134,24 @@ class Study:
             threads: parallel tests in this process; by default as many as processors.
             executor: an executor of ``concurrent.futures``, or an object with the same ``submit``, that runs the tests
                 instead. Its workers need condyle, and the files of study and case under the same paths.
-            client: a ``dask.distributed.Client``, for the same purpose. A task is repeated if its worker dies.
+            client: a ``dask.distributed.Client``, for the same purpose. A task is repeated if its worker dies; the study
+                ends if the scheduler does not answer for 20 s.
             tests_a_task: tests that are sent to a worker at once.
 
         Raises:
             BadInput: a folder of another study or in use, or a search on an executor, since its tests depend on each other.
+            StudyInterrupted: a listener that stops the study, or a scheduler that is lost; the stored tests are kept.
         """
         if executor is not None and client is not None:
             raise ValueError("give an executor or a client, not both")
+        cluster = None
         if client is not None:
-            executor = client.get_executor(pure=False)
+            executor, cluster = client.get_executor(pure=False), Cluster(client)
         with listening(progress) as listener:
             if executor is None:
                 self._raw.run(out, threads or os.cpu_count() or 1, listener)
             else:
-                run_on(executor, self._raw, self._source, os.fspath(out), tests_a_task, listener)
+                run_on(executor, cluster, self._raw, self._source, os.fspath(out), tests_a_task, listener)
         return self.answered(out)
 
     def merge(self, shards: Sequence[str | os.PathLike[str]], out: str | os.PathLike[str]) -> StudyResult:

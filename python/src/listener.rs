@@ -84,7 +84,7 @@ impl Listener {
                 self.reached.updates += 1;
                 self.reached.cycles = update.cycles;
             }
-            RunEvent::Warning(_) | RunEvent::Estimating => {}
+            RunEvent::Warning(_) | RunEvent::Placed | RunEvent::Estimating => {}
         }
         let is_urgent = matches!(event, RunEvent::Started(_) | RunEvent::Updated(_));
         if !is_urgent && self.last.elapsed() < PAUSE {

@@ -5,6 +5,8 @@ import os
 import pickle
 import signal
 import subprocess
+import sys
+import time
 from concurrent.futures import ProcessPoolExecutor, ThreadPoolExecutor
 from multiprocessing import get_context
 from pathlib import Path
@@ -110,6 +112,39 @@ def test_half_of_the_workers_die_and_nothing_is_lost(study: condyle.Study, done:
     assert not pids, "no worker was killed"
     assert reported[0] == 0 and reported[-1] == study.tests
     assert table(other) == table(done) and other.answers == done.answers
+
+
+def test_a_scheduler_that_dies_ends_the_study_with_the_command_that_resumes(small: condyle.Case, tmp_path: Path) -> None:
+    distributed = pytest.importorskip("distributed")
+    from condyle._toml import document
+
+    small.write(tmp_path / "case.toml")
+    file, out, address = tmp_path / "study.toml", tmp_path / "out", tmp_path / "scheduler.json"
+    file.write_text('case = "case.toml"\n' + document(TABLES))
+    run = (sys.executable, "-m", "distributed.cli.dask_scheduler", "--host", "127.0.0.1", "--port", "0")
+    scheduler = subprocess.Popen([*run, "--no-dashboard", "--scheduler-file", str(address)])
+    worker = subprocess.Popen(
+        [sys.executable, "-m", "distributed.cli.dask_worker", "--scheduler-file", str(address), "--no-dashboard"]
+    )
+    died: list[float] = []
+
+    def kill_the_scheduler(progress: condyle.StudyProgress) -> None:
+        if progress.kept and not died:
+            scheduler.kill()
+            died.append(time.monotonic())
+
+    client = distributed.Client(scheduler_file=str(address), timeout=60)
+    try:
+        client.wait_for_workers(1, timeout=60)
+        with pytest.raises(condyle.StudyInterrupted, match="the Dask scheduler") as lost:
+            condyle.Study.read(file).run(out, kill_the_scheduler, client=client, tests_a_task=2)
+        assert time.monotonic() - died[0] < 30.0
+        assert f"condyle study {file} --out {out}" in str(lost.value) and 0 < lost.value.kept < 24
+    finally:
+        scheduler.kill()
+        worker.kill()
+        client.close(timeout=1)
+    assert condyle.Study.read(file).run(out, threads=1).answers["kept"] == 24
 
 
 def test_a_study_that_was_stopped_goes_on(study: condyle.Study, done: condyle.StudyResult, tmp_path: Path) -> None:

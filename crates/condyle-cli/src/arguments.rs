@@ -114,6 +114,9 @@ pub struct Check {
     /// Also draw both bodies in place from three sides, as an SVG file.
     #[arg(long, value_name = "FILE.svg")]
     pub picture: Option<PathBuf>,
+    /// Replace the picture if it exists.
+    #[arg(long, requires = "picture")]
+    pub force: bool,
     /// Threads for the one-time work on a mesh; the findings are the same on any number.
     #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u16).range(1..=256))]
     pub threads: u16,
@@ -138,8 +141,11 @@ pub enum Machine {
 
 #[derive(Args)]
 pub struct New {
-    /// The case file to write; it must not be there yet.
+    /// The case file to write; an existing one is kept without --force.
     pub case: PathBuf,
+    /// Replace the case and the picture next to it if they exist.
+    #[arg(long)]
+    pub force: bool,
     /// The simulator [default: stanmore-force, or that of --joint].
     #[arg(long, value_parser = presets())]
     preset: Option<Preset>,
@@ -170,6 +176,9 @@ pub struct Export {
     /// The input file to write; it must not exist yet.
     #[arg(short, long, value_name = "FILE.inp")]
     pub out: PathBuf,
+    /// Replace the input file if it exists.
+    #[arg(long)]
+    pub force: bool,
     /// Place in the first cycle, %: the femur is pressed to the pose that it has there.
     #[arg(long, value_name = "PERCENT", value_parser = percent)]
     pub pressed_at: f64,
@@ -189,6 +198,9 @@ pub struct Report {
     /// The page of several folders [default: runs.html].
     #[arg(short, long, value_name = "FILE.html", conflicts_with = "pictures")]
     pub out: Option<PathBuf>,
+    /// Replace the page of several folders if it exists; that of one is always replaced.
+    #[arg(long)]
+    pub force: bool,
 }
 
 #[derive(Args)]
@@ -198,6 +210,9 @@ pub struct Plot {
     /// Folder for the pictures [default: pictures in the results folder].
     #[arg(short, long, value_name = "DIR")]
     pub out: Option<PathBuf>,
+    /// Replace pictures that exist in another folder than the default.
+    #[arg(long)]
+    pub force: bool,
     /// Pixels of a PNG per point of the picture.
     #[arg(long, value_name = "N", default_value_t = 2, value_parser = clap::value_parser!(u8).range(1..=8))]
     pub dots: u8,
@@ -328,6 +343,9 @@ pub struct StudyExport {
     /// The file to write; standard output if not given.
     #[arg(long, value_name = "FILE.csv")]
     pub csv: Option<PathBuf>,
+    /// Replace the file if it exists.
+    #[arg(long, requires = "csv")]
+    pub force: bool,
 }
 
 #[derive(Args)]
@@ -374,9 +392,12 @@ pub struct Compare {
 pub struct Calibrate {
     /// The case file; with either model of contact.
     pub case: PathBuf,
-    /// Folder for pressure_table.csv, the case that uses it, calibration.md and calibration.json; it must not be there yet.
+    /// Folder for pressure_table.csv, the case that uses it, calibration.md and calibration.json; an existing one is kept without --force.
     #[arg(short, long, value_name = "DIR")]
     pub out: PathBuf,
+    /// Replace these files in a folder that exists.
+    #[arg(long)]
+    pub force: bool,
     #[command(flatten)]
     pub changes: Changes,
     /// Also report the errors of the table on this case, which it is not fitted to; may be given several times.

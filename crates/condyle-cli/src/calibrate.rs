@@ -1,16 +1,20 @@
 //! `condyle calibrate` and `condyle calibrate-wear`.
 
-use std::{fs, io};
+use std::{
+    fs,
+    io::{self, ErrorKind},
+    path::{Path, PathBuf},
+};
 
 use condyle_lab::{
     measured::{Calibration, Interval, Trial, calibrate as find_constants},
-    pressure_law::calibrate as fit,
+    pressure_law::{CalibratedLaw, calibrate as fit},
 };
 use condyle_results::replace_file;
 
 use crate::{
     arguments::{Calibrate, CalibrateWear},
-    output::{self, Done, Failure, Lines, note},
+    output::{self, Done, Lines, Unwritten, note},
 };
 
 const PAGE: &str = "calibration.md";
@@ -18,26 +22,16 @@ const CASE: &str = "case.toml";
 
 pub fn calibrate(arguments: &Calibrate) -> Done {
     let out = &arguments.out;
-    let unwritten = |error: io::Error| {
-        Failure::bad_input(format_args!("{} cannot be written: {error}", out.display()))
-    };
-    // A folder that cannot be made is reported before the long search; a killed search leaves none.
-    fs::create_dir(out)
-        .and_then(|()| fs::remove_dir(out))
-        .map_err(unwritten)?;
+    let folder = part_folder(out, arguments.force)?;
     let (case, changes, held_out) = (&arguments.case, &arguments.changes.set, &arguments.hold_out);
     let law = fit(case, changes, held_out, &mut |step| {
         note(format_args!("solving: {step}"));
     })?;
-    fs::create_dir(out).map_err(unwritten)?;
-    for (name, text) in [
-        ("pressure_table.csv", law.to_csv()),
-        (CASE, law.case.to_toml_in(out)),
-        (PAGE, law.markdown()),
-        ("calibration.json", output::json(&law)),
-    ] {
-        replace_file(&out.join(name), text.as_bytes()).map_err(unwritten)?;
-    }
+    let written = write(&law, &folder).and_then(|()| match folder == *out {
+        true => Ok(()),
+        false => fs::rename(&folder, out),
+    });
+    written.map_err(|error| Unwritten::new(out, &error))?;
     if arguments.json {
         return output::print(&output::json(&law));
     }
@@ -53,6 +47,44 @@ pub fn calibrate(arguments: &Calibrate) -> Done {
         case.display()
     ));
     output::print(lines.text())
+}
+
+/// Returns the folder into which a law is written before it gets the name `out`: the folder itself if it is to be
+/// replaced.
+fn part_folder(out: &Path, force: bool) -> Result<PathBuf, Unwritten> {
+    let is_there = out.symlink_metadata().is_ok();
+    if is_there && force {
+        return Ok(out.to_owned());
+    }
+    let folder = part_of(out);
+    // A folder that cannot be made is reported before the long search; a killed search leaves none.
+    let made = match is_there {
+        true => Err(ErrorKind::AlreadyExists.into()),
+        // That of a command killed while it wrote is used again.
+        false if folder.is_dir() => Ok(()),
+        false => fs::create_dir(&folder).and_then(|()| fs::remove_dir(&folder)),
+    };
+    made.map_err(|error| Unwritten::new(out, &error))?;
+    Ok(folder)
+}
+
+fn part_of(out: &Path) -> PathBuf {
+    let mut name = out.file_name().unwrap_or_default().to_owned();
+    name.push(".part");
+    out.with_file_name(name)
+}
+
+fn write(law: &CalibratedLaw, folder: &Path) -> io::Result<()> {
+    fs::create_dir_all(folder)?;
+    for (name, text) in [
+        ("pressure_table.csv", law.to_csv()),
+        (CASE, law.case.to_toml_in(folder)),
+        (PAGE, law.markdown()),
+        ("calibration.json", output::json(law)),
+    ] {
+        replace_file(&folder.join(name), text.as_bytes())?;
+    }
+    Ok(())
 }
 
 pub fn calibrate_wear(arguments: &CalibrateWear) -> Done {

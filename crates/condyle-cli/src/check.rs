@@ -1,11 +1,10 @@
 //! `condyle check`.
 
 use condyle_lab::{BodyFacts, EdgeFacts, InsertFacts, Preview};
-use condyle_results::replace_file;
 
 use crate::{
     arguments::Check,
-    output::{self, Done, Failure, Lines},
+    output::{self, Done, Lines},
 };
 
 pub fn check(arguments: &Check) -> Done {
@@ -13,8 +12,7 @@ pub fn check(arguments: &Check) -> Done {
     let preview = Preview::of(&arguments.case, &arguments.changes.set, threads)?;
     output::warn(preview.warnings.iter().chain(&preview.doubts));
     if let Some(path) = &arguments.picture {
-        replace_file(path, preview.picture_svg().as_bytes())
-            .map_err(|error| Failure::unwritten(path, &error, "choose another name or folder"))?;
+        output::write_file(path, preview.picture_svg().as_bytes(), arguments.force)?;
     }
     if arguments.print {
         return output::print(&preview.case.to_toml());

@@ -11,7 +11,7 @@ use condyle_case::{
     case::{Case, DraftError, Drafted, template},
 };
 use condyle_lab::{Preview, RunError};
-use condyle_results::{create_file, replace_file};
+use condyle_results::create_file;
 
 use crate::{
     arguments::{Export, New},
@@ -34,9 +34,7 @@ pub fn new(arguments: &New) -> Done {
         _ => Failure::bad_input(error),
     })?;
     let text = format!("#:schema {SCHEMA}\n{text}");
-    // An existing file is kept, because a user may have edited it.
-    create_file(path, text.as_bytes())
-        .map_err(|error| Failure::unwritten(path, &error, "choose another name"))?;
+    output::write_file(path, text.as_bytes(), arguments.force)?;
     // For editors; a case runs without it.
     let schema = path.with_file_name(SCHEMA);
     match create_file(&schema, Case::json_schema().as_bytes()) {
@@ -46,7 +44,8 @@ pub fn new(arguments: &New) -> Done {
         _ => {}
     }
     let picture = match arguments.femur.as_ref().or(arguments.head.as_ref()) {
-        Some(_) => settled(path)?.map(|picture| format!("look at {}; ", picture.display())),
+        Some(_) => settled(path, arguments.force)?
+            .map(|picture| format!("look at {}; ", picture.display())),
         // The bodies by dimensions always start.
         None => None,
     };
@@ -57,7 +56,7 @@ pub fn new(arguments: &New) -> Done {
 }
 
 /// Settles the bodies of a case as a run does, and draws them in place into a file next to it; none if that cannot be written.
-fn settled(case: &Path) -> Result<Option<PathBuf>, Failure> {
+fn settled(case: &Path, force: bool) -> Result<Option<PathBuf>, Failure> {
     let threads = thread::available_parallelism().map_or(1, usize::from);
     let preview = Preview::of(case, &[], threads).map_err(|error| {
         note(format_args!(
@@ -68,14 +67,13 @@ fn settled(case: &Path) -> Result<Option<PathBuf>, Failure> {
     })?;
     output::warn(preview.warnings.iter().chain(&preview.doubts));
     let picture = case.with_extension("svg");
-    let drawn = replace_file(&picture, preview.picture_svg().as_bytes());
-    if let Err(why) = &drawn {
-        note(format_args!(
-            "warning: no picture: {}: {why}",
-            picture.display()
-        ));
+    match output::write_file(&picture, preview.picture_svg().as_bytes(), force) {
+        Ok(()) => Ok(Some(picture)),
+        Err(unwritten) => {
+            output::warn([format_args!("no picture: {}", unwritten.0)]);
+            Ok(None)
+        }
     }
-    Ok(drawn.is_ok().then_some(picture))
 }
 
 /// Returns the case to write: of two meshes if they are given, else with the bodies that suit the machine.
@@ -104,8 +102,7 @@ pub fn export(arguments: &Export) -> Done {
     });
     output::warn(written.map_err(|error| export_failure(&case, error))?);
     let path = &arguments.out;
-    create_file(path, &text)
-        .map_err(|error| Failure::unwritten(path, &error, "choose another name or folder"))?;
+    output::write_file(path, &text, arguments.force)?;
     output::print(&format!("wrote {}\n", path.display()))
 }
 

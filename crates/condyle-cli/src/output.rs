@@ -13,6 +13,7 @@ use condyle_lab::{
     measured::{CalibrateError, CompareError},
 };
 use condyle_report::ReportError;
+use condyle_results::{create_file, replace_file};
 use serde::Serialize;
 
 /// Bad input.
@@ -43,11 +44,6 @@ impl Failure {
         }
     }
 
-    /// Creates the failure to write a file.
-    pub fn unwritten(path: &Path, error: &io::Error, remedy: &str) -> Self {
-        Self::bad_input(format_args!("{}: {error}; {remedy}", path.display()))
-    }
-
     fn new(error: impl Display, code: u8) -> Self {
         let text = printable(format_args!("error: {error}"));
         Self { text, code }
@@ -70,6 +66,25 @@ impl From<&Problems> for Failure {
             text: problems.render(style),
             code: BAD_INPUT,
         }
+    }
+}
+
+/// The message that a file or folder cannot be written.
+pub struct Unwritten(pub String);
+
+impl Unwritten {
+    pub fn new(path: &Path, error: &io::Error) -> Self {
+        let remedy = match error.kind() {
+            ErrorKind::AlreadyExists => "choose another name, or replace it with --force",
+            _ => "choose another name or folder",
+        };
+        Self(format!("{}: {error}; {remedy}", path.display()))
+    }
+}
+
+impl From<Unwritten> for Failure {
+    fn from(unwritten: Unwritten) -> Self {
+        Self::bad_input(unwritten.0)
     }
 }
 
@@ -134,6 +149,12 @@ pub fn warn(warnings: impl IntoIterator<Item = impl Display>) {
     for warning in warnings {
         note(format_args!("warning: {warning}"));
     }
+}
+
+/// Writes a file that a command was asked for; an existing one is kept unless `force` replaces it.
+pub fn write_file(path: &Path, bytes: &[u8], force: bool) -> Result<(), Unwritten> {
+    let write = if force { replace_file } else { create_file };
+    write(path, bytes).map_err(|error| Unwritten::new(path, &error))
 }
 
 /// Prints `text` on standard output.

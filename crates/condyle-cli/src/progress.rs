@@ -17,15 +17,23 @@ use indicatif::{ProgressBar, ProgressStyle};
 
 use crate::output::{self, note};
 
-/// Returns a flag that the first Ctrl-C (or SIGTERM) raises; a second ends the program at once.
-fn stop_on_interrupt() -> Arc<AtomicBool> {
+/// Returns a flag that the first Ctrl-C (or SIGTERM) raises; a second, and one while `is_placing`, ends the program at
+/// once.
+fn stop_on_interrupt(is_placing: Arc<AtomicBool>) -> Arc<AtomicBool> {
     let stop = Arc::new(AtomicBool::new(false));
     let flag = Arc::clone(&stop);
     let set = ctrlc::set_handler(move || {
-        // The first signal waits for the end of an increment, which may take long: the second does not wait.
-        if flag.swap(true, Ordering::Relaxed) {
-            std::process::exit(i32::from(output::INTERRUPTED));
+        let is_first = !flag.swap(true, Ordering::Relaxed);
+        // Nothing of the run is on the disk yet, and no increment ends soon.
+        if is_first && is_placing.load(Ordering::Relaxed) {
+            note(
+                "interrupted before the first cycle: nothing was computed; run the same command again",
+            );
+        } else if is_first {
+            // Waits for the end of an increment, which may take long: a second signal does not.
+            return;
         }
+        std::process::exit(i32::from(output::INTERRUPTED));
     });
     if let Err(error) = set {
         note(format_args!(
@@ -55,15 +63,19 @@ const TICKS: f64 = 1000.0;
 pub struct RunProgress {
     bar: Option<ProgressBar>,
     of_cycles: f64,
+    /// Whether the bodies are still built and placed.
+    is_placing: Arc<AtomicBool>,
     stop: Arc<AtomicBool>,
 }
 
 impl RunProgress {
     pub fn new() -> Self {
+        let is_placing = Arc::new(AtomicBool::new(true));
         Self {
             bar: None,
             of_cycles: 0.0,
-            stop: stop_on_interrupt(),
+            stop: stop_on_interrupt(Arc::clone(&is_placing)),
+            is_placing,
         }
     }
 
@@ -71,6 +83,7 @@ impl RunProgress {
     pub fn show(&mut self, event: &RunEvent<'_>) -> ControlFlow<()> {
         match (event, &self.bar) {
             (RunEvent::Warning(warning), _) => output::warn([warning]),
+            (RunEvent::Placed, _) => self.is_placing.store(false, Ordering::Relaxed),
             (RunEvent::Started(reached), _) => self.start(reached),
             (RunEvent::Solved(progress), Some(bar)) => {
                 bar.set_position(self.ticks(progress.cycles));
@@ -139,7 +152,7 @@ impl StudyProgress {
             started: Instant::now(),
             lines: 0,
             messages: BTreeSet::new(),
-            stop: is_stoppable.then(stop_on_interrupt),
+            stop: is_stoppable.then(|| stop_on_interrupt(Arc::default())),
         }
     }
 

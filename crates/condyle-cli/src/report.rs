@@ -9,14 +9,14 @@ use condyle_report::{
     Picture, Results, pictures,
     runs::{
         CurveDifference, Differences, MapDifference, NumberDifference, Run, SettingDifference,
-        write_runs,
+        runs_html,
     },
 };
-use condyle_results::{PLOTTED, replace_file};
+use condyle_results::PLOTTED;
 
 use crate::{
     arguments::{Diff, PictureFormat, Plot, Report},
-    output::{self, Done, Failure, Lines, note},
+    output::{self, Done, Failure, Lines, Unwritten, note},
 };
 
 pub fn report(arguments: &Report) -> Done {
@@ -45,8 +45,8 @@ pub fn report(arguments: &Report) -> Done {
         folders => {
             let runs = folders.iter().map(|folder| Run::read(folder));
             let runs: Vec<Run> = runs.collect::<Result<_, _>>()?;
-            let out = arguments.out.as_deref();
-            let page = write_runs(out.unwrap_or(Path::new("runs.html")), &runs)?;
+            let page = arguments.out.as_deref().unwrap_or(Path::new("runs.html"));
+            output::write_file(page, runs_html(&runs).as_bytes(), arguments.force)?;
             for run in &runs {
                 let left_out = run.results.left_out.iter();
                 output::warn(left_out.map(|why| format!("left out of {}: {why}", run.name)));
@@ -79,14 +79,15 @@ pub fn plot(arguments: &Plot) -> Done {
     let left_out = results.left_out.iter();
     output::warn(left_out.map(|why| format!("not drawn: {why}")));
     note_unfinished(&arguments.results);
-    let folder = arguments.out.clone();
-    let folder = folder.unwrap_or_else(|| arguments.results.join(PLOTTED.folder));
+    let default = arguments.results.join(PLOTTED.folder);
+    let folder = arguments.out.as_ref().unwrap_or(&default);
     let mut lines = Lines::default();
     for (path, bytes) in files(arguments, &pictures(&results)) {
         let path = folder.join(path);
-        fs::create_dir_all(&folder)
-            .and_then(|()| replace_file(&path, &bytes))
-            .map_err(|error| Failure::unwritten(&path, &error, "choose another folder"))?;
+        fs::create_dir_all(folder).map_err(|error| Unwritten::new(folder, &error))?;
+        // A plot that a full disk ended goes on with the same command.
+        let is_own = *folder == default || fs::read(&path).is_ok_and(|there| there == bytes);
+        output::write_file(&path, &bytes, arguments.force || is_own)?;
         lines.line(format!("wrote {}", path.display()));
     }
     if lines.text().is_empty() {

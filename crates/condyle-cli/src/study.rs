@@ -19,7 +19,7 @@ use crate::{
     arguments::{
         Converge, RunRow, Sensitivity, Study, StudyCommand, StudyExport, StudyMerge, Uncertainty,
     },
-    output::{self, Done, Failure, note},
+    output::{self, Done, Failure, Unwritten, note},
     progress::{RunProgress, StudyProgress},
 };
 
@@ -168,7 +168,10 @@ fn print_with_picture(text: &str, out: &Path, name: &str) -> Done {
 fn export(arguments: &StudyExport) -> Done {
     let store = Store::read(&arguments.folder)?;
     if let Some(path) = &arguments.csv {
-        store.export_csv(path)?;
+        let mut table = Vec::new();
+        let written = store.write_csv(&mut table)?;
+        written.map_err(|error| Unwritten::new(path, &error))?;
+        output::write_file(path, &table, arguments.force)?;
         return Ok(ExitCode::SUCCESS);
     }
     let mut out = io::stdout().lock();

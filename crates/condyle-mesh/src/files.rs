@@ -10,13 +10,16 @@
 //! # Ok::<(), std::io::Error>(())
 //! ```
 
-#[cfg(feature = "file-system")]
-use std::fs;
 use std::{
     collections::BTreeMap,
     fmt::Debug,
     io,
     path::{Component, Path, PathBuf},
+};
+#[cfg(feature = "file-system")]
+use std::{
+    fs::{File, Metadata},
+    io::Read,
 };
 
 /// Files that can be found and read.
@@ -89,10 +92,24 @@ fn plain(path: &Path) -> PathBuf {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Disk;
 
+/// The largest file that is read: twenty million triangles of a binary STL. A larger one is hardly an implant, and would
+/// fill the memory before anything could be said about it.
+#[cfg(feature = "file-system")]
+const MAX_FILE_BYTES: u64 = 1 << 30;
+/// The most that is read from a pipe or device, which may never end.
+#[cfg(feature = "file-system")]
+const MAX_STREAM_BYTES: u64 = 1 << 26;
+
 #[cfg(feature = "file-system")]
 impl Files for Disk {
     fn read(&self, path: &Path) -> io::Result<Vec<u8>> {
-        fs::read(path)
+        let file = File::open(path)?;
+        let there = file.metadata()?;
+        let limit = limit_of(&there);
+        if there.len() > limit {
+            return Err(too_large(limit));
+        }
+        read_up_to(limit, file)
     }
 
     fn find(&self, written: &str, folder: &Path) -> Result<PathBuf, PathBuf> {
@@ -105,6 +122,31 @@ impl Files for Disk {
         };
         true_path().filter(|found| found.is_file()).ok_or(path)
     }
+}
+
+#[cfg(feature = "file-system")]
+fn limit_of(there: &Metadata) -> u64 {
+    match there.is_file() {
+        true => MAX_FILE_BYTES,
+        false => MAX_STREAM_BYTES,
+    }
+}
+
+/// Reads a file whose length may be unknown, as that of a pipe.
+#[cfg(feature = "file-system")]
+fn read_up_to(limit: u64, file: File) -> io::Result<Vec<u8>> {
+    let mut bytes = Vec::new();
+    match file.take(limit + 1).read_to_end(&mut bytes)? as u64 {
+        length if length > limit => Err(too_large(limit)),
+        _ => Ok(bytes),
+    }
+}
+
+#[cfg(feature = "file-system")]
+fn too_large(limit: u64) -> io::Error {
+    let megabytes = limit >> 20;
+    let why = format!("it holds more than {megabytes} MiB, the most that is read");
+    io::Error::new(io::ErrorKind::FileTooLarge, why)
 }
 
 /// Returns the path of `file` relative to `folder`, both absolute and without `..` or links; none if
@@ -143,10 +185,23 @@ mod tests {
         assert_eq!(error.kind(), io::ErrorKind::NotFound);
     }
 
+    #[cfg(target_os = "linux")]
+    #[test]
+    fn a_file_without_end_is_refused() {
+        let folder = tempfile::tempdir().unwrap();
+        let sparse = folder.path().join("huge.stl");
+        File::create(&sparse).unwrap().set_len(1 << 40).unwrap();
+        for (path, limit) in [(Path::new("/dev/zero"), "64 MiB"), (&sparse, "1024 MiB")] {
+            let error = Disk.read(path).unwrap_err();
+            assert_eq!(error.kind(), io::ErrorKind::FileTooLarge);
+            assert!(error.to_string().contains(limit), "{error}");
+        }
+    }
+
     #[cfg(unix)]
     #[test]
     fn a_link_keeps_its_own_name_in_the_true_folder() {
-        use std::os::unix::fs::symlink;
+        use std::{fs, os::unix::fs::symlink};
         let folder = tempfile::tempdir().unwrap();
         let root = folder.path().canonicalize().unwrap();
         fs::create_dir(root.join("store")).unwrap();

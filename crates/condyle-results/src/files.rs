@@ -17,8 +17,7 @@ use thiserror::Error;
 /// # Errors
 /// The file cannot be written; the old one is left, and nothing next to it.
 pub fn replace_file(path: &Path, bytes: &[u8]) -> io::Result<()> {
-    // A device or a pipe, such as /dev/stdout, is written to, not replaced.
-    if fs::metadata(path).is_ok_and(|there| !there.is_file() && !there.is_dir()) {
+    if is_device(path) {
         return fs::write(path, bytes);
     }
     write_part(path, bytes)?;
@@ -30,10 +29,15 @@ pub fn replace_file(path: &Path, bytes: &[u8]) -> io::Result<()> {
 /// # Errors
 /// The file exists ([`ErrorKind::AlreadyExists`]), or it cannot be written.
 pub fn create_file(path: &Path, bytes: &[u8]) -> io::Result<()> {
-    if path.symlink_metadata().is_ok() {
+    if path.symlink_metadata().is_ok() && !is_device(path) {
         return Err(ErrorKind::AlreadyExists.into());
     }
     replace_file(path, bytes)
+}
+
+/// Returns whether the path is a device or a pipe, such as /dev/stdout, which is written to, not replaced.
+fn is_device(path: &Path) -> bool {
+    fs::metadata(path).is_ok_and(|there| !there.is_file() && !there.is_dir())
 }
 
 /// Replaces a file as [`replace_file`], and waits until it is on the disk.
@@ -256,6 +260,7 @@ mod tests {
     fn a_device_is_written_to_and_stays() {
         let device = Path::new("/dev/null");
         replace_file(device, b"gone").expect("it takes everything");
+        create_file(device, b"gone").expect("it takes everything");
         assert!(!device.metadata().expect("it is there").is_file());
     }
 

@@ -105,7 +105,7 @@ impl ProgressReporter {
                 self.is_estimating = true;
                 send(&Message::Estimating);
             }
-            RunEvent::Estimating | RunEvent::Solved(_) => {}
+            RunEvent::Placed | RunEvent::Estimating | RunEvent::Solved(_) => {}
         }
         ControlFlow::Continue(())
     }

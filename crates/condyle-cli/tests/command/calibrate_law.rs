@@ -56,8 +56,23 @@ fn a_folder_that_is_there_and_a_case_that_is_none_are_refused() {
     fs::create_dir(bench.path("there")).unwrap();
     let said = bench.say(&["calibrate", "case.toml", "--out", "there"]);
     assert_eq!(said.code, Some(2));
-    assert!(said.err.contains("there cannot be written"), "{}", said.err);
+    assert!(said.err.contains("replace it with --force"), "{}", said.err);
     let said = bench.say(&["calibrate", "none.toml", "--out", "new"]);
     assert_eq!(said.code, Some(2));
     assert!(!bench.path("new").exists());
+}
+
+#[test]
+fn what_a_killed_calibration_left_does_not_block_the_next() {
+    let bench = Bench::with_case(&format!("{SMALL}[wear]\nlaw = \"archard\"\n"));
+    fs::create_dir(bench.path("fitted.part")).unwrap();
+    bench.write("fitted.part/pressure_table.csv", "half");
+    for more in [&[][..], &["--force"]] {
+        let said = bench.say(&[&["calibrate", "case.toml", "--out", "fitted"], more].concat());
+        assert_eq!(said.code, Some(0), "{}", said.err);
+        let table = fs::read_to_string(bench.path("fitted/pressure_table.csv")).unwrap();
+        assert!(table.starts_with("overclosure_over_thickness,"), "{table}");
+        assert!(!bench.path("fitted.part").exists());
+        bench.write("fitted/pressure_table.csv", "old");
+    }
 }

@@ -317,3 +317,68 @@ fn a_folder_in_use_is_refused_until_it_is_free() {
     drop(held);
     bench.run_into("out");
 }
+
+/// Runs a command twice that writes `file`, over a file of someone else and with `--force`.
+fn assert_foreign_files_are_kept(bench: &Bench, arguments: &[&str], file: &str) {
+    bench.write(file, "mine");
+    let said = bench.say(arguments);
+    said.assert_refused(2, &[file, "--force"]);
+    assert_eq!(fs::read_to_string(bench.path(file)).unwrap(), "mine");
+    let said = bench.say(&[arguments, &["--force"]].concat());
+    assert_eq!(said.code, Some(0), "{arguments:?}: {}", said.err);
+    assert_ne!(fs::read_to_string(bench.path(file)).unwrap(), "mine");
+}
+
+#[test]
+fn foreign_files_are_replaced_with_force_only() {
+    let deformable = format!("{SMALL}[contact]\nmodel = \"deformable\"\n");
+    let bench = Bench::with_case(&deformable);
+    bench.run_into("out");
+    fs::create_dir(bench.path("there")).unwrap();
+    let commands: [(&[&str], &str); 5] = [
+        (&["new", "new.toml"], "new.toml"),
+        (&["check", "case.toml", "--picture", "a.svg"], "a.svg"),
+        (&["plot", "out", "--out", "there"], "there/wear.svg"),
+        (&["report", "out", "out", "--out", "a.html"], "a.html"),
+        (
+            &[
+                "export",
+                "case.toml",
+                "--pressed-at",
+                "14",
+                "--out",
+                "a.inp",
+            ],
+            "a.inp",
+        ),
+    ];
+    for (arguments, file) in commands {
+        assert_foreign_files_are_kept(&bench, arguments, file);
+    }
+}
+
+#[test]
+fn a_plot_goes_on_after_a_full_disk_and_replaces_its_own() {
+    let bench = Bench::with_case(SMALL);
+    bench.run_into("out");
+    for out in [&["--out", "there"][..], &[]] {
+        let plot = [&["plot", "out"], out].concat();
+        for _ in 0..2 {
+            let said = bench.say(&plot);
+            assert_eq!(said.code, Some(0), "{}", said.err);
+        }
+    }
+    bench.write("out/pictures/wear.svg", "of an older run");
+    assert_eq!(bench.say(&["plot", "out"]).code, Some(0));
+    bench.write("there/wear.svg", "mine");
+    let said = bench.say(&["plot", "out", "--out", "there"]);
+    said.assert_refused(2, &["there/wear.svg", "--force"]);
+}
+
+#[test]
+#[cfg(target_os = "linux")]
+fn a_device_takes_a_picture_without_force() {
+    let bench = Bench::with_case(SMALL);
+    let said = bench.say(&["check", "case.toml", "--json", "--picture", "/dev/null"]);
+    assert_eq!(said.code, Some(0), "{}", said.err);
+}

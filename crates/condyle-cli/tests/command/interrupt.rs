@@ -7,7 +7,7 @@ use std::fs;
 use std::path::Path;
 use std::process::{Child, Command, Stdio};
 use std::thread::sleep;
-use std::time::Duration;
+use std::time::{Duration, Instant};
 
 use crate::bench::{Bench, SMALL, assert_same_bytes, files_but_wall_time, updates_kept};
 
@@ -269,4 +269,35 @@ fn the_time_of_all_parts_is_in_the_summary() {
     let wall_s = bench.summary("out")[&catalogue::WALL_S];
     assert!((1000.0..1100.0).contains(&wall_s), "{wall_s}");
     assert!(!spent.exists());
+}
+
+/// Bodies that take some seconds to place: a fine mesh that a deformable insert solves.
+const SLOW_TO_PLACE: &str = "\
+[insert]
+edge_mm = 0.9
+layers = 6
+[contact]
+model = \"deformable\"
+";
+
+#[test]
+fn a_signal_while_the_bodies_are_placed_ends_the_run_at_once() {
+    let bench = Bench::with_case(SLOW_TO_PLACE);
+    let mut command = bench.command(&["run", "case.toml", "--out", "out"]);
+    command.stderr(Stdio::piped()).stdout(Stdio::null());
+    let child = command.spawn().unwrap();
+    sleep(Duration::from_millis(500));
+    signal(&child, "-TERM");
+    let sent = Instant::now();
+    let output = child.wait_with_output().unwrap();
+    // Far less than the time that the bodies take on any machine.
+    assert!(
+        sent.elapsed() < Duration::from_secs(2),
+        "{:?}",
+        sent.elapsed()
+    );
+    assert_eq!(output.status.code(), Some(130));
+    let err = String::from_utf8(output.stderr).unwrap();
+    assert!(err.contains("before the first cycle"), "{err}");
+    assert!(!bench.path("out").exists());
 }

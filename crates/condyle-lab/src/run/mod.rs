@@ -45,7 +45,9 @@ impl Reached {
 pub enum RunEvent<'a> {
     /// A correction of the input, or a remark on suspicious input.
     Warning(String),
-    /// The bodies are placed, or the checkpoint is read.
+    /// The bodies are placed, and the folder of a new run is not created yet.
+    Placed,
+    /// The folder is ready, or the checkpoint is read.
     Started(Reached),
     /// An increment is solved.
     Solved(Progress),

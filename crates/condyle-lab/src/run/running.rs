@@ -81,6 +81,7 @@ impl<'a> Run<'a> {
             }
             Start::Fresh => clock.time(|| start(case, built.test, &built.warnings))?,
         };
+        let _ = on_event(RunEvent::Placed);
         Ok(Self {
             case,
             march,

@@ -6,4 +6,4 @@ mod page;
 pub use differences::{
     CurveDifference, Differences, MapDifference, NumberDifference, Run, SettingDifference,
 };
-pub use page::{runs_html, write_runs};
+pub use page::runs_html;

@@ -1,30 +1,19 @@
 //! Several runs side by side on one page: tables, and curves and maps with common axes and colours.
 
-use std::path::{Path, PathBuf};
-
 use condyle_results::catalogue::{self, Scalar};
 use serde_json::{Value, json};
 
 use super::differences::{Differences, NumberDifference, Run, subtracted};
 use crate::charts;
-use crate::error::ReportError;
 use crate::figure::{
     ColourRange, Curve, MEASURED, Map, MapStyle, Panel, escape, largest_size, sheet, svg_file,
 };
 use crate::maps::{MAPS, MappedField};
 use crate::number::significant;
 use crate::page::{label_of, shown, unit_of};
-use crate::sheets::{Sheets, render, write_text};
+use crate::sheets::{Sheets, render};
 
 type Sheet = (&'static str, String, String);
-
-/// Writes the page of several runs, compared with the first, and returns its path.
-///
-/// # Errors
-/// The page cannot be written.
-pub fn write_runs(path: &Path, runs: &[Run]) -> Result<PathBuf, ReportError> {
-    write_text(path.to_owned(), &runs_html(runs))
-}
 
 /// Renders several runs side by side as one HTML page: numbers with their errors, ranked differences from the first run,
 /// curves with common axes and maps with common colours. It requests nothing outside itself.
