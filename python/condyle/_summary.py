@@ -132,6 +132,10 @@ class Summary:
     """Motion, loads and wear of each of several activities."""
     creep: dict[str, Any]
     """Creep of an insert that creeps, and its separation from wear."""
+    joint: str
+    """The joint whose replacement the machine tests, such as ``hip``."""
+    motions: list[dict[str, Any]]
+    """The joints of the machine: ``column`` of ``kinematics.csv``, ``title``, and the ``positive`` direction."""
     neutral_pose: dict[str, Any]
     """Pose of the settled femur in the insert frame: there AP, ML and IS read zero."""
     warnings: list[str]

@@ -1,6 +1,7 @@
 //! `condyle check`.
 
 use condyle_lab::{BodyFacts, EdgeFacts, InsertFacts, Preview};
+use condyle_results::{Directions, Side, TestedJoint};
 
 use crate::{
     arguments::Check,
@@ -59,25 +60,25 @@ fn rows(preview: &Preview) -> Vec<Row> {
         "about {duration} and {:.0} MB of {:.0} MB",
         expected.memory_mb, expected.memory_allowed_mb
     );
-    let centre = from_origin(at_rest.flexion_axis_mm);
-    let mut rows = rows_of_body("femur", &preview.femur);
-    rows.extend(rows_of_insert(&preview.insert));
+    let (names, [counterface, bearing]) = (preview.directions(), preview.joint.bodies());
+    let centre = from_origin(at_rest.flexion_axis_mm, names);
+    let mut rows = rows_of_body(counterface, &preview.femur, names);
+    rows.extend(rows_of_body(bearing, &preview.insert.body, names));
+    rows.extend(rows_of_insert(&preview.insert, names));
     rows.extend(match flexed {
         Some(flexed) => vec![("settled", flexed), ("  flexion axis from origin", centre)],
         None => vec![("settled", centre)],
     });
-    rows.extend([
-        ("  contact", pressed),
-        (
-            "  smooth femur to triangles",
-            format!("{:.4} mm where they touch", at_rest.femur_deviation_mm),
-        ),
-        ("a run needs", needs),
-    ]);
+    rows.push(("  contact", pressed));
+    if preview.femur.file.is_some() {
+        let deviation = format!("{:.4} mm where they touch", at_rest.femur_deviation_mm);
+        rows.push(("  smooth field to triangles", deviation));
+    }
+    rows.push(("a run needs", needs));
     rows
 }
 
-fn rows_of_body(name: &'static str, body: &BodyFacts) -> Vec<Row> {
+fn rows_of_body(name: &'static str, body: &BodyFacts, names: Directions) -> Vec<Row> {
     let triangles = body.triangles.map(|count| format!(", {count} triangles"));
     let source = match &body.file {
         Some(file) => format!("{file}{}", triangles.unwrap_or_default()),
@@ -85,7 +86,11 @@ fn rows_of_body(name: &'static str, body: &BodyFacts) -> Vec<Row> {
     };
     let [along, up, across] = body.size_mm;
     let size = format!("{along:.1} x {up:.1} x {across:.1} mm");
-    let mut rows = vec![(name, source), ("  size AP, SI, ML", size)];
+    let axes = match names.joint {
+        TestedJoint::Specimen => "  size x, y, z",
+        _ => "  size AP, SI, ML",
+    };
+    let mut rows = vec![(name, source), (axes, size)];
     if let Some(EdgeFacts { edge_mm, slivers }) = &body.edges {
         let [shortest, median, longest] = edge_mm;
         let edges =
@@ -102,13 +107,12 @@ fn rows_of_body(name: &'static str, body: &BodyFacts) -> Vec<Row> {
     rows
 }
 
-fn rows_of_insert(insert: &InsertFacts) -> Vec<Row> {
-    let mut rows = rows_of_body("insert", &insert.body);
+fn rows_of_insert(insert: &InsertFacts, names: Directions) -> Vec<Row> {
     let mesh = format!(
         "{} hexahedra, {} surface nodes, worst quality {:.3}",
         insert.hexahedra, insert.surface_nodes, insert.worst_quality
     );
-    rows.push(("  mesh", mesh));
+    let mut rows = vec![("  mesh", mesh)];
     if let Some([medial, lateral]) = insert.dish_thickness_mm {
         let thickness = format!("{medial:.2} mm medial, {lateral:.2} mm lateral at the thinnest");
         rows.push(("  thickness over the dishes", thickness));
@@ -116,20 +120,22 @@ fn rows_of_insert(insert: &InsertFacts) -> Vec<Row> {
     let least = format!("{:.2} mm at the thinnest", insert.least_thickness_mm);
     rows.push(("  thickness inside the rim", least));
     if let Some(middle) = insert.dishes_middle_mm {
-        rows.push(("  dish middle from origin", from_origin(middle)));
+        rows.push(("  dish middle from origin", from_origin(middle, names)));
     }
     rows
 }
 
-fn from_origin(place: [f64; 3]) -> String {
-    let directions = [
-        ["anterior", "posterior"],
-        ["superior", "inferior"],
-        ["lateral", "medial"],
-    ];
+fn from_origin(place: [f64; 3], names: Directions) -> String {
+    // Places are those of the right joint that is computed: +z is lateral on both sides.
+    let names = Directions {
+        side: Side::Right,
+        ..names
+    };
+    let [left, right] = names.along_z();
+    let directions = [names.along_x(), ["superior", "inferior"], [right, left]];
     let parts = place.into_iter().zip(directions);
     let parts = parts.map(|(value, [plus, minus])| {
-        let direction = if value < 0.0 { minus } else { plus };
+        let direction = if value < 0.0 { minus } else { plus }.to_lowercase();
         format!("{:.1} mm {direction}", value.abs())
     });
     parts.collect::<Vec<_>>().join(", ")

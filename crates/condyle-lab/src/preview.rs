@@ -20,6 +20,7 @@ use condyle_case::{
     config::DataFile,
 };
 use condyle_report::bodies::{BodiesPicture, MachineAxes, bodies_svg};
+use condyle_results::{Directions, TestedJoint};
 use serde::Serialize;
 
 use crate::{
@@ -37,7 +38,9 @@ use crate::{
 pub struct Preview {
     /// Title of the case.
     pub title: String,
-    /// The side of the knee.
+    /// The joint whose replacement the machine tests.
+    pub joint: TestedJoint,
+    /// The side of the joint.
     pub side: &'static str,
     /// Corrections of the input, and remarks on suspicious input.
     pub warnings: Vec<String>,
@@ -96,6 +99,7 @@ impl Preview {
         let insert = InsertFacts::of(&case, &march, &warnings);
         Ok(Self {
             title: case.heading.title.clone(),
+            joint: march.test().machine().mechanism.tests,
             side: case.heading.side.word(),
             expected: Expected::of(&case, &march, &at_rest, clock.spent),
             warnings,
@@ -107,6 +111,14 @@ impl Preview {
             march,
             femur_triangles: triangles,
         })
+    }
+
+    /// Returns the joint with its side.
+    pub fn directions(&self) -> Directions {
+        Directions {
+            joint: self.joint,
+            side: self.case.heading.side,
+        }
     }
 
     /// Both bodies from three sides, as the text of an SVG file.
@@ -125,7 +137,7 @@ impl Preview {
         });
         bodies_svg(&BodiesPicture {
             title: &self.title,
-            side,
+            directions: self.directions(),
             femur: &femur,
             insert: &insert,
             contact: &contact,
@@ -237,7 +249,8 @@ impl InsertFacts {
     fn of(case: &Case, march: &March, warnings: &[String]) -> Self {
         let insert = march.test().insert.as_ref();
         let (mesh, places) = (insert.mesh(), insert.surface().positions);
-        let dishes = Dishes::find(&places);
+        let is_knee = march.test().machine().mechanism.tests == TestedJoint::Knee;
+        let dishes = Dishes::find(&places).filter(|_| is_knee);
         let triangles = case.insert_triangles();
         let thickness = |dish: Vec3| {
             let nodes = places.iter().zip(insert.thickness_mm());

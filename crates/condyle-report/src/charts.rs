@@ -5,7 +5,7 @@
 
 use std::{borrow::Cow, sync::LazyLock};
 
-use condyle_results::{CycleQuantity, JointKind, KNEE, split_unit};
+use condyle_results::{CycleQuantity, JointKind, KNEE, MotionColumn, split_unit};
 
 use crate::figure::{Axis, Curve, MEASURED, Panel};
 use crate::number::{cycles_in_words, first_letter_large, printed_unit, significant};
@@ -20,12 +20,12 @@ pub(crate) struct Channel {
     pub(crate) column: Cow<'static, str>,
     pub(crate) title: Cow<'static, str>,
     pub(crate) unit: &'static str,
-    positive: &'static str,
+    positive: Cow<'static, str>,
     from_zero: bool,
     pub(crate) min_span: f64,
 }
 
-/// The columns of kinematics.csv of a knee, in their order.
+/// The columns of kinematics.csv of a knee, in their order, for results without [`MotionColumn`]s, and measured ones.
 static CHANNELS: LazyLock<Vec<Channel>> =
     LazyLock::new(|| KNEE.columns.iter().copied().map(Channel::of).collect());
 
@@ -36,7 +36,7 @@ impl Channel {
             column: Cow::Borrowed(column),
             title: Cow::Borrowed(title),
             unit,
-            positive: "",
+            positive: Cow::Borrowed(""),
             from_zero: true,
             min_span,
         };
@@ -48,13 +48,13 @@ impl Channel {
                         JointKind::Rotation => "degrees",
                         JointKind::Translation => "mm",
                     },
-                    positive: joint.positive,
+                    positive: Cow::Borrowed(joint.positive),
                     from_zero: false,
                     ..from_zero(joint.title, "", joint.least_span)
                 }
             }
             CycleQuantity::AxialForce => Self {
-                positive: "compression",
+                positive: Cow::Borrowed("compression"),
                 ..from_zero("Axial force", "N", 10.0)
             },
             CycleQuantity::ContactArea => from_zero("Contact area", "mm\u{b2}", 1.0),
@@ -63,8 +63,20 @@ impl Channel {
         }
     }
 
-    /// Returns the column called `column`: one of a knee, or of another machine a joint whose name and unit it is.
-    pub(crate) fn find(column: &str) -> Option<Self> {
+    /// Returns the column called `column`: a joint of the machine, or a load or contact.
+    pub(crate) fn find(column: &str, motions: &[MotionColumn]) -> Option<Self> {
+        let motion = motions.iter().find(|motion| motion.column == column);
+        if let Some(MotionColumn {
+            title, positive, ..
+        }) = motion
+        {
+            let joint = Self::of_joint(column)?;
+            return Some(Self {
+                title: Cow::Owned(first_letter_large(title)),
+                positive: Cow::Owned(positive.clone()),
+                ..joint
+            });
+        }
         let known = CHANNELS.iter().find(|channel| channel.column == column);
         known.cloned().or_else(|| Self::of_joint(column))
     }
@@ -81,21 +93,16 @@ impl Channel {
             column: Cow::Owned(column.to_owned()),
             title: Cow::Owned(first_letter_large(&name.replace('_', " "))),
             unit,
-            positive: "",
+            positive: Cow::Borrowed(""),
             from_zero: false,
             min_span,
         })
     }
 
     /// Returns the columns of a table of a cycle, in their order.
-    pub(crate) fn all_of(table: &Table) -> impl Iterator<Item = Self> + '_ {
-        // A joint of another machine may have the name of one of a knee, and move another body.
-        let is_knee = table.column(KNEE.regions[0].column).is_some();
-        let of_machine = move |name: &String| {
-            let own = (!is_knee).then(|| Self::of_joint(name)).flatten();
-            own.or_else(|| Self::find(name))
-        };
-        table.names().iter().filter_map(of_machine)
+    pub(crate) fn all_of(table: &Table, motions: &[MotionColumn]) -> impl Iterator<Item = Self> {
+        let names = table.names().iter();
+        names.filter_map(|name| Self::find(name, motions))
     }
 
     pub(crate) fn panel(&self, curves: Vec<Curve>) -> Panel {
@@ -104,7 +111,7 @@ impl Channel {
             group: "cycle".to_owned(),
             title: self.title.clone().into_owned(),
             unit: self.unit.to_owned(),
-            positive: self.positive,
+            positive: self.positive.clone(),
             x: Axis::PERCENT,
             x_unit: "%",
             size: CYCLE_SIZE,
@@ -112,7 +119,7 @@ impl Channel {
             min_span: self.min_span,
             curves,
             desc: format!(
-                "{} in {} against percent of the gait cycle; the table of ranges gives its extremes.",
+                "{} in {} against percent of the cycle; the table of ranges gives its extremes.",
                 self.title, self.unit
             ),
             ..Panel::default()
@@ -167,7 +174,7 @@ pub(crate) fn all(results: &Results) -> Vec<Panel> {
     charts.extend(cycle(results));
     for (activity, table) in results.activities.iter().skip(1) {
         let table = table.iter();
-        charts.extend(table.flat_map(|table| cycle_of(table, &activity.name)));
+        charts.extend(table.flat_map(|table| cycle_of(table, &activity.name, results.motions())));
     }
     charts
 }
@@ -175,7 +182,7 @@ pub(crate) fn all(results: &Results) -> Vec<Panel> {
 /// Motions and loads over the cycle of the first activity, with those measured.
 pub(crate) fn cycle(results: &Results) -> Vec<Panel> {
     let table = results.kinematics.as_ref();
-    let mut panels = table.map_or_else(Vec::new, |table| cycle_of(table, ""));
+    let mut panels = table.map_or_else(Vec::new, |table| cycle_of(table, "", results.motions()));
     if let Some(measured) = &results.measured_kinematics {
         for panel in &mut panels {
             let column = panel.id.trim_start_matches("k-");
@@ -189,7 +196,7 @@ pub(crate) fn cycle(results: &Results) -> Vec<Panel> {
 }
 
 /// Motions and loads over the cycle of a table; `activity` distinguishes its charts from those of others.
-pub(crate) fn cycle_of(table: &Table, activity: &str) -> Vec<Panel> {
+pub(crate) fn cycle_of(table: &Table, activity: &str, motions: &[MotionColumn]) -> Vec<Panel> {
     let Some(percent) = table.column("percent") else {
         return Vec::new();
     };
@@ -216,7 +223,7 @@ pub(crate) fn cycle_of(table: &Table, activity: &str) -> Vec<Panel> {
             ..panel
         })
     };
-    Channel::all_of(table).filter_map(panel).collect()
+    Channel::all_of(table, motions).filter_map(panel).collect()
 }
 
 /// The columns of wear.csv that are plotted, with their titles.

@@ -1,7 +1,8 @@
 //! The maps of a run: fields of the last mesh, and the slip paths.
 
 use colorous::{CIVIDIS, Gradient, MAGMA, VIRIDIS};
-use condyle_results::{MAP_PICTURES, SLIP_PATHS_PICTURE, Side};
+use condyle_mesh::Vec3;
+use condyle_results::{Directions, MAP_PICTURES, SLIP_PATHS_PICTURE};
 
 use crate::figure::{ColourRange, Map, MapStyle, Path, finite_range};
 use crate::results::{Results, SurfaceFields, Table};
@@ -50,7 +51,7 @@ pub(crate) static MAPS: [MappedField; 6] = [
         "peak_pressure_mpa",
         MAP_PICTURES[1],
         style(["map-pressure", "Peak pressure", "MPa", "Highest"], VIRIDIS),
-        "Largest contact pressure of each node in one gait cycle, averaged over its share of the surface, at the last update.",
+        "Largest contact pressure of each node in one cycle, averaged over its share of the surface, at the last update.",
     ),
     mapped(
         "sliding_distance_mm",
@@ -59,7 +60,7 @@ pub(crate) static MAPS: [MappedField; 6] = [
             ["map-sliding", "Sliding distance", "mm", "Highest"],
             CIVIDIS,
         ),
-        "Distance that the femur slides over each place while it presses on it, in one gait cycle, at the last update.",
+        "Distance that the counterface slides over each place while it presses on it, in one cycle, at the last update.",
     ),
     mapped(
         "cross_shear",
@@ -68,7 +69,7 @@ pub(crate) static MAPS: [MappedField; 6] = [
             ["map-cross-shear", "Cross-shear ratio", "", "Highest"],
             MAGMA,
         ),
-        "The part of pressure times sliding that goes across the main direction of each place, at the last update: 0 where the femur slides to and fro along a line, 0.5 where it slides around a circle.",
+        "The part of pressure times sliding that goes across the main direction of each place, at the last update: 0 where the counterface slides to and fro along a line, 0.5 where it slides around a circle.",
     ),
     mapped(
         "creep_depth_mm",
@@ -89,14 +90,14 @@ impl MappedField {
     pub(crate) fn of<'a>(
         &self,
         surface: &'a SurfaceFields,
-        side: Side,
+        directions: Directions,
         px_per_mm: f64,
     ) -> Option<Map<'a>> {
         Some(Map {
             style: self.style,
             surface,
             values: surface.field(self.field)?,
-            side,
+            directions,
             range: ColourRange::Own,
             px_per_mm,
         })
@@ -123,7 +124,7 @@ pub(crate) fn drawn(
         return Vec::new();
     };
     let map = |field: &MappedField| {
-        let map = field.of(surface, results.side, px_per_mm)?;
+        let map = field.of(surface, results.directions(), px_per_mm)?;
         Some(DrawnMap {
             file: field.file,
             caption: field.caption,
@@ -136,7 +137,7 @@ pub(crate) fn drawn(
         style: style(["map-slip", "Slip paths", "", ""], MAGMA),
         surface,
         values: &bare,
-        side: results.side,
+        directions: results.directions(),
         range: ColourRange::Own,
         px_per_mm,
     };
@@ -146,12 +147,12 @@ pub(crate) fn drawn(
         .unwrap_or_default();
     if !paths.is_empty() {
         let desc = format!(
-            "Paths of the femur past {} places of the articulating surface from above, anterior up, shortened and widened.",
+            "Paths of the counterface past {} places of the articulating surface shortened and widened.",
             paths.len()
         );
         maps.push(DrawnMap {
             file: SLIP_PATHS_PICTURE,
-            caption: "Slip of the femur past the deepest place of each side and past four places around it, while they are loaded, in one gait cycle, at the last update. Each path is drawn about the dot of its place at 0.4 of its length and 1.6 of its width, so four times as wide as it is: the wider, the more cross-shear.",
+            caption: "Slip of the counterface past the deepest place of each region and past four places around it, while they are loaded, in one cycle, at the last update. Each path is drawn about the dot of its place at 0.4 of its length and 1.6 of its width, so four times as wide as it is: the wider, the more cross-shear.",
             svg: draw(&map, &desc, &paths.concat()),
         });
     }
@@ -170,6 +171,15 @@ fn slip_paths(table: &Table, map: &Map<'_>) -> Option<Vec<String>> {
     let middle = |values: &mut dyn Iterator<Item = f64>| {
         finite_range(values).map_or(0.0, |(low, high)| f64::midpoint(low, high))
     };
+    let flat = map.surface.flat();
+    // Of a cup, the place of the nearest node: the file states x and z only.
+    let on_map = |x: f64, z: f64| {
+        let away = |node: &Vec3| (node.x - x).hypot(node.z - z);
+        let nodes = map.surface.nodes.iter().zip(&flat);
+        let nearest = nodes.min_by(|a, b| away(a.0).total_cmp(&away(b.0)));
+        let nearest = nearest.filter(|_| map.surface.is_cup);
+        nearest.map_or([x, z], |(_, place)| *place)
+    };
     let path = |rows: &[usize]| {
         let mut at = (0.0, 0.0);
         let mut points = vec![at];
@@ -182,7 +192,7 @@ fn slip_paths(table: &Table, map: &Map<'_>) -> Option<Vec<String>> {
         }
         let across = middle(&mut points.iter().map(|point| point.0));
         let along = middle(&mut points.iter().map(|point| point.1));
-        let (x, z) = (x[rows[0]], z[rows[0]]);
+        let [x, z] = on_map(x[rows[0]], z[rows[0]]);
         let mut line = Path::default();
         let places = points.iter();
         line.open(places.map(|point| map.place()(x + point.0 - across, z + point.1 - along)));
@@ -205,7 +215,7 @@ mod tests {
         let text = "path,x_mm,z_mm,percent,pressure_mpa,slip_anterior_mm,slip_right_mm\n\
             1,2,3,0.5,4,1,0\n1,2,3,1,4,0,1\n2,5,6,1,4,-1,0\n";
         let table = Table::parse(text, "slip_paths.csv".as_ref()).unwrap();
-        let corner = |at: f64| condyle_mesh::Vec3::new(at, 0.0, at);
+        let corner = |at: f64| Vec3::new(at, 0.0, at);
         let surface = SurfaceFields {
             nodes: vec![corner(-10.0), corner(10.0)],
             ..SurfaceFields::default()
@@ -214,7 +224,7 @@ mod tests {
             style: MAPS[0].style,
             surface: &surface,
             values: &[0.0; 2],
-            side: Side::Right,
+            directions: Directions::default(),
             range: ColourRange::Own,
             px_per_mm: 10.0,
         };

@@ -1,6 +1,8 @@
 //! Pictures of a run compared with measurements.
 
-use condyle_results::Side;
+use std::borrow::Cow;
+
+use condyle_results::Directions;
 
 use crate::charts::Channel;
 use crate::figure::{
@@ -13,7 +15,7 @@ use crate::results::SurfaceFields;
 pub fn compared_kinematics_svg(title: &str, columns: &[(&str, &[[f64; 3]])]) -> String {
     const SIZE: (f64, f64) = (430.0, 226.0);
     let row = |&(column, points): &(&str, &[[f64; 3]])| {
-        let channel = Channel::find(column)?;
+        let channel = Channel::find(column, &[])?;
         let line = |class, value: fn(&[f64; 3]) -> f64| Curve::new(class, with_gaps(points, value));
         let panel = |curves| Panel {
             size: SIZE,
@@ -28,15 +30,14 @@ pub fn compared_kinematics_svg(title: &str, columns: &[(&str, &[[f64; 3]])]) -> 
         ]);
         let difference = Panel {
             title: format!("{}, predicted \u{2212} measured", channel.title),
-            positive: "",
+            positive: Cow::default(),
             ..panel(vec![line("last", |point| point[1] - point[2])])
         };
         Some([both, difference])
     };
     let panels: Vec<Panel> = columns.iter().filter_map(row).flatten().collect();
     let key = [("first", "measured"), ("last", "predicted")];
-    let desc =
-        "Measured and predicted motions against percent of the gait cycle, and their difference.";
+    let desc = "Measured and predicted motions against percent of the cycle, and their difference.";
     sheet(title, desc, &panels, 2, &key)
 }
 
@@ -97,7 +98,7 @@ pub fn compared_wear_svg(
 
 /// Draws an SVG file with the maps of `predicted_mm`, `scanned_mm` and `difference_mm`, the first two in the same
 /// colours; `None` where the surface lacks a field.
-pub fn compared_surface_svg(surface: &SurfaceFields, side: Side) -> Option<String> {
+pub fn compared_surface_svg(surface: &SurfaceFields, directions: Directions) -> Option<String> {
     // Space between maps, px.
     const GAP: f64 = 18.0;
     let [predicted, scanned, difference] = [
@@ -117,7 +118,7 @@ pub fn compared_surface_svg(surface: &SurfaceFields, side: Side) -> Option<Strin
         },
         surface,
         values,
-        side,
+        directions,
         range,
         px_per_mm: 5.0,
     };

@@ -40,11 +40,11 @@ pub fn pictures(results: &Results) -> Vec<Picture> {
     let wear = (!wear.is_empty())
         .then(|| sheet("Wear over the test", "Wear against cycles.", &wear, 2, &key));
     let motion = charts::cycle(results);
-    let last = "last cycle, against % of the gait cycle";
+    let last = "last cycle, against % of the cycle";
     let key = [("first", "first cycle"), ("last", last)].into_iter();
     let key = Vec::from_iter(key.chain(measured(&motion, "measured")));
-    let desc = "Motions and loads against percent of the gait cycle.";
-    let title = "Motion and load in a gait cycle";
+    let desc = "Motions and loads against percent of the cycle.";
+    let title = "Motion and load in a cycle";
     let motion = (!motion.is_empty()).then(|| sheet(title, desc, &motion, 3, &key));
     let wear = wear.map(|svg| (WEAR_PICTURE, svg));
     let motion = motion.map(|svg| (KINEMATICS_PICTURE, svg));

@@ -25,7 +25,7 @@ mod write_over;
 
 /// The columns of `kinematics.csv`.
 pub use condyle::machine::{
-    CycleQuantity, JointKind,
+    CycleQuantity, JointKind, TestedJoint,
     knee::{KNEE, LATERAL, MEDIAL},
 };
 pub use condyle::parameter::split_unit;
@@ -49,10 +49,10 @@ pub use insert_fields::{
     InsertFields, NODE_FIELDS, NodeField, insert_file_name, insert_pvd, insert_vtu,
 };
 pub use parts::{
-    ActivitySummary, CreepSummary, LawWear, NeutralPose, Penetration, ScanLine, joint_range,
-    kinematics_file,
+    ActivitySummary, CreepSummary, LawWear, MotionColumn, NeutralPose, Penetration, ScanLine,
+    joint_range, kinematics_file,
 };
 pub use prediction::{CALIBRATED_LAW, Interval, MAX_FACTOR, Prediction, Source};
-pub use side::Side;
+pub use side::{Directions, Side};
 pub use summary::{PlausibilityWarning, Summary};
 pub use tables::{WEAR_COLUMNS, WearColumn, femur_pose_csv, kinematics_csv, wear_csv};

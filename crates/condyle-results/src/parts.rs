@@ -4,7 +4,7 @@
 use condyle::{
     evolve::{CreepRecord, March, MarchState, UpdateRecord},
     machine::{
-        CycleRow, JointIndex,
+        CycleRow, JointDescription, JointIndex, Mechanism,
         knee::{AP, FLEXION, IE, KNEE, MEDIAL, VV},
     },
     spatial::Pose,
@@ -262,6 +262,31 @@ impl ScanLine {
             rise_mm_per_million_cycles: slope * MILLION,
             at_no_cycles_mm: depth - slope * cycles,
         })
+    }
+}
+
+/// A joint of the machine as a column of `kinematics.csv`.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct MotionColumn {
+    /// Name of the column, which ends in the unit.
+    pub column: String,
+    /// Heading.
+    pub title: String,
+    /// Positive direction in words.
+    pub positive: String,
+}
+
+impl MotionColumn {
+    /// Returns the joints of a mechanism in the order of files.
+    pub fn all_of(mechanism: &Mechanism) -> Vec<Self> {
+        let joints = mechanism.in_files.iter();
+        let joints = joints.map(|&index| mechanism.joint(index));
+        let column = |joint: &JointDescription| Self {
+            column: joint.column.to_owned(),
+            title: joint.title.to_owned(),
+            positive: joint.positive.to_owned(),
+        };
+        joints.map(column).collect()
     }
 }
 

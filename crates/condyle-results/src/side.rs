@@ -1,6 +1,9 @@
 //! Left knees are mirrored in z on the way in and out: every run computes a right one.
 
-use condyle::machine::knee::{KNEE, LATERAL, MEDIAL};
+use condyle::machine::{
+    TestedJoint,
+    knee::{KNEE, LATERAL, MEDIAL},
+};
 use condyle::{Mat3, Vec3, spatial::Pose};
 use condyle_fem::HexMesh;
 
@@ -53,6 +56,34 @@ impl Side {
         match self {
             Self::Right => [medial, lateral],
             Self::Left => [lateral, medial],
+        }
+    }
+}
+
+/// The names of the directions of a bearing in pictures.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Directions {
+    /// The joint of the body.
+    pub joint: TestedJoint,
+    /// Its side.
+    pub side: Side,
+}
+
+impl Directions {
+    /// Returns the names of +x and -x.
+    pub fn along_x(self) -> [&'static str; 2] {
+        match self.joint {
+            TestedJoint::Specimen => ["+x", "\u{2212}x"],
+            _ => ["Anterior", "Posterior"],
+        }
+    }
+
+    /// Returns the names of -z and +z.
+    pub fn along_z(self) -> [&'static str; 2] {
+        match self.joint {
+            TestedJoint::Specimen => ["\u{2212}z", "+z"],
+            TestedJoint::Disc => ["Left", "Right"],
+            _ => self.side.regions(),
         }
     }
 }

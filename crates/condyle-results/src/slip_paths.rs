@@ -1,20 +1,20 @@
 //! `slip_paths.csv`: slip of the femur past some places of the insert in the last cycle.
 
-use condyle::{Vec3, evolve::March};
+use condyle::{Vec3, evolve::March, geometry::SurfaceRegions};
 
 use super::side::{Side, point_on_side};
 
 /// Distance of the other places of a side from its deepest one, mm.
 const AROUND_MM: f64 = 6.0;
 
-/// Returns `slip_paths.csv`: the slip of the femur past the deepest place of each side and past four places around
-/// it, with one row per increment in which the place is under pressure; none before a march has solved a cycle.
+/// Returns `slip_paths.csv`: the slip of the femur past the deepest place of each region and past four places
+/// around it, with one row per increment in which the place is under pressure; none before a march has solved a cycle.
 pub(super) fn slip_paths_csv(march: &March, side: Side) -> Option<String> {
     let cycle = march.last_cycle()?;
     let mut text =
         String::from("path,x_mm,z_mm,percent,pressure_mpa,slip_anterior_mm,slip_right_mm\n");
     let depth_mm = &march.fields().wear_depth_mm;
-    let nodes = places(&cycle.surface.positions, depth_mm);
+    let nodes = places(&cycle.surface.positions, depth_mm, march.insert().regions());
     for (path, node) in nodes.into_iter().enumerate() {
         let (path, place) = (
             path + 1,
@@ -36,12 +36,12 @@ pub(super) fn slip_paths_csv(march: &March, side: Side) -> Option<String> {
     Some(text)
 }
 
-/// Returns the deepest node of each side that is worn and the nodes nearest to the places around it, each once.
-fn places(positions: &[Vec3], depth_mm: &[f64]) -> Vec<usize> {
+/// Returns the deepest node of each region that is worn and the nodes nearest to the places around it, each once.
+fn places(positions: &[Vec3], depth_mm: &[f64], regions: &SurfaceRegions) -> Vec<usize> {
     let mut nodes = Vec::new();
-    for is_of_side in [|z: f64| z < 0.0, |z: f64| z >= 0.0] {
+    for region in 0..regions.count() {
         let own = (0..positions.len())
-            .filter(|&node| is_of_side(positions[node].z) && depth_mm[node] > 0.0);
+            .filter(|&node| regions.of_node(node) == region && depth_mm[node] > 0.0);
         let Some(deepest) = own.max_by(|&a, &b| depth_mm[a].total_cmp(&depth_mm[b])) else {
             continue;
         };
@@ -78,8 +78,12 @@ mod tests {
         let positions = [&left[..], &[at(1.0, 20.0)]].concat();
         let depth_mm = [0.3, 0.1, 0.2, 0.1, 0.0, 0.1];
         // On the right there is one node, nearest to every place around it.
-        assert_eq!(places(&positions, &depth_mm), [0, 1, 2, 3, 4, 5]);
-        assert_eq!(places(&positions, &[0.0, 0.1, 0.0, 0.0, 0.0, 0.0])[0], 1);
-        assert!(places(&positions, &[0.0; 6]).is_empty());
+        let names = ["left", "right"];
+        let regions =
+            SurfaceRegions::split(&names, positions.clone(), |at| usize::from(at.z > 0.0));
+        let found = |depth_mm: &[f64]| places(&positions, depth_mm, &regions);
+        assert_eq!(found(&depth_mm), [0, 1, 2, 3, 4, 5]);
+        assert_eq!(found(&[0.0, 0.1, 0.0, 0.0, 0.0, 0.0])[0], 1);
+        assert!(found(&[0.0; 6]).is_empty());
     }
 }

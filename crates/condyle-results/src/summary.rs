@@ -2,7 +2,7 @@
 
 use std::{collections::BTreeMap, ops::Index};
 
-use condyle::evolve::March;
+use condyle::{evolve::March, machine::TestedJoint};
 use serde::{
     Deserialize, Deserializer, Serialize, Serializer, de::DeserializeOwned, ser::SerializeMap,
 };
@@ -11,7 +11,7 @@ use serde_json::{Map, Value};
 use super::{
     catalogue::{self, FinishedRun, PARTS, RunFacts, Scalar},
     error_estimate::ErrorEstimate,
-    parts::{ActivitySummary, CreepSummary, LawWear, NeutralPose},
+    parts::{ActivitySummary, CreepSummary, LawWear, MotionColumn, NeutralPose},
     prediction::Prediction,
 };
 
@@ -36,6 +36,10 @@ pub struct Summary {
     pub activities: Vec<ActivitySummary>,
     /// Creep; none for an insert that does not creep.
     pub creep: Option<CreepSummary>,
+    /// The joint whose replacement the machine tests.
+    pub joint: TestedJoint,
+    /// The joints of the machine; empty in a file of an older version.
+    pub motions: Vec<MotionColumn>,
     /// The pose of the settled femur in the insert frame, at which AP, ML and IS read zero.
     pub neutral_pose: Option<NeutralPose>,
     /// Corrections of the input, and remarks on suspicious input.
@@ -71,10 +75,13 @@ impl Summary {
         let run = FinishedRun::new(march, facts)?;
         let values = catalogue::scalars();
         let values = values.filter_map(|scalar| Some((scalar.key, scalar.compute(&run)?)));
+        let mechanism = march.test().machine().mechanism;
         Some(Self {
             scalars: values.collect(),
             activities: ActivitySummary::of(march),
             creep: CreepSummary::of(march.state()),
+            joint: mechanism.tests,
+            motions: MotionColumn::all_of(mechanism),
             version: env!("CARGO_PKG_VERSION").to_owned(),
             ..Self::default()
         })
@@ -106,6 +113,8 @@ impl Summary {
                 map.serialize_entry(key, &self.activities)
             }
             "creep" if self.creep.is_some() => map.serialize_entry(key, &self.creep),
+            "joint" => map.serialize_entry(key, &self.joint),
+            "motions" => map.serialize_entry(key, &self.motions),
             "neutral_pose" => map.serialize_entry(key, &self.neutral_pose),
             "warnings" => map.serialize_entry(key, &self.warnings),
             "version" => map.serialize_entry(key, &self.version),
@@ -162,6 +171,8 @@ impl<'de> Deserialize<'de> for Summary {
             wear_laws: part(&mut entries, "wear_laws"),
             activities: part(&mut entries, "activities"),
             creep: part(&mut entries, "creep"),
+            joint: part(&mut entries, "joint"),
+            motions: part(&mut entries, "motions"),
             neutral_pose: part(&mut entries, "neutral_pose"),
             warnings: part(&mut entries, "warnings"),
             version: part(&mut entries, "version"),

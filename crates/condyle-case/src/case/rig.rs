@@ -591,7 +591,12 @@ impl Rig {
             CycleQuantity::ContactArea,
             CycleQuantity::PeakPressure,
         ];
-        let columns: Vec<CycleQuantity> = positions.chain(contact).collect();
+        let regions = match self.keys.tests {
+            TestedJoint::Knee => knee::KNEE.regions,
+            _ => &[],
+        };
+        let forces = (0..regions.len()).map(CycleQuantity::RegionForce);
+        let columns: Vec<CycleQuantity> = positions.chain(contact).chain(forces).collect();
         Mechanism {
             tests: self.keys.tests,
             joints: std::array::from_fn(|j| {
@@ -600,7 +605,7 @@ impl Rig {
             in_files,
             channels: &[],
             columns: columns.leak(),
-            regions: &[],
+            regions,
         }
     }
 

@@ -135,3 +135,21 @@ fn bodies_that_are_no_hip_are_refused_with_the_reason() {
     ]);
     said.assert_refused(2, &["not larger than its head"]);
 }
+
+#[test]
+fn a_hip_is_described_in_its_own_words() {
+    let bench = Bench::with_case(
+        "[femur]\nshape = \"sphere\"\nradius_mm = 14.0\n[insert]\nshape = \"cup\"\nedge_mm = 2.5\nlayers = 2\n\
+         [machine]\npreset = \"iso-14242-1-like\"\n[march]\nupdates = 1\n[accuracy]\nestimate = false\n",
+    );
+    let said = bench.say(&["check", "case.toml"]).out;
+    let words = ["head ", "cup "].map(|word| said.lines().any(|line| line.starts_with(word)));
+    assert!(words == [true; 2] && !said.contains("dish"), "{said}");
+    bench.run_into("hip");
+    let summary = bench.summary("hip");
+    assert_eq!(summary.joint.name(), "hip");
+    assert_eq!(summary.motions[0].title, "Lateral motion");
+    let page = std::fs::read_to_string(bench.path("hip/report.html")).expect("a report is written");
+    assert!(page.contains("cycles the cup has lost") && page.contains("+ head lateral"));
+    assert!(page.contains("Deepest: <tspan") && !page.contains("Deepest medial"));
+}

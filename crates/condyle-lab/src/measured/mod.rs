@@ -12,8 +12,9 @@ pub(crate) mod write;
 
 use std::path::Path;
 
-use condyle_case::{case::Side, measured::Measured};
+use condyle_case::measured::Measured;
 use condyle_report::Results;
+use condyle_results::Directions;
 use serde::Serialize;
 
 pub use error::{CalibrateError, CompareError};
@@ -36,9 +37,9 @@ pub struct Comparison {
     pub gravimetric: Option<GravimetricComparison>,
     /// Wear by scanning.
     pub surface: Option<SurfaceComparison>,
-    /// The side of the knee.
+    /// The joint and its side.
     #[serde(skip)]
-    pub side: Side,
+    pub directions: Directions,
 }
 
 /// Compares the run in `results` with the measured data of the file `measured`.
@@ -70,6 +71,6 @@ pub fn compare(results: &Path, measured: &Path) -> Result<Comparison, CompareErr
         kinematics: kinematics.transpose()?,
         gravimetric: gravimetric.transpose()?,
         surface: surface.transpose()?,
-        side: run.side,
+        directions: run.directions(),
     })
 }

@@ -57,7 +57,7 @@ impl Comparison {
         }
         if let Some(surface) = &self.surface {
             files.push((COMPARED_SURFACE, "csv", surface.csv()));
-            let map = compared_surface_svg(&surface.fields, self.side);
+            let map = compared_surface_svg(&surface.fields, self.directions);
             files.extend(map.map(|map| (COMPARED_SURFACE, "svg", map)));
         }
         files

@@ -7,10 +7,11 @@ use std::io::Write as _;
 
 use base64::{Engine as _, engine::general_purpose::STANDARD};
 use condyle_mesh::{TriangleMesh, Vec3};
-use condyle_results::Side;
+use condyle_results::Directions;
 use flate2::{Compression, Crc, write::ZlibEncoder};
 
 use crate::figure::{escape, finite_range, scale_bar, svg_file};
+use crate::number::first_letter_large;
 
 /// The axes of the machine in the insert frame, mm.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -30,8 +31,8 @@ pub struct MachineAxes {
 pub struct BodiesPicture<'a> {
     /// Title of the picture.
     pub title: &'a str,
-    /// The side of the knee.
-    pub side: Side,
+    /// The joint and its side.
+    pub directions: Directions,
     /// The femoral component in its pose on the insert, as all surfaces in the insert frame.
     pub femur: &'a TriangleMesh,
     /// The insert.
@@ -74,15 +75,19 @@ pub fn bodies_svg(picture: &BodiesPicture<'_>) -> String {
         body += &picture
             .axes
             .map_or_else(String::new, |axes| axes.svg(frame));
-        body += &frame.directions(picture.side);
+        body += &frame.directions(picture.directions);
         x += width_mm * scale + BETWEEN;
     }
     let height = ABOVE + tallest_mm * scale + BELOW;
     let (base, caption) = (height - 8.0, escape(picture.caption));
     body += &format!(r#"<text x="{BETWEEN:.1}" y="{base:.1}">{caption}</text>"#);
     body += &scale_bar((x - BETWEEN, height - 16.0), scale);
-    let desc = "Femur and insert from the front, from the right and from above.";
-    svg_file(picture.title, desc, (x, height), &body)
+    let [counterface, bearing] = picture.directions.joint.bodies();
+    let desc = format!(
+        "{} and {bearing} from the front, from the right and from above.",
+        first_letter_large(counterface)
+    );
+    svg_file(picture.title, &desc, (x, height), &body)
 }
 
 impl MachineAxes {
@@ -220,15 +225,18 @@ impl Frame {
     }
 
     /// Names of the directions around the view, and of the view above it.
-    fn directions(&self, side: Side) -> String {
-        let [left, right] = side.regions();
+    fn directions(&self, names: Directions) -> String {
+        let ([front, back], [left, right]) = (names.along_x(), names.along_z());
         let (name, at_left, at_right) = match self.view {
             View::Front => ("From the front".to_owned(), right, left),
             View::Right => {
                 let name = format!("From the right, {}", right.to_lowercase());
-                (name, "Posterior", "Anterior")
+                (name, back, front)
             }
-            View::Above => ("From above, anterior up".to_owned(), left, right),
+            View::Above => {
+                let name = format!("From above, {} up", front.to_lowercase());
+                (name, left, right)
+            }
         };
         let [x, y, width, height] = self.rectangle();
         let (middle, down) = (x + width / 2.0, y + height / 2.0);

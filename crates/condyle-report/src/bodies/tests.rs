@@ -2,6 +2,8 @@
 
 use std::time::Instant;
 
+use condyle_results::Side;
+
 use super::*;
 
 /// A sheet of `count` by `count` quads, 60 mm wide, bent up by `bend` at its ends.
@@ -29,7 +31,10 @@ fn drawn(femur: &TriangleMesh, insert: &TriangleMesh, side: Side) -> String {
     let contact = sheet(2, 0.1, 0.0);
     bodies_svg(&BodiesPicture {
         title: "A knee <made> of sheets",
-        side,
+        directions: Directions {
+            side,
+            ..Directions::default()
+        },
         femur,
         insert,
         contact: &contact,
@@ -96,7 +101,7 @@ fn nothing_to_draw_is_an_empty_picture() {
     let none = TriangleMesh::default();
     let svg = bodies_svg(&BodiesPicture {
         title: "nothing",
-        side: Side::Right,
+        directions: Directions::default(),
         femur: &none,
         insert: &none,
         contact: &none,

@@ -20,10 +20,10 @@ pub(crate) type Loop = Vec<(f64, f64)>;
 type Corner = (u32, u32);
 
 impl<'a> Contours<'a> {
-    /// Prepares a surface whose nodes (x, z) `place` puts into the picture.
+    /// Prepares a surface, whose nodes `place` puts into the picture from their places on maps.
     pub(crate) fn new(surface: &'a SurfaceFields, place: impl Fn(f64, f64) -> (f64, f64)) -> Self {
-        let nodes = surface.nodes.iter();
-        let mut points: Vec<_> = nodes.map(|node| place(node.x, node.z)).collect();
+        let nodes = surface.flat().into_iter();
+        let mut points: Vec<_> = nodes.map(|[x, z]| place(x, z)).collect();
         for quad in &surface.quads {
             let [a, b, c, d] = quad.map(|node| points[node as usize]);
             points.push(((a.0 + b.0 + c.0 + d.0) / 4.0, (a.1 + b.1 + c.1 + d.1) / 4.0));
@@ -167,7 +167,7 @@ mod tests {
         SurfaceFields {
             nodes,
             quads,
-            fields: Vec::new(),
+            ..SurfaceFields::default()
         }
     }
 

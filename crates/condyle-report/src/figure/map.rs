@@ -1,4 +1,4 @@
-//! A field on the articulating surface, seen as a surgeon looks down on the tibia: anterior up, +z to the right.
+//! A field on the articulating surface, seen from above or, of a cup, unrolled: anterior up, +z to the right.
 
 use colorous::Gradient;
 
@@ -8,7 +8,7 @@ use super::{
     marker::{Marker, TextRow},
     svg::{Path, escape, scale_bar, titled},
 };
-use condyle_results::Side;
+use condyle_results::{Directions, TestedJoint};
 
 use crate::number::{fixed, significant};
 use crate::results::{Extreme, Region, SurfaceFields};
@@ -59,7 +59,7 @@ pub(crate) struct Map<'a> {
     pub(crate) style: MapStyle,
     pub(crate) surface: &'a SurfaceFields,
     pub(crate) values: &'a [f64],
-    pub(crate) side: Side,
+    pub(crate) directions: Directions,
     pub(crate) range: ColourRange,
     pub(crate) px_per_mm: f64,
 }
@@ -77,9 +77,14 @@ impl Map<'_> {
         let (title, desc) = (escape(title), escape(desc));
         let [(_, x_high), (z_low, _)] = self.surface.bounds();
         // The inverse of `place` for the page's program: x at the top and z at the left, mm; where these are, px; px per mm.
-        let place = format!("{x_high} {z_low} {LEFT} {TOP} {}", self.px_per_mm);
+        let place = format!(
+            "data-map=\"{x_high} {z_low} {LEFT} {TOP} {}\"",
+            self.px_per_mm
+        );
+        // Places of an unrolled cup are no x and z.
+        let place = if self.surface.is_cup { "" } else { &place };
         format!(
-            r#"<svg class="fig" role="img" data-map="{place}" aria-labelledby="{id}-t {id}-d" viewBox="0 0 {width:.1} {height:.1}"><title id="{id}-t">{title}</title><desc id="{id}-d">{desc}</desc>{}{over}</svg>"#,
+            r#"<svg class="fig" role="img" {place} aria-labelledby="{id}-t {id}-d" viewBox="0 0 {width:.1} {height:.1}"><title id="{id}-t">{title}</title><desc id="{id}-d">{desc}</desc>{}{over}</svg>"#,
             self.body()
         )
     }
@@ -107,11 +112,18 @@ impl Map<'_> {
 
     /// Returns a sentence for readers who cannot see it.
     pub(crate) fn desc(&self) -> String {
-        let [left, right] = self.side.regions().map(str::to_lowercase);
+        let [left, right] = self.directions.along_z().map(str::to_lowercase);
+        let top = self.directions.along_x()[0].to_lowercase();
+        let view = if self.surface.is_cup {
+            "unrolled from its middle"
+        } else {
+            "from above"
+        };
         let (title, largest) = (self.style.title, self.style.largest);
         let sentence = |(name, extreme): &(&str, Extreme)| {
             let (value, place) = (self.value_text(extreme.value), place_text(extreme));
-            format!("{largest} {} {value} at {place}", name.to_lowercase())
+            let name = with_space(name);
+            format!("{largest}{name} {value} at {place}")
         };
         let found: Vec<_> = self.extremes().iter().map(sentence).collect();
         let found = match found.as_slice() {
@@ -119,11 +131,11 @@ impl Map<'_> {
             found => found.join("; "),
         };
         format!(
-            "{title} on the articulating surface from above, anterior up, {left} on the left, {right} on the right. {found}."
+            "{title} on the articulating surface {view}, {top} up, {left} on the left, {right} on the right. {found}."
         )
     }
 
-    /// Maps x and z of the insert frame, mm, to the picture, px.
+    /// Maps a place of [`SurfaceFields::flat`], mm, to the picture, px.
     pub(crate) fn place(&self) -> impl Fn(f64, f64) -> (f64, f64) {
         let [(_, x_high), (z_low, _)] = self.surface.bounds();
         let scale = self.px_per_mm;
@@ -185,7 +197,9 @@ impl Map<'_> {
         let heights = path(&contours.regions(&heights, &levels).concat());
         let mut middle = Path::default();
         let [(x_low, x_high), _] = self.surface.bounds();
-        middle.open([x_high, x_low].map(|x| self.place()(x, 0.0)));
+        if self.directions.joint == TestedJoint::Knee {
+            middle.open([x_high, x_low].map(|x| self.place()(x, 0.0)));
+        }
         let middle = middle.data();
         out + &format!(
             r#"<path class="height" d="{heights}"/><path class="middle" d="{middle}"/><path class="rim" d="{outline}"/>"#
@@ -205,7 +219,8 @@ impl Map<'_> {
     }
 
     fn directions(&self, markers: &[Marker]) -> String {
-        let ((width, height), [left, right]) = (self.surface_size(), self.side.regions());
+        let ((width, height), [left, right]) = (self.surface_size(), self.directions.along_z());
+        let [top, bottom] = self.directions.along_x();
         let (across, down) = (LEFT + width / 2.0, TOP + height / 2.0);
         let (low, far) = (TOP + height + 17.0, LEFT + width + 16.0);
         // "Posterior" is in the middle, or at a place where no leader passes at that height.
@@ -218,7 +233,7 @@ impl Map<'_> {
             .into_iter();
         let below = places.find(is_clear).unwrap_or(across);
         format!(
-            r#"<g class="side" text-anchor="middle"><text class="side" x="{across:.1}" y="{:.1}">Anterior</text><text class="side" x="{below:.1}" y="{low:.1}">Posterior</text><text class="side" transform="translate({:.1} {down:.1}) rotate(-90)">{left}</text><text class="side" transform="translate({far:.1} {down:.1}) rotate(-90)">{right}</text></g>"#,
+            r#"<g class="side" text-anchor="middle"><text class="side" x="{across:.1}" y="{:.1}">{top}</text><text class="side" x="{below:.1}" y="{low:.1}">{bottom}</text><text class="side" transform="translate({:.1} {down:.1}) rotate(-90)">{left}</text><text class="side" transform="translate({far:.1} {down:.1}) rotate(-90)">{right}</text></g>"#,
             TOP - 10.0,
             LEFT - 11.0,
         )
@@ -252,7 +267,7 @@ impl Map<'_> {
         )
     }
 
-    /// Returns the largest value of each side and the side's name; with its sign if values have both signs.
+    /// Returns the largest value of each region and the region's name; with its sign if values have both signs.
     fn extremes(&self) -> Vec<(&'static str, Extreme)> {
         let size = |value: f64| {
             if self.is_both_ways() {
@@ -265,12 +280,11 @@ impl Map<'_> {
             let extreme = self.surface.largest_by(self.values, region, size)?;
             (extreme.value.abs() > NOTHING).then_some((name, extreme))
         };
-        let regions = [Region::Left, Region::Right].into_iter();
-        let named = regions.zip(self.side.regions());
-        named.filter_map(of_side).collect()
+        let regions = Region::all_of(self.directions).into_iter();
+        regions.filter_map(of_side).collect()
     }
 
-    /// Returns a ring at the largest value of each side, with value and place.
+    /// Returns a ring at the largest value of each region, with value and place.
     fn markers(&self) -> Vec<Marker> {
         let (width, height) = self.surface_size();
         let row = TextRow {
@@ -278,11 +292,12 @@ impl Map<'_> {
             right: LEFT + width,
             bottom: TOP + height,
         };
+        let flat = self.surface.flat();
         let ring = |(name, extreme): (&str, Extreme)| {
-            let place = self.place()(extreme.position.x, extreme.position.z);
-            let (largest, name) = (self.style.largest, name.to_lowercase());
-            let value = self.value_text(extreme.value);
-            let first = format!(r#"{largest} {name}: <tspan class="strong">{value}</tspan>"#);
+            let [x, z] = flat[extreme.node];
+            let (largest, name) = (self.style.largest, with_space(name));
+            let (place, value) = (self.place()(x, z), self.value_text(extreme.value));
+            let first = format!(r#"{largest}{name}: <tspan class="strong">{value}</tspan>"#);
             (place, [first, place_text(&extreme)])
         };
         row.markers(self.extremes().into_iter().map(ring).collect())
@@ -292,6 +307,12 @@ impl Map<'_> {
         let text = format!("{}\u{a0}{}", significant(value, 3), self.style.unit);
         text.trim_end().to_owned()
     }
+}
+
+/// Returns the name of a region in small letters after a space; nothing without a name.
+fn with_space(name: &str) -> String {
+    let space = if name.is_empty() { "" } else { " " };
+    format!("{space}{}", name.to_lowercase())
 }
 
 fn place_text(extreme: &Extreme) -> String {

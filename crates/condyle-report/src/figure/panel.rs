@@ -1,5 +1,7 @@
 //! A plot of lines with title and unit on top, round ticks and a light grid; and sheets of several plots.
 
+use std::borrow::Cow;
+
 use super::{
     axis::Axis,
     svg::{Path, escape, svg_file, titled},
@@ -62,7 +64,7 @@ pub(crate) struct Panel {
     pub(crate) title: String,
     pub(crate) unit: String,
     /// The positive direction in words; may be empty.
-    pub(crate) positive: &'static str,
+    pub(crate) positive: Cow<'static, str>,
     pub(crate) x: Axis,
     /// Ticks of the horizontal axis with their texts; round numbers if empty.
     pub(crate) x_marks: Vec<(f64, String)>,
@@ -106,7 +108,7 @@ impl Panel {
         if self.positive.is_empty() {
             return heading;
         }
-        let (right, positive) = (self.right(), escape(self.positive));
+        let (right, positive) = (self.right(), escape(&self.positive));
         heading + &format!(r#"<text x="{right}" y="16" text-anchor="end">+ {positive}</text>"#)
     }
 

@@ -9,7 +9,7 @@ pub(crate) use numbers::{label_of, shown, unit_of};
 use std::io::Write;
 
 use base64::{Engine, engine::general_purpose::STANDARD};
-use condyle_results::catalogue::WEAR_OVER_CONVENTIONAL;
+use condyle_results::{TestedJoint, catalogue::WEAR_OVER_CONVENTIONAL};
 use flate2::{Compression, write::ZlibEncoder};
 use serde_json::{Value, json};
 
@@ -55,7 +55,8 @@ fn page_of(results: &Results, scene: Option<&Scene>) -> String {
     let other_maps: Vec<Value> = other_maps.map(captioned).collect();
     let activities: Vec<_> = results.activities.iter().map(|(one, _)| one).collect();
     let surface = results.surface.as_ref();
-    let wear_map = surface.and_then(|surface| maps::MAPS[0].of(surface, results.side, LARGE));
+    let wear_map =
+        surface.and_then(|surface| maps::MAPS[0].of(surface, results.directions(), LARGE));
     let kinematics = results.kinematics.as_ref();
     let times = summary.and_then(|summary| summary.get(&WEAR_OVER_CONVENTIONAL));
     render(
@@ -77,7 +78,10 @@ fn page_of(results: &Results, scene: Option<&Scene>) -> String {
             "left_out": sentences::left_out(results, scene),
             "disagreements": sentences::disagreements(results),
             "wear_map": wear_map.map(|map| map.svg(&map.desc(), "")),
-            "compartments": tables::compartments(results),
+            "regions": tables::regions(results),
+            "is_cup": surface.is_some_and(|surface| surface.is_cup),
+            "is_knee": results.directions().joint == TestedJoint::Knee,
+            "bodies": results.directions().joint.bodies(),
             "wear_laws": summary.map_or(&[][..], |summary| &summary.wear_laws),
             "wear_over_conventional": times.map(|times| significant(times, 3)),
             "activities": activities,
@@ -108,7 +112,11 @@ fn activity_charts(results: &Results) -> Vec<Value> {
     // The charts of the first activity are those of the whole page.
     let others = results.activities.iter().skip(1);
     let charts = others.filter_map(|(activity, table)| {
-        let charts = svgs(&charts::cycle_of(table.as_ref()?, &activity.name));
+        let charts = svgs(&charts::cycle_of(
+            table.as_ref()?,
+            &activity.name,
+            results.motions(),
+        ));
         Some(json!({ "name": activity.name, "charts": charts }))
     });
     charts.collect()

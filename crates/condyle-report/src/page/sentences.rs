@@ -38,8 +38,9 @@ pub(super) fn lede(results: &Results, case: &CaseFacts) -> Option<String> {
     let volume = volume.map(|volume| format!(" ({} mm\u{b3})", significant(volume, 3)));
     let rate = (cycles > 0.0).then(|| significant(mass_mg * MILLION / cycles, 3));
     let rate = rate.map(|rate| format!(", {rate} mg in a million cycles on average"));
+    let [_, bearing] = results.directions().joint.bodies();
     Some(format!(
-        "After {done}{} gait cycles the insert has lost {} mg{}{}.{}",
+        "After {done}{} cycles the {bearing} has lost {} mg{}{}.{}",
         of.unwrap_or_default(),
         significant(mass_mg, 3),
         volume.unwrap_or_default(),
@@ -51,15 +52,16 @@ pub(super) fn lede(results: &Results, case: &CaseFacts) -> Option<String> {
 fn deepest(results: &Results) -> Option<String> {
     let surface = results.surface.as_ref()?;
     let values = surface.field("wear_depth_mm")?;
-    let [left, right] = [Region::Left, Region::Right].map(|region| {
-        let found = surface.largest(values, region);
-        found.map_or(0.0, |found| found.value)
+    let regions = Region::all_of(results.directions()).into_iter();
+    let deepest = regions.filter_map(|(region, name)| {
+        let found = surface.largest(values, region)?;
+        Some((found.value, name))
     });
-    let side = results.side.regions()[usize::from(right > left)].to_lowercase();
-    let depth = left.max(right);
+    let (depth, name) = deepest.reduce(|one, other| if other.0 > one.0 { other } else { one })?;
     (depth > 0.0).then(|| {
-        let depth = significant(depth, 3);
-        format!(" The deepest point is {side}, {depth} mm deep.")
+        let (depth, name) = (significant(depth, 3), name.to_lowercase());
+        let side = if name.is_empty() { name } else { name + ", " };
+        format!(" The deepest point is {side}{depth} mm deep.")
     })
 }
 

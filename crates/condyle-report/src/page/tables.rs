@@ -27,22 +27,27 @@ const LARGEST_OF_CYCLE: [(&str, &str, &str); 2] = [
     ),
 ];
 
-/// Returns the two sides compared on the last mesh; empty without a mesh that has the wear depth.
-pub(super) fn compartments(results: &Results) -> Vec<Value> {
+/// Returns the regions of the surface compared on the last mesh; null without a mesh that has the wear depth.
+pub(super) fn regions(results: &Results) -> Value {
     let surface = results.surface.as_ref();
     let worn = surface.and_then(|surface| surface.field("wear_depth_mm"));
     let Some((surface, depth)) = surface.zip(worn) else {
-        return Vec::new();
+        return Value::Null;
     };
-    let regions = match results.side {
-        Side::Right => [Region::Left, Region::Right, Region::Whole],
-        Side::Left => [Region::Right, Region::Left, Region::Whole],
-    };
+    let mut regions = Region::all_of(results.directions());
+    if results.side == Side::Left {
+        // Medial comes first.
+        regions.reverse();
+    }
+    match regions.len() {
+        1 => regions[0].1 = "Value",
+        _ => regions.push((Region::Whole, "Both")),
+    }
     let deepest = surface.largest(depth, Region::Whole);
     let scar_mm = SCAR_SHARE * deepest.map_or(0.0, |found| found.value);
-    // Values on the medial side, on the lateral side and on both.
     let compare = |name: &str, unit: &str, value: &dyn Fn(Region) -> Option<String>| {
-        let values = regions.map(|region| value(region).unwrap_or_default());
+        let values = regions.iter().map(|(region, _)| value(*region));
+        let values: Vec<String> = values.map(Option::unwrap_or_default).collect();
         json!({ "name": name, "unit": unit, "values": values })
     };
     let largest = |name: &str, unit: &str, values: &[f64]| {
@@ -81,7 +86,8 @@ pub(super) fn compartments(results: &Results) -> Vec<Value> {
             Some(significant(surface.smallest_positive(&values, region)?, 3))
         }));
     }
-    rows
+    let names: Vec<&str> = regions.iter().map(|(_, name)| *name).collect();
+    json!({ "names": names, "rows": rows })
 }
 
 /// Returns the thickness under the scar, where thinness matters, and anywhere, where the thinnest place may be the
@@ -129,7 +135,7 @@ pub(super) fn ranges(results: &Results) -> Vec<Value> {
         return Vec::new();
     };
     let ends = first_and_last(table);
-    let rows = Channel::all_of(table).filter_map(|channel| {
+    let rows = Channel::all_of(table, results.motions()).filter_map(|channel| {
         let values = table.column(&channel.column)?;
         let by_value = |a: &usize, b: &usize| values[*a].total_cmp(&values[*b]);
         let ends = ends.iter().map(|cycle| {
@@ -162,7 +168,7 @@ pub(super) fn accuracy(results: &Results) -> Option<Value> {
         .into_iter();
     let remedies = parts.map(|part| {
         let remedy = match part {
-            Part::Increments => "finer increments of the gait cycle",
+            Part::Increments => "finer increments of the cycle",
             Part::Updates => "more updates of the shape",
             Part::Mesh => "shorter edges of the mesh",
             Part::SlipTolerance => "friction that sticks rather than creeps",

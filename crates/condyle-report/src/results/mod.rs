@@ -14,7 +14,8 @@ use std::path::{MAIN_SEPARATOR, Path, PathBuf};
 
 use condyle_mesh::formats::{VtuFile, read_vtu_points};
 use condyle_results::{
-    ActivitySummary, COMPARED, COMPARED_KINEMATICS, COMPARED_WEAR, Side, Summary, check_file,
+    ActivitySummary, COMPARED, COMPARED_KINEMATICS, COMPARED_WEAR, Directions, MotionColumn, Side,
+    Summary, TestedJoint, check_file,
 };
 
 use crate::error::ReportError;
@@ -99,6 +100,9 @@ impl Results {
         }
         let case = part(case(&folder.join("case.toml")), on_damage)?;
         let summary = part(summary(&folder.join("summary.json")), on_damage)?;
+        let is_cup = summary
+            .iter()
+            .any(|summary| summary.joint == TestedJoint::Hip);
         let mut activities = Vec::new();
         for activity in summary
             .iter()
@@ -126,9 +130,25 @@ impl Results {
             surface: part(
                 last.map(|(_, path)| surface_of(&path)).transpose(),
                 on_damage,
-            )?,
+            )?
+            .map(|surface| SurfaceFields { is_cup, ..surface }),
             left_out: Vec::new(),
         })
+    }
+
+    /// Returns the names of the directions of the bearing.
+    pub fn directions(&self) -> Directions {
+        let summary = self.summary.as_ref();
+        Directions {
+            joint: summary.map_or_else(TestedJoint::default, |summary| summary.joint),
+            side: self.side,
+        }
+    }
+
+    /// Returns the joints of the machine as columns; none in results of an older version.
+    pub(crate) fn motions(&self) -> &[MotionColumn] {
+        let summary = self.summary.as_ref();
+        summary.map_or(&[], |summary| &summary.motions)
     }
 
     fn has_any(&self) -> bool {

@@ -4,6 +4,7 @@ use std::collections::BTreeSet;
 use std::path::Path;
 
 use condyle_fem::{HexMesh, Vec3};
+use condyle_results::{Directions, TestedJoint};
 
 use crate::error::ReportError;
 
@@ -19,6 +20,8 @@ pub struct SurfaceFields {
     pub quads: Vec<[u32; 4]>,
     /// Name of each field, which carries the unit, and a value for each node.
     pub fields: Vec<(String, Vec<f64>)>,
+    /// True for a cup about the origin, whose maps are azimuthal: walls are as wide as the floor.
+    pub is_cup: bool,
 }
 
 /// A part of the surface by the sign of z.
@@ -37,11 +40,23 @@ pub enum Region {
 pub struct Extreme {
     /// The value, in the unit of the field.
     pub value: f64,
-    /// The node's position, mm.
+    /// The node.
+    pub node: usize,
+    /// Its position, mm.
     pub position: Vec3,
 }
 
 impl Region {
+    /// Returns the regions whose values are stated separately, with their names: the sides of a knee from -z to +z; the
+    /// whole surface, without a name, of another joint.
+    pub fn all_of(directions: Directions) -> Vec<(Self, &'static str)> {
+        if directions.joint == TestedJoint::Knee {
+            let [left, right] = directions.along_z();
+            return vec![(Self::Left, left), (Self::Right, right)];
+        }
+        vec![(Self::Whole, "")]
+    }
+
     /// Returns whether a point with this z, mm, is in the region.
     pub fn holds(self, z: f64) -> bool {
         match self {
@@ -85,6 +100,7 @@ impl SurfaceFields {
             nodes: surface.pick(&mesh.nodes),
             fields: point_data.iter().map(field).collect(),
             quads: surface.quads,
+            is_cup: false,
         })
     }
 
@@ -99,9 +115,36 @@ impl SurfaceFields {
         quad.map(|node| self.nodes[node as usize])
     }
 
+    /// Returns the places of the nodes on maps, mm: x and z of the insert frame; of a cup, its arcs from the middle in the
+    /// directions of x and z (azimuthal equidistant projection).
+    pub(crate) fn flat(&self) -> Vec<[f64; 2]> {
+        if !self.is_cup {
+            return self.nodes.iter().map(|node| [node.x, node.z]).collect();
+        }
+        let sum: Vec3 = self.nodes.iter().map(|node| node.normalize()).sum();
+        let pole = sum.normalize();
+        // Anterior is perpendicular to the axis of every cup that is only inclined; of another one, next to it.
+        let across = pole.cross(&Vec3::x()).normalize();
+        let along = across.cross(&pole);
+        let place = |node: &Vec3| {
+            let [x, z] = [node.dot(&along), node.dot(&across)];
+            let from_axis = x.hypot(z);
+            let arc = node.norm() * from_axis.atan2(node.dot(&pole));
+            // The arc is as long as the distance from the axis next to it.
+            let scale = if from_axis > 0.0 {
+                arc / from_axis
+            } else {
+                1.0
+            };
+            [x * scale, z * scale]
+        };
+        self.nodes.iter().map(place).collect()
+    }
+
     pub(crate) fn bounds(&self) -> [(f64, f64); 2] {
-        [0, 2].map(|axis| {
-            let values = self.nodes.iter().map(|node| node[axis]);
+        let flat = self.flat();
+        [0, 1].map(|axis| {
+            let values = flat.iter().map(|place| place[axis]);
             let low = values.clone().fold(f64::INFINITY, f64::min);
             (low, values.fold(f64::NEG_INFINITY, f64::max))
         })
@@ -150,9 +193,13 @@ impl SurfaceFields {
     }
 
     fn in_region(&self, values: &[f64], region: Region) -> impl Iterator<Item = Extreme> {
-        let all = self.nodes.iter().zip(values);
-        let own = all.filter(move |(node, _)| region.holds(node.z));
-        own.map(|(&position, &value)| Extreme { value, position })
+        let all = self.nodes.iter().zip(values).enumerate();
+        let own = all.filter(move |(_, (position, _))| region.holds(position.z));
+        own.map(|(node, (&position, &value))| Extreme {
+            value,
+            node,
+            position,
+        })
     }
 
     fn faces(&self, region: Region) -> impl Iterator<Item = ([u32; 4], f64)> {
@@ -298,7 +345,7 @@ mod tests {
             SurfaceFields {
                 nodes,
                 quads,
-                fields: Vec::new(),
+                ..SurfaceFields::default()
             },
             values,
         )
@@ -311,6 +358,40 @@ mod tests {
         assert!((surface.integral(&values, Region::Right) - 1.5).abs() < 1e-12);
         assert!((surface.integral(&values, Region::Whole) - 2.0).abs() < 1e-12);
         assert!((surface.area_above(&values, 1.0, Region::Whole) - 1.0).abs() < 1e-12);
+    }
+
+    #[test]
+    fn verify_a_cup_is_unrolled_by_its_arcs_about_its_own_axis() {
+        // A hemisphere of 10 mm whose middle is tilted by 30 degrees towards +z.
+        let (sine, cosine) = 30f64.to_radians().sin_cos();
+        let node = |polar_deg: f64, around_deg: f64| {
+            let (polar, around) = (polar_deg.to_radians(), around_deg.to_radians());
+            let (x, z) = (polar.sin() * around.cos(), polar.sin() * around.sin());
+            let y = -polar.cos();
+            10.0 * Vec3::new(x, cosine * y + sine * z, cosine * z - sine * y)
+        };
+        let rings = [0.0, 45.0, 90.0];
+        let all = rings
+            .iter()
+            .flat_map(|&polar| (0..8).map(move |n| (polar, 45.0 * f64::from(n))));
+        let places: Vec<(f64, f64)> = all.collect();
+        let cup = SurfaceFields {
+            nodes: places
+                .iter()
+                .map(|&(polar, around)| node(polar, around))
+                .collect(),
+            is_cup: true,
+            ..SurfaceFields::default()
+        };
+        for (&(polar, around), [x, z]) in places.iter().zip(cup.flat()) {
+            let arc = 10.0 * polar.to_radians();
+            let wanted = [
+                arc * around.to_radians().cos(),
+                arc * around.to_radians().sin(),
+            ];
+            let off = (x - wanted[0]).hypot(z - wanted[1]);
+            assert!(off < 1e-9, "{polar} {around}: {x} {z}, not {wanted:?}");
+        }
     }
 
     #[test]

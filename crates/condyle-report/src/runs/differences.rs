@@ -335,15 +335,23 @@ fn curves(first: &Results, second: &Results) -> Vec<CurveDifference> {
     let cycles = ["first", "last"].into_iter();
     let mut curves: Vec<_> = cycles
         .flat_map(|cycle| one.names().iter().map(move |name| (cycle, name)))
-        .filter_map(|(cycle, name)| curve(one, two, cycle, name))
+        .filter_map(|(cycle, name)| {
+            let channel = Channel::find(name, first.motions())?;
+            curve(one, two, cycle, channel)
+        })
         .collect();
     let rank = |curve: &CurveDifference| curve.rms_percent_of_range.unwrap_or(0.0);
     curves.sort_by(|one, two| rank(two).total_cmp(&rank(one)));
     curves
 }
 
-fn curve(one: &Table, two: &Table, cycle: &'static str, name: &str) -> Option<CurveDifference> {
-    let channel = Channel::find(name)?;
+fn curve(
+    one: &Table,
+    two: &Table,
+    cycle: &'static str,
+    channel: Channel,
+) -> Option<CurveDifference> {
+    let name = &channel.column;
     let [here, there] = [points(one, cycle, name)?, points(two, cycle, name)?];
     let apart = |&(percent, value): &(f64, f64)| Some((percent, at(&there, percent)? - value));
     let apart: Points = here.iter().filter_map(apart).collect();

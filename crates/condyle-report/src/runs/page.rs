@@ -174,7 +174,7 @@ fn map_rows(runs: &[Run], field: &MappedField) -> Option<String> {
     const GAP: f64 = 18.0;
     const NAME: f64 = 24.0;
     let results = runs.iter().map(|run| &run.results);
-    let maps = results.map(|own| field.of(own.surface.as_ref()?, own.side, 4.6));
+    let maps = results.map(|own| field.of(own.surface.as_ref()?, own.directions(), 4.6));
     let maps: Vec<Option<Map<'_>>> = maps.collect();
     let sizes = maps.iter().flatten().map(Map::size);
     let (width, height) = sizes.reduce(|one, two| (one.0.max(two.0), one.1.max(two.1)))?;

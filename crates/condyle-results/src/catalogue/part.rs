@@ -61,6 +61,9 @@ parts! {
         "Motion, loads and wear of each of several activities.";
     creep: Object, false, before Some(&PEAK_PRESSURE_MPA),
         "Creep of an insert that creeps, and its separation from wear.";
+    joint: Text, true, before Some(&UPDATES), "The joint whose replacement the machine tests, such as `hip`.";
+    motions: Objects, true, before Some(&UPDATES),
+        "The joints of the machine: `column` of `kinematics.csv`, `title`, and the `positive` direction.";
     neutral_pose: Object, true, before Some(&UPDATES),
         "Pose of the settled femur in the insert frame: there AP, ML and IS read zero.";
     warnings: Texts, true, before Some(&WALL_S), "Corrections and doubts of the input.";

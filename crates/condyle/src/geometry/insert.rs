@@ -102,6 +102,16 @@ impl Insert {
         Ok((insert.with_rim_along_walls(), holes))
     }
 
+    /// Replaces the regions of the articulating surface by a single one, for a bearing without sides.
+    pub fn with_one_region(self, name: &str) -> Self {
+        let regions =
+            SurfaceRegions::split(&[name], self.mesh.positions(self.surface_nodes()), |_| 0);
+        Self {
+            regions: Arc::new(regions),
+            ..self
+        }
+    }
+
     /// Returns the regions of the articulating surface.
     pub fn regions(&self) -> &SurfaceRegions {
         &self.regions

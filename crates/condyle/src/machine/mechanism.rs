@@ -253,9 +253,11 @@ pub enum CycleQuantity {
 }
 
 /// A joint of the body whose replacement a machine tests.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
 pub enum TestedJoint {
-    /// Knee.
+    /// A knee.
+    #[default]
     Knee,
     /// A hip.
     Hip,
@@ -285,6 +287,17 @@ impl TestedJoint {
             Self::Disc => "disc",
             Self::Ankle => "ankle",
             Self::Specimen => "specimen",
+        }
+    }
+
+    /// Returns the names of the counterface and of the bearing, such as `head` and `cup`.
+    pub const fn bodies(self) -> [&'static str; 2] {
+        match self {
+            Self::Knee => ["femur", "insert"],
+            Self::Hip => ["head", "cup"],
+            Self::Disc => ["ball", "socket"],
+            Self::Ankle => ["talus", "insert"],
+            Self::Specimen => ["counterface", "specimen"],
         }
     }
 }

@@ -9,7 +9,7 @@ use condyle::contact::{
 };
 use condyle::evolve::{Schedule, Updates, WearTest};
 use condyle::geometry::Insert;
-use condyle::machine::{Integration, TimeSettings};
+use condyle::machine::{Integration, TestedJoint, TimeSettings};
 use condyle_fem::ElasticPlastic;
 
 use super::error::{BuildError, BuildWarning};
@@ -76,7 +76,10 @@ impl Case {
                 InsertShape::Cup(_) | InsertShape::CupMesh(_) | InsertShape::Trough(_) => Some(0.0),
                 _ => None,
             },
-            insert,
+            insert: match activities[0].machine.mechanism.tests {
+                TestedJoint::Knee => insert,
+                joint => Arc::new(Insert::clone(&insert).with_one_region(joint.bodies()[1])),
+            },
             activities,
             wear: as_linked(self.wear.law()).law,
             comparison_laws: comparison_laws.collect(),

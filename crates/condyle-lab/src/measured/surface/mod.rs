@@ -260,6 +260,7 @@ fn fields(unworn: &SurfaceFields, compared: &Compared) -> SurfaceFields {
             ("scanned_mm".to_owned(), compared.scanned_mm.clone()),
             ("difference_mm".to_owned(), difference.collect()),
         ],
+        is_cup: unworn.is_cup,
     }
 }
 

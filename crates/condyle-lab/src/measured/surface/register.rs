@@ -526,7 +526,7 @@ mod tests {
         SurfaceFields {
             nodes,
             quads,
-            fields: Vec::new(),
+            ..SurfaceFields::default()
         }
     }
 
