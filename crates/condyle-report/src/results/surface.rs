@@ -121,7 +121,7 @@ impl SurfaceFields {
         if !self.is_cup {
             return self.nodes.iter().map(|node| [node.x, node.z]).collect();
         }
-        let sum: Vec3 = self.nodes.iter().map(|node| node.normalize()).sum();
+        let sum: Vec3 = self.nodes.iter().map(Vec3::normalize).sum();
         let pole = sum.normalize();
         // Anterior is perpendicular to the axis of every cup that is only inclined; of another one, next to it.
         let across = pole.cross(&Vec3::x()).normalize();
