@@ -2,7 +2,8 @@
 //
 // The bundle, which the crate of the report embeds, is committed: an installation by cargo needs no Node.
 import { build } from "esbuild";
-import { writeFileSync } from "node:fs";
+import { readFileSync, writeFileSync } from "node:fs";
+import { createHash } from "node:crypto";
 import { deflateSync } from "node:zlib";
 import { licences } from "./licences.mjs";
 
@@ -20,5 +21,9 @@ const { outputFiles } = await build({
   write: false,
 });
 writeFileSync(`${folder}/moving.js.zz`, deflateSync(outputFiles[0].contents, { level: 9 }));
+// The scripts that a report may run.
+const scripts = [readFileSync("../crates/condyle-report/src/page/loader.js"), outputFiles[0].contents];
+const hashes = scripts.map((script) => `'sha256-${createHash("sha256").update(script).digest("base64")}'`);
+writeFileSync(`${folder}/moving.hashes.txt`, `${hashes.join(" ")}\n`);
 writeFileSync(`${folder}/moving.licences.txt`, licences(["three", "uplot"]));
 console.log(`moving.js: ${outputFiles[0].contents.length} bytes`);

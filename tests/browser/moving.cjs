@@ -29,6 +29,9 @@ async function open(browser) {
   const began = Date.now();
   await page.goto(url, { waitUntil: "load" });
   await page.waitForSelector("html[data-ready] .stage canvas");
+  const height_px = await page.evaluate(() => document.documentElement.scrollHeight);
+  assert(height_px <= 5000, `the page is ${height_px} px long with everything folded`);
+  await page.locator(".more summary").click();
   await drawn(page);
   return { page, heard, ready_ms: Date.now() - began };
 }
@@ -66,7 +69,6 @@ async function controls(page) {
   await changes(page, "the femur's choice", () => choose(page, "Femur", "0"));
   await changes(page, "the slider of updates", () => move(page, "After update", 2));
   await changes(page, "another field", () => choose(page, "Colours show", "sliding_distance_mm"));
-  await changes(page, "another colour map", () => choose(page, "Colour map", "cividis"));
   await changes(page, "wear made larger", () => move(page, "Wear made larger", 20));
   await changes(page, "the section across", () => move(page, "Section at z", 0));
   await changes(page, "the section along", () => move(page, "Section at x", 0));
@@ -75,9 +77,72 @@ async function controls(page) {
   await move(page, "Section at z", 45);
   await move(page, "Section at x", 45);
   await changes(page, "a drag", () => drag(page));
+  for (const key of ["Home", "ArrowLeft", "ArrowUp", "+"]) {
+    await changes(page, `the key ${key}`, () => page.locator(".stage canvas").press(key));
+  }
+  for (const slider of await page.locator(".viewer input[type=range]").all()) {
+    assert.match((await slider.getAttribute("aria-valuetext")) ?? "", /\d|none/, "a slider has no value in words");
+  }
+  const names = await page.locator(".stage .direction").allInnerTexts();
+  assert.deepStrictEqual(names.sort(), ["Anterior", "Lateral", "Medial", "Posterior"]);
+  const marks = (await page.locator(".legend .ends span").allInnerTexts()).map(Number);
+  const steps = marks.slice(1).map((mark, at) => Number((mark - marks[at]).toPrecision(6)));
+  assert(new Set(steps).size === 1 && /^[125]0*$/.test(steps[0].toExponential()[0]), `marks of the bar: ${marks}`);
+}
+
+// Unworn places are light in 3-D, as on the flat maps.
+async function light(page) {
+  await choose(page, "Colours show", "wear_depth_mm");
+  await move(page, "After update", 0);
+  const bar = await page.$eval(".legend .bar", (bar) => getComputedStyle(bar).backgroundImage.match(/rgb\((\d+), (\d+), (\d+)\)/g));
+  const lightness = (colour) => colour.match(/\d+/g).reduce((sum, part) => sum + Number(part), 0);
+  assert(lightness(bar[0]) > 600 && lightness(bar.at(-1)) < 150, `the bar goes from ${bar[0]} to ${bar.at(-1)}`);
+}
+
+// The saved picture is a slide with title and legend.
+async function slide(page) {
+  const saved = page.waitForEvent("download");
+  await page.getByRole("button", { name: "Save picture" }).click();
+  const bytes = fs.readFileSync(await (await saved).path());
+  assert.deepStrictEqual([bytes.readUInt32BE(16), bytes.readUInt32BE(20)], [1920, 1080]);
+  if (pictures) fs.writeFileSync(path.join(pictures, "slide.png"), bytes);
+}
+
+// Without WebGL, the surface is shown from above, and follows the controls.
+async function withoutWebGl(browser) {
+  const page = await browser.newPage({ viewport: { width: 1280, height: 900 } });
+  page.setDefaultTimeout(PATIENCE_MS);
+  const heard = watch(page);
+  await page.addInitScript(() => {
+    const context = HTMLCanvasElement.prototype.getContext;
+    HTMLCanvasElement.prototype.getContext = function (kind, ...rest) {
+      return kind.startsWith("webgl") ? null : context.call(this, kind, ...rest);
+    };
+  });
+  await page.goto(url, { waitUntil: "load" });
+  await page.waitForSelector("html[data-ready] .stage canvas[data-still]");
+  assert.match(await page.locator(".stage").innerText(), /WebGL is off/);
+  await changes(page, "without WebGL, the slider of updates", () => move(page, "After update", 1));
+  await changes(page, "without WebGL, the cycle", () => move(page, "Through the cycle", 20));
+  await changes(page, "without WebGL, picking", () => page.getByRole("button", { name: "Pick the highest" }).click());
+  await keep(page, "flat");
+  assert.deepStrictEqual(heard.filter((words) => !/WebGL/.test(words)), []);
+  await page.close();
+}
+
+// The page runs no script but its own.
+async function guarded(page) {
+  const ran = await page.evaluate(() => {
+    const script = document.createElement("script");
+    script.textContent = "window.intruded = true";
+    document.body.append(script);
+    return "intruded" in window;
+  });
+  assert(!ran, "a script that is not of the page runs");
 }
 
 async function drag(page) {
+  await page.locator(".stage canvas").scrollIntoViewIfNeeded();
   const { x, y, width, height } = await page.locator(".stage canvas").boundingBox();
   await page.mouse.move(x + width / 2, y + height / 2);
   await page.mouse.down();
@@ -114,7 +179,7 @@ async function linked(page) {
 async function curves(page) {
   const stills = page.locator("svg.fig[data-chart]");
   for (const still of await stills.all()) assert(!(await still.isVisible()), "a curve is shown twice");
-  for (const box of await page.locator(".panels .curves").all()) {
+  for (const box of await page.locator(".panels .curves, .answer .curves").all()) {
     await box.scrollIntoViewIfNeeded();
     await box.locator("canvas").waitFor();
   }
@@ -138,13 +203,13 @@ async function picks(page) {
   await page.mouse.click(x + width / 2, y + height * 0.3);
   const picked = await page.locator(".picked").innerText();
   assert.match(picked, /At x .* mm:[\s\S]*Wear depth\s+[\d.]+ mm/, picked);
-  assert.match(await page.locator(".worn").innerText(), /at the picked point/);
+  assert.match(await page.locator("#moving").innerText(), /at the picked point/);
 }
 
 async function gait(page) {
   await choose(page, "Femur", "0.3");
   await page.getByRole("button", { name: "Oblique" }).click();
-  await changes(page, "the slider through the cycle", () => move(page, "Through the gait cycle", 26));
+  await changes(page, "the slider through the cycle", () => move(page, "Through the cycle", 26));
   const status = await page.locator(".status").innerText();
   assert.match(status, /% of the last cycle: \d+ N and \d+ N on the surface/, status);
   await keep(page, "gait");
@@ -178,17 +243,22 @@ async function main() {
     const mass = summary.mass_loss_mg.toPrecision(3);
     assert((await page.locator(".tiles").innerText()).includes(mass), `the page does not say ${mass} mg`);
     await controls(page);
+    await light(page);
+    await slide(page);
     await picks(page);
     await highest(page, summary);
     await linked(page);
     await curves(page);
     await gait(page);
+    assert.match(await page.locator("#licences").textContent(), /three[\s\S]*Permission is hereby granted[\s\S]*uplot/i);
     assert.deepStrictEqual(heard, [], "the page asks for other files or reports errors");
     await page.emulateMedia({ media: "print" });
     assert(!(await page.locator("#moving").isVisible()), "the 3-D view is printed");
     assert(!(await page.locator(".curves").first().isVisible()), "an interactive curve is printed");
     for (const still of await page.locator("svg.fig[data-chart]").all()) assert(await still.isVisible(), "a curve is not printed");
+    await guarded(page);
     await page.close();
+    await withoutWebGl(browser);
     const frames = await played(browser);
     console.log(`ready after ${ready_ms} ms, ${frames} frames a second, ${fs.statSync(path.join(results, "report.html")).size} bytes`);
   } finally {

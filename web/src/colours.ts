@@ -1,17 +1,16 @@
-// Colour maps with evenly rising lightness, readable by colour-blind people and in grey.
-
-export type MapName = "viridis" | "cividis";
-
-// Ninths of the maps of matplotlib (viridis: van der Walt and Smith 2015; cividis: Nuñez, Anderton and Renslow 2018).
-const STOPS: Record<MapName, number[]> = {
-  viridis: [0x440154, 0x482878, 0x3e4989, 0x31688e, 0x26828e, 0x1f9e89, 0x35b779, 0x6ece58, 0xb5de2b, 0xfde725],
-  cividis: [0x00224e, 0x0f326c, 0x3a4a6c, 0x575d6d, 0x707173, 0x8a8678, 0xa69d75, 0xc4b56c, 0xe4cf5b, 0xfee838],
-};
+// Colour maps, whose colours come with the scene, and round marks of their bars.
 
 const LEVELS = 256;
+// As on the flat maps, nothing has the colour of polyethylene.
+const BARE = "#f2f0ea";
 
-function parts(colour: number): [number, number, number] {
-  return [(colour >> 16) & 255, (colour >> 8) & 255, colour & 255];
+export type Range = [low: number, high: number];
+
+type Rgb = [number, number, number];
+
+function parts(colour: string): Rgb {
+  const all = Number.parseInt(colour.slice(1), 16);
+  return [(all >> 16) & 255, (all >> 8) & 255, all & 255];
 }
 
 // Converts a part of an sRGB colour to linear light (IEC 61966-2-1).
@@ -20,36 +19,66 @@ function linear(part: number): number {
   return share <= 0.04045 ? share / 12.92 : ((share + 0.055) / 1.055) ** 2.4;
 }
 
-function table(name: MapName): Float32Array {
-  const stops = STOPS[name];
-  const colours = new Float32Array(3 * LEVELS);
-  for (let level = 0; level < LEVELS; level++) {
-    const place = (level / (LEVELS - 1)) * (stops.length - 1);
-    const below = Math.min(Math.floor(place), stops.length - 2);
-    const [from, to] = [parts(stops[below]!), parts(stops[below + 1]!)];
-    for (let part = 0; part < 3; part++) {
-      colours[3 * level + part] = linear(from[part]! + (to[part]! - from[part]!) * (place - below));
+export class ColourMap {
+  private readonly levels: Rgb[];
+  // For each level its red, green and blue in linear light.
+  private readonly light: Float32Array;
+
+  // `colours`: at even distances from little to much, as #rrggbb.
+  constructor(private readonly colours: string[]) {
+    const stops = colours.map(parts);
+    this.levels = Array.from({ length: LEVELS }, (_, level) => between(stops, level / (LEVELS - 1)));
+    this.levels[0] = parts(BARE);
+    this.light = Float32Array.from(this.levels.flat(), linear);
+  }
+
+  // Colours values between two ends, in linear red, green and blue.
+  paint(values: ArrayLike<number>, range: Range, into: Float32Array): void {
+    for (let i = 0; i < values.length; i++) {
+      const from = 3 * level(values[i]!, range);
+      into[3 * i] = this.light[from]!;
+      into[3 * i + 1] = this.light[from + 1]!;
+      into[3 * i + 2] = this.light[from + 2]!;
     }
   }
-  return colours;
-}
 
-const TABLES: Record<MapName, Float32Array> = { viridis: table("viridis"), cividis: table("cividis") };
+  // The colour of a value as CSS.
+  css(value: number, range: Range): string {
+    return `rgb(${this.levels[level(value, range)]!.map(Math.round).join(" ")})`;
+  }
 
-// Colours values between two ends, in linear red, green and blue.
-export function paint(values: ArrayLike<number>, [low, high]: [number, number], map: MapName, into: Float32Array): void {
-  const colours = TABLES[map];
-  const scale = (LEVELS - 1) / (high > low ? high - low : 1);
-  for (let i = 0; i < values.length; i++) {
-    const level = 3 * Math.max(0, Math.min(LEVELS - 1, Math.round((values[i]! - low) * scale)));
-    into[3 * i] = colours[level]!;
-    into[3 * i + 1] = colours[level + 1]!;
-    into[3 * i + 2] = colours[level + 2]!;
+  // The map as a CSS gradient from left to right.
+  get gradient(): string {
+    return `linear-gradient(to right, ${this.colours.join(", ")})`;
+  }
+
+  fill(pen: CanvasRenderingContext2D, from: [number, number], to: [number, number]): CanvasGradient {
+    const filled = pen.createLinearGradient(...from, ...to);
+    this.colours.forEach((colour, at) => filled.addColorStop(at / (this.colours.length - 1), colour));
+    return filled;
   }
 }
 
-// The map as a CSS gradient from left to right.
-export function gradient(map: MapName): string {
-  const stops = STOPS[map].map((colour) => `#${colour.toString(16).padStart(6, "0")}`);
-  return `linear-gradient(to right, ${stops.join(", ")})`;
+function between(stops: Rgb[], share: number): Rgb {
+  const place = share * (stops.length - 1);
+  const below = Math.min(Math.floor(place), stops.length - 2);
+  const [from, to] = [stops[below]!, stops[below + 1]!];
+  return from.map((part, index) => part + (to[index]! - part) * (place - below)) as Rgb;
+}
+
+function level(value: number, [low, high]: Range): number {
+  const share = (value - low) / (high > low ? high - low : 1);
+  return Math.max(0, Math.min(LEVELS - 1, Math.round(share * (LEVELS - 1))));
+}
+
+// Round numbers between two ends, up to a third more than `count`.
+export function roundMarks([low, high]: Range, count = 5): number[] {
+  if (!(high > low)) return [low];
+  const rough = (high - low) / count;
+  const power = 10 ** Math.floor(Math.log10(rough));
+  const step = [1, 2, 5, 10].map((times) => times * power).find((step) => step >= 0.75 * rough)!;
+  const first = Math.ceil(low / step - 1e-9);
+  const last = Math.floor(high / step + 1e-9);
+  // Twelve digits remove the rounding noise of the product.
+  return Array.from({ length: last - first + 1 }, (_, at) => Number(((first + at) * step).toPrecision(12)));
 }

@@ -24,9 +24,39 @@ export function choice(options: [value: string, words: string][], changed: (valu
   return select;
 }
 
-export function slider(min: number, max: number, step: number, value: number, moved: (value: number) => void): HTMLInputElement {
-  const input = element("input", { type: "range", min, max, step, value, input: () => moved(input.valueAsNumber) });
-  return input;
+// A slider below its name and its value in words.
+export class Slider {
+  readonly box: HTMLElement;
+  readonly input: HTMLInputElement;
+  private readonly shown = element("output");
+  private static count = 0;
+
+  constructor(
+    name: string,
+    [min, max, step]: [min: number, max: number, step: number],
+    private readonly words: (value: number) => string,
+    moved: (value: number) => void,
+  ) {
+    const id = `slider-${Slider.count++}`;
+    const act = () => {
+      this.say(words(this.input.valueAsNumber));
+      moved(this.input.valueAsNumber);
+    };
+    this.input = element("input", { type: "range", id, min, max, step, input: act });
+    this.box = element("div", { class: "slider" }, element("label", { for: id }, name), this.shown, this.input);
+  }
+
+  set value(value: number) {
+    this.input.value = String(value);
+    this.say(this.words(value));
+  }
+
+  // Shows words instead of those of the value.
+  say(words: string): void {
+    if (this.shown.textContent === words) return;
+    this.shown.textContent = words;
+    this.input.setAttribute("aria-valuetext", words);
+  }
 }
 
 export function button(words: string, pressed: () => void): HTMLButtonElement {

@@ -40,8 +40,7 @@ export class Plot {
     const heading = element("figcaption", {}, withUnit(chart), positive);
     this.box = element("figure", { class: "curves" }, heading, this.shown, this.saves());
     // The final height, so that nothing moves when the plot is drawn.
-    const lines = chart.curves.length > 1 ? chart.curves.length + 1 : 1;
-    this.shown.style.minHeight = `${this.height + LEGEND_PX * lines}px`;
+    this.shown.style.minHeight = `${this.height + LEGEND_PX}px`;
     const seen = (entries: IntersectionObserverEntry[]) => this.see(entries.some((entry) => entry.isIntersecting));
     const resized = (entries: ResizeObserverEntry[]) => entries.forEach((entry) => this.fit(entry.contentRect.width));
     this.observers = [new IntersectionObserver(seen, { rootMargin: "200px" }), new ResizeObserver(resized)];
@@ -135,9 +134,10 @@ function settings(chart: Chart): Omit<uPlot.Options, "width" | "height"> {
       { ...axis, label: acrossTitle(chart), size: 26, values },
       { ...axis, size: 48, values },
     ],
+    hooks: { setLegend: [(plot: uPlot) => plot.root.toggleAttribute("data-pointed", plot.cursor.idx != null)] },
     cursor: { drag: { x: true, y: false }, sync: { key: chart.group, scales: ["x", null] as [string, null] } },
     series: [
-      { label: acrossTitle(chart), value: known("") },
+      { label: "at", value: known(chart.x_title || "%") },
       ...chart.curves.map((curve) => ({
         label: curve.name,
         stroke: style(COLOURS[curve.style] ?? `--${curve.style}`),

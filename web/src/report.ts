@@ -1,19 +1,18 @@
-// The interactive part of a report, whose scene stands in the page, compressed.
+// The interactive part of a report, and of several runs side by side; the scenes stand in the page, compressed.
 
 import { element } from "./dom";
 import { offerPictures, standalone } from "./figures";
+import { linked } from "./linked";
 import { RunView } from "./run_view";
 import { Scene, type Chart } from "./scene";
 import style from "./style.css";
+import { Viewer } from "./viewer";
 import plotStyle from "uplot/dist/uPlot.min.css";
 
-// Charts that stand next to the bodies.
-const NEXT_TO_BODIES = ["w-mass_loss_mg", "w-max_depth_mm"];
-
-function inflated(id: string): Promise<ArrayBuffer> {
-  const text = document.getElementById(id)?.textContent?.trim() ?? "";
+async function sceneOf(host: HTMLElement): Promise<Scene> {
+  const text = document.getElementById(host.dataset["scene"]!)?.textContent?.trim() ?? "";
   const bytes = Uint8Array.from(atob(text), (letter) => letter.charCodeAt(0));
-  return new Response(new Blob([bytes]).stream().pipeThrough(new DecompressionStream("deflate"))).arrayBuffer();
+  return new Scene(await new Response(new Blob([bytes]).stream().pipeThrough(new DecompressionStream("deflate"))).arrayBuffer());
 }
 
 // The still picture of a chart, which the interactive one replaces on the screen.
@@ -22,26 +21,34 @@ function stillOf({ id }: Chart): SVGSVGElement | undefined {
   return all.find(({ dataset }) => dataset["chart"] === id);
 }
 
-async function start(): Promise<void> {
-  const scene = new Scene(await inflated("scene"));
-  document.head.append(element("style", {}, plotStyle + style));
+function showRun(host: HTMLElement, scene: Scene): void {
   const svgOf = (chart: Chart) => {
     const still = stillOf(chart);
     return still && (() => standalone(still));
   };
   const view = new RunView(scene, { svgOf });
-  const worn = element("div", { class: "worn" });
   for (const plot of view.plots) {
     const still = stillOf(plot.chart);
     still?.classList.add("still");
-    if (view.viewer && NEXT_TO_BODIES.includes(plot.chart.id)) worn.append(plot.box);
-    else still?.after(plot.box);
+    still?.after(plot.box);
   }
-  worn.append(view.history);
-  const moving = document.getElementById("moving")!;
-  if (view.viewer) moving.append(view.viewer.box, worn);
-  moving.hidden = !view.viewer;
+  if (view.viewer) host.append(view.viewer.box, view.history);
+  host.hidden = !view.viewer;
+}
+
+async function start(): Promise<void> {
+  const hosts = [...document.querySelectorAll<HTMLElement>("[data-scene]")];
+  const scenes = await Promise.all(hosts.map(sceneOf));
+  document.head.append(element("style", {}, plotStyle + style));
+  if (hosts.length === 1) showRun(hosts[0]!, scenes[0]!);
+  else {
+    const viewers = scenes.map((scene) => (scene.facts.updates.length ? new Viewer(scene) : undefined));
+    viewers.forEach((viewer, index) => viewer && hosts[index]!.append(viewer.box));
+    linked(viewers.filter((viewer) => viewer !== undefined));
+  }
   offerPictures(document);
+  // What is folded away on the screen is printed.
+  addEventListener("beforeprint", () => document.querySelectorAll("details").forEach((details) => (details.open = true)));
   document.documentElement.dataset["ready"] = "yes";
 }
 

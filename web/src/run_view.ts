@@ -39,7 +39,7 @@ export class RunView {
       cycle: () => (percent) => viewer?.showPercent(percent),
     };
     this.plots = scene.charts().map((chart) => {
-      const options: PlotOptions = { height: chart.group === "wear" ? 190 : 160 };
+      const options: PlotOptions = { height: 160 };
       options.chosen = chosen[chart.group]?.(chart);
       options.svg = svgOf?.(chart);
       return new Plot(chart, options);

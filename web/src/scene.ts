@@ -1,5 +1,7 @@
 // A scene as condyle writes it: bodies, updates, cycles and charts as arrays (crates/condyle-report/src/scene).
 
+import type { Range } from "./colours";
+
 export interface CycleFacts {
   name: string;
   cycles: number;
@@ -17,9 +19,14 @@ export interface Field {
   name: string;
   label: string;
   unit: string;
+  // The colours of its flat map, from little to much.
+  colours: string[];
 }
 
 interface Facts {
+  title: string;
+  // Names of +x, -x, -z and +z.
+  directions: string[];
   // JSON has no NaN: an update whose cycles are not known has none.
   updates: (number | null)[];
   fields: Field[];
@@ -64,7 +71,7 @@ interface Entry {
   kind: "u16" | "u32" | "f64" | "q16";
   offset: number;
   length: number;
-  range?: [number, number];
+  range?: Range;
 }
 
 type Whole = Uint16Array | Uint32Array;
@@ -121,7 +128,7 @@ export class Scene {
     return this.values(`field.${name}.${update}`);
   }
 
-  fieldRange(name: string): [number, number] {
+  fieldRange(name: string): Range {
     return this.entry(`field.${name}.0`).range ?? [0, 0];
   }
 

@@ -3,6 +3,7 @@
 import {
   ArrowHelper,
   BackSide,
+  Box3,
   BufferAttribute,
   BufferGeometry,
   Color,
@@ -14,6 +15,8 @@ import {
   PerspectiveCamera,
   Raycaster,
   Scene as World,
+  Sphere,
+  Spherical,
   SphereGeometry,
   Vector2,
   Vector3,
@@ -21,8 +24,9 @@ import {
 } from "three";
 import { OrbitControls } from "three/addons/controls/OrbitControls.js";
 import { toCreasedNormals } from "three/addons/utils/BufferGeometryUtils.js";
-import { paint, type MapName } from "./colours";
+import type { ColourMap, Range } from "./colours";
 import { element } from "./dom";
+import { FlatStage } from "./flat_stage";
 import { Matter } from "./matter";
 import type { Pose, Scene } from "./scene";
 
@@ -47,6 +51,13 @@ const FEMUR = 0x9fb0bf;
 const CUT_FACE = 0xb9ad8c;
 // Edges with a larger angle stay sharp.
 const SHARP_RAD = (50 * Math.PI) / 180;
+// Distance of the eye from the middle of the bodies, in radii of the sphere around them.
+const RADII_AWAY = 3.8;
+// Turn and zoom by a key.
+const KEY_RAD = (8 * Math.PI) / 180;
+const KEY_ZOOM = 1.1;
+// Distance of the names of directions from the surface, mm.
+const NEXT_TO_MM = 5;
 // The smallest length of the scale bar on the screen, px, and its possible lengths, mm.
 const SCALE_PX = 50;
 const SCALES_MM = [0.1, 0.2, 0.5, 1, 2, 5, 10, 20, 50, 100];
@@ -56,8 +67,19 @@ export interface Force {
   newtons: number;
 }
 
+// A picture to be saved: the bodies, the names of the directions at parts of its width and height, and the scale bar.
+export interface Shot {
+  canvas: HTMLCanvasElement;
+  names: { words: string; x: number; y: number }[];
+  // The length of the bar as a part of the height, and in words; none where the picture has its own.
+  scale?: { part: number; words: string };
+}
+
 export class Stage {
+  readonly isFlat = false;
   readonly canvas: HTMLCanvasElement;
+  // Called when the view has changed.
+  onTurn: () => void = () => {};
   private readonly renderer: WebGLRenderer;
   private readonly world = new World();
   private readonly camera = new PerspectiveCamera(28, 4 / 3, 1, 2000);
@@ -72,6 +94,8 @@ export class Stage {
   private readonly inside: Mesh[];
   private readonly solids: Matter[];
   private readonly scale = element("div", { class: "scale" });
+  private readonly names: { box: HTMLElement; at: Vector3 }[];
+  private readonly bounds = new Box3();
   private readonly arrows: ArrowHelper[] = [];
   private readonly unworn: Float32Array;
   private readonly neutral = new Matrix4();
@@ -88,22 +112,26 @@ export class Stage {
     // Without a graphics card, edges are smoothed only at rest, by more pixels. Saved pictures are the last one drawn.
     this.renderer = new WebGLRenderer({ antialias: !this.isSlow, preserveDrawingBuffer: true });
     this.canvas = this.renderer.domElement;
-    this.canvas.setAttribute("role", "img");
-    this.canvas.setAttribute("aria-label", "The insert and the femur; turn by dragging, or by the buttons below");
-    host.append(this.canvas, this.scale);
+    this.canvas.setAttribute("role", "application");
+    this.canvas.setAttribute("aria-label", "The bodies in 3-D: arrow keys turn them, plus and minus zoom, Home resets the view");
+    this.canvas.tabIndex = 0;
 
     this.unworn = scene.values("surface.nodes");
     this.colours = new Float32Array(this.unworn.length);
     this.surface = new Mesh(surfaceGeometry(scene, this.colours), new Matter({ side: FrontSide }));
-    const skin = new Mesh(toCreasedNormals(bodyGeometry(scene, "skin"), SHARP_RAD), new Matter({ colour: SKIN, side: FrontSide }));
+    const skin = new Mesh(bodyGeometry(scene, "skin"), new Matter({ colour: SKIN, side: FrontSide }));
     this.inside = [this.surface, skin].map((mesh) => new Mesh(mesh.geometry, this.cutFace));
     for (const mesh of this.inside) mesh.visible = false;
     this.world.add(this.surface, skin, ...this.inside);
+    for (const mesh of [this.surface, skin]) this.bounds.expandByObject(mesh);
+    this.names = namesOf(scene, this.bounds);
+    host.append(this.canvas, this.scale, ...this.names.map(({ box }) => box));
     this.solids = [this.surface.material, skin.material, this.cutFace];
     if (scene.facts.has_femur) {
       this.femur = new Mesh(bodyGeometry(scene, "femur"), new Matter({ colour: FEMUR, isGlass: true, side: DoubleSide }));
       this.femur.renderOrder = 1;
       this.world.add(this.femur);
+      this.bounds.expandByObject(this.femur);
       this.solids.push(this.femur.material);
     }
     if (scene.facts.neutral_pose) this.neutral.copy(matrix(scene.facts.neutral_pose)).invert();
@@ -112,7 +140,11 @@ export class Stage {
     this.world.add(this.marker, this.camera);
 
     this.controls = new OrbitControls(this.camera, this.canvas);
-    this.controls.addEventListener("change", () => this.ask());
+    this.controls.addEventListener("change", () => {
+      this.ask();
+      this.onTurn();
+    });
+    this.canvas.addEventListener("keydown", (event) => this.key(event));
     this.showFemur(0.3);
     this.look("oblique");
     new ResizeObserver(() => this.fit()).observe(host);
@@ -134,8 +166,8 @@ export class Stage {
     this.ask();
   }
 
-  colour(values: Float32Array, range: [number, number], map: MapName): void {
-    paint(values, range, map, this.colours);
+  colour(values: Float32Array, range: Range, map: ColourMap): void {
+    map.paint(values, range, this.colours);
     this.surface.geometry.getAttribute("color").needsUpdate = true;
     this.ask();
   }
@@ -180,12 +212,29 @@ export class Stage {
   }
 
   look(view: View): void {
-    const bounds = this.surface.geometry.boundingSphere!;
+    const { center, radius } = this.bounds.getBoundingSphere(new Sphere());
     const direction = new Vector3(...DIRECTIONS[view]).normalize();
-    this.controls.target.copy(bounds.center);
-    this.camera.position.copy(bounds.center).addScaledVector(direction, 4.1 * bounds.radius);
+    this.controls.target.copy(center);
+    this.camera.position.copy(center).addScaledVector(direction, RADII_AWAY * radius);
     this.controls.update();
     this.ask();
+  }
+
+  // Turns and zooms by keys, about the middle of the view.
+  private key(event: KeyboardEvent): void {
+    const turns: Record<string, [number, number]> = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, -1], ArrowDown: [0, 1] };
+    const zooms: Record<string, number> = { "+": 1 / KEY_ZOOM, "=": 1 / KEY_ZOOM, "-": KEY_ZOOM };
+    const [turn, zoom] = [turns[event.key], zooms[event.key]];
+    if (event.key === "Home") this.look("oblique");
+    else if (!turn && !zoom) return;
+    event.preventDefault();
+    const { target } = this.controls;
+    const away = new Spherical().setFromVector3(this.camera.position.clone().sub(target));
+    away.theta += KEY_RAD * (turn?.[0] ?? 0);
+    away.phi += KEY_RAD * (turn?.[1] ?? 0);
+    away.radius *= zoom ?? 1;
+    this.camera.position.setFromSpherical(away.makeSafe()).add(target);
+    this.controls.update();
   }
 
   // Marks and returns the node of the surface nearest to a point on the screen; none outside of the surface.
@@ -213,11 +262,26 @@ export class Stage {
   }
 
   // Takes the view of another stage.
-  lookAs(other: Stage): void {
+  lookAs(other: Stage | FlatStage): void {
+    if (other.isFlat) return;
     this.camera.position.copy(other.camera.position);
     this.controls.target.copy(other.controls.target);
     this.controls.update();
     this.ask();
+  }
+
+  // The present view with at least `height` pixels from top to bottom; the next drawing is as before.
+  shot(height: number): Shot {
+    this.drawWith(Math.max(1, height / this.host.clientHeight));
+    const { clientWidth, clientHeight } = this.host;
+    const names = this.names.map(({ box, at }) => ({ words: box.textContent ?? "", ...this.placeOf(at) }));
+    const { width } = this.scale.getBoundingClientRect();
+    this.ask();
+    return {
+      canvas: this.canvas,
+      names: names.map(({ words, x, y }) => ({ words, x: x / clientWidth, y: y / clientHeight })),
+      scale: { part: width / clientHeight, words: this.scale.textContent ?? "" },
+    };
   }
 
   // Draws now, as finely as a picture at rest. Changes call `ask` instead, so that many are drawn once.
@@ -235,6 +299,7 @@ export class Stage {
     this.renderer.forceContextLoss();
     this.canvas.remove();
     this.scale.remove();
+    for (const { box } of this.names) box.remove();
   }
 
   private arrow(index: number): ArrowHelper {
@@ -258,6 +323,16 @@ export class Stage {
     this.renderer.setClearColor(this.paper);
     this.renderer.render(this.world, this.camera);
     this.drawScale();
+    for (const { box, at } of this.names) {
+      const { x, y } = this.placeOf(at);
+      box.style.transform = `translate(-50%,-50%) translate(${x.toFixed(1)}px,${y.toFixed(1)}px)`;
+    }
+  }
+
+  // The place of a point on the stage, px.
+  private placeOf(point: Vector3): { x: number; y: number } {
+    const seen = point.clone().project(this.camera);
+    return { x: ((1 + seen.x) / 2) * this.host.clientWidth, y: ((1 - seen.y) / 2) * this.host.clientHeight };
   }
 
   // The scale bar is right at the centre of the view.
@@ -295,6 +370,22 @@ export class Stage {
   }
 }
 
+// The names of the directions next to the sides of the insert.
+function namesOf(scene: Scene, bounds: Box3): { box: HTMLElement; at: Vector3 }[] {
+  const { min, max } = bounds;
+  const middle = bounds.getCenter(new Vector3());
+  const places: [number, number][] = [
+    [max.x + NEXT_TO_MM, middle.z],
+    [min.x - NEXT_TO_MM, middle.z],
+    [middle.x, min.z - NEXT_TO_MM],
+    [middle.x, max.z + NEXT_TO_MM],
+  ];
+  return scene.facts.directions.map((words, index) => {
+    const [x, z] = places[index]!;
+    return { box: element("span", { class: "direction" }, words), at: new Vector3(x, middle.y, z) };
+  });
+}
+
 function surfaceGeometry(scene: Scene, colours: Float32Array): BufferGeometry {
   const quads = scene.whole("surface.quads");
   const triangles = new Uint32Array(1.5 * quads.length);
@@ -308,7 +399,8 @@ function surfaceGeometry(scene: Scene, colours: Float32Array): BufferGeometry {
 }
 
 function bodyGeometry(scene: Scene, name: string): BufferGeometry {
-  return geometryOf(scene.values(`${name}.nodes`), Uint32Array.from(scene.whole(`${name}.triangles`)));
+  const geometry = geometryOf(scene.values(`${name}.nodes`), Uint32Array.from(scene.whole(`${name}.triangles`)));
+  return toCreasedNormals(geometry, SHARP_RAD);
 }
 
 function geometryOf(places: Float32Array, triangles: Uint32Array): BufferGeometry {
@@ -337,12 +429,11 @@ function isDrawnByProcessor(): boolean {
   return found === null;
 }
 
-// A stage, or a message where the browser has no WebGL.
-export function stageOr(host: HTMLElement, scene: Scene): Stage | undefined {
+// The bodies in three dimensions, or the surface from above where the browser has no WebGL.
+export function stageOf(host: HTMLElement, scene: Scene): Stage | FlatStage {
   try {
     return new Stage(host, scene);
   } catch {
-    host.append(element("p", { class: "note" }, "This browser cannot draw in three dimensions, since WebGL is off."));
-    return undefined;
+    return new FlatStage(host, scene);
   }
 }

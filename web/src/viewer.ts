@@ -1,12 +1,14 @@
 // The stage with its controls: update or instant, field, colours, sections and views.
 
-import { gradient, type MapName } from "./colours";
-import { button, choice, element, labelled, slider } from "./dom";
+import { ColourMap, roundMarks, type Range } from "./colours";
+import { button, choice, element, labelled, Slider } from "./dom";
+import type { FlatStage } from "./flat_stage";
 import { forces, shares } from "./forces";
 import { cyclesInWords, inDigits } from "./digits";
 import { withUnit } from "./plots";
 import { savePicture } from "./save";
-import { matrixOf, stageOr, type Axis, type Force, type Stage, type View } from "./stage";
+import { slide } from "./slide";
+import { matrixOf, stageOf, type Axis, type Force, type Stage, type View } from "./stage";
 import type { CycleFacts, Field, Pressed, Scene } from "./scene";
 
 // The pressure through the cycle, by which the surface can be coloured besides the fields of an update.
@@ -17,6 +19,8 @@ const SECONDS_A_CYCLE = 4;
 const READ_MS = 150;
 // Range of the section slider on both sides of the middle, mm.
 const SECTION_MM = 45;
+// Height of the bodies in a saved picture, px.
+const SLIDE_PX = 850;
 // A point farther than this from every node is outside of the surface, mm.
 const REACH_MM = 3;
 
@@ -26,6 +30,13 @@ const VIEWS: [View, string][] = [
   ["front", "From the front"],
   ["side", "From the side"],
 ];
+
+// What is shown; absent parts stay as they are.
+export interface Chosen {
+  update?: number;
+  field?: string;
+  instant?: number;
+}
 
 interface Cycle {
   facts: CycleFacts;
@@ -38,14 +49,15 @@ interface Cycle {
 
 export class Viewer {
   readonly box = element("div", { class: "viewer" });
-  readonly stage: Stage | undefined;
+  readonly stage: Stage | FlatStage;
   // Called with the percent of the cycle that is shown.
   onPercent: (percent: number) => void = () => {};
   // Called with the node that was picked.
   onPick: (node: number) => void = () => {};
+  // Called when update, field or instant have been chosen.
+  onChoose: (chosen: Chosen) => void = () => {};
   private readonly cycles: Cycle[];
   private field: string;
-  private map: MapName = "viridis";
   private update: number;
   private instant = 0;
   private exaggeration = 1;
@@ -62,23 +74,31 @@ export class Viewer {
   private readonly picked = element("div", { class: "picked", "aria-live": "polite" });
   private readonly bar = element("div", { class: "bar" });
   private readonly barEnds = element("div", { class: "ends" });
+  private readonly barTitle = element("span", { class: "bar-title" });
+  private ranges = new Map<string, Range>();
+  private readonly maps: Map<string, ColourMap>;
   private readonly fields: HTMLSelectElement;
-  private readonly updates: HTMLInputElement;
-  private readonly instants: HTMLInputElement;
+  private readonly updates: Slider;
+  private readonly instants: Slider;
   private readonly play = button("Play", () => this.togglePlay());
 
   constructor(private readonly scene: Scene) {
     const { updates, fields } = scene.facts;
     const host = element("div", { class: "stage" });
-    this.stage = stageOr(host, scene);
+    this.stage = stageOf(host, scene);
     this.update = updates.length - 1;
+    this.maps = new Map(fields.map(({ name, colours }) => [name, new ColourMap(colours)]));
     this.field = (fields.find(({ name }) => name === "wear_depth_mm") ?? fields[0])?.name ?? IN_CYCLE;
     this.cycles = cyclesOf(scene);
     this.cycle = this.cycles.at(-1);
-    this.fields = choice(this.shownFields(), (field) => this.colourBy(field));
+    this.fields = choice(this.shownFields(), (field) => this.chooseField(field));
     this.fields.value = this.field;
-    this.updates = slider(0, updates.length - 1, 1, this.update, (update) => this.showUpdate(update));
-    this.instants = slider(0, Math.max(0, (this.cycle?.percents.length ?? 1) - 1), 1, 0, (instant) => this.showInstant(instant));
+    const after = (update: number) => cyclesInWords(updates[update] ?? null);
+    this.updates = new Slider("After update", [0, updates.length - 1, 1], after, (update) => this.chooseUpdate(update));
+    const last = Math.max(0, (this.cycle?.percents.length ?? 1) - 1);
+    const percent = (instant: number) => `${inDigits(this.cycle?.percents[instant] ?? 0)} %`;
+    this.instants = new Slider("Through the cycle", [0, last, 1], percent, (instant) => this.chooseInstant(instant));
+    this.instants.value = 0;
     this.box.append(host, this.legend(), this.status, this.controls(), this.picked);
     this.listen();
     this.showUpdate(this.update);
@@ -88,11 +108,11 @@ export class Viewer {
     this.stop();
     this.isInCycle = false;
     this.update = update;
-    this.updates.value = String(update);
+    this.updates.value = update;
     if (this.field === IN_CYCLE) this.field = this.fields.value = this.scene.facts.fields[0]?.name ?? IN_CYCLE;
     this.surface = this.scene.surface(update) as Float32Array<ArrayBuffer>;
-    this.stage?.moveFemur();
-    this.stage?.press([]);
+    this.stage.moveFemur();
+    this.stage.press([]);
     this.place();
     this.say(`After ${cyclesInWords(this.scene.facts.updates[update] ?? null)}`);
   }
@@ -103,12 +123,12 @@ export class Viewer {
     if (!this.isInCycle) this.enter(cycle);
     this.instant = instant;
     const isRead = this.isToBeRead();
-    if (isRead) this.instants.value = String(instant);
+    if (isRead) this.instants.value = instant;
     const pressed = cycle.pressed[instant];
-    this.stage?.moveFemur(matrixOf(cycle.poses.subarray(12 * instant, 12 * instant + 12)));
+    this.stage.moveFemur(matrixOf(cycle.poses.subarray(12 * instant, 12 * instant + 12)));
     if (pressed) {
       const found = forces(pressed, this.surface, this.share);
-      this.stage?.press(found);
+      this.stage.press(found);
       if (isRead) this.describe(cycle, instant, found);
     }
     this.recolour();
@@ -133,15 +153,36 @@ export class Viewer {
 
   // Takes the view and the field of another viewer.
   lookAs(other: Viewer): void {
-    if (other.stage) this.stage?.lookAs(other.stage);
+    this.stage.lookAs(other.stage);
     if (!this.scene.facts.fields.some(({ name }) => name === other.field)) return;
     this.fields.value = other.field;
     this.colourBy(other.field);
   }
 
+  // Takes what was chosen in another viewer.
+  choose({ update, field, instant }: Chosen): void {
+    if (update !== undefined && update < this.scene.facts.updates.length) this.showUpdate(update);
+    if (instant !== undefined) this.showInstant(Math.min(instant, (this.cycle?.percents.length ?? 1) - 1));
+    if (field === undefined || ![...this.fields.options].some(({ value }) => value === field)) return;
+    this.fields.value = field;
+    this.colourBy(field);
+  }
+
+  // Colours the field as in the other viewers, which have larger values.
+  widen(ranges: Map<string, Range>): void {
+    this.ranges = ranges;
+    this.recolour();
+  }
+
+  // The range of each field.
+  ownRanges(): Map<string, Range> {
+    const names = [...this.scene.facts.fields.map(({ name }) => name), IN_CYCLE];
+    return new Map(names.map((name) => [name, this.rangeOf(name)]));
+  }
+
   dispose(): void {
     this.stop();
-    this.stage?.dispose();
+    this.stage.dispose();
   }
 
   // While the cycle plays, text and controls change no more often than can be read, since every change is painted.
@@ -174,26 +215,40 @@ export class Viewer {
   }
 
   private place(): void {
-    this.stage?.place(this.surface, this.exaggeration);
-    if (this.node !== undefined) this.stage?.mark(this.node);
+    this.stage.place(this.surface, this.exaggeration);
+    if (this.node !== undefined) this.stage.mark(this.node);
     this.recolour();
   }
 
   private recolour(): void {
     const range = this.range();
-    this.stage?.colour(this.shownValues(), range, this.map);
+    this.stage.colour(this.shownValues(), range, this.map());
     this.drawLegend(range);
   }
 
-  private drawLegend(range: [number, number]): void {
-    const shown = [this.map, this.field, ...range].join();
+  private drawLegend(range: Range): void {
+    const shown = [this.field, ...range].join();
     if (shown === this.legendShown) return;
     this.legendShown = shown;
-    this.bar.style.background = gradient(this.map);
-    const shownField = this.scene.facts.fields.find(({ name }) => name === this.field);
-    const unit = shownField?.unit ?? "MPa";
-    const ends = [0, 0.25, 0.5, 0.75, 1].map((part) => inDigits(range[0] + part * (range[1] - range[0])));
-    this.barEnds.replaceChildren(...ends.map((end, index) => element("span", {}, index === 4 ? `${end} ${unit}` : end)));
+    this.bar.style.background = this.map().gradient;
+    const [low, high] = range;
+    const marks = roundMarks(range).map((mark) => {
+      const made = element("span", {}, inDigits(mark));
+      made.style.left = `${high > low ? (100 * (mark - low)) / (high - low) : 0}%`;
+      return made;
+    });
+    this.barEnds.replaceChildren(...marks);
+    this.barTitle.textContent = this.fieldInWords();
+  }
+
+  private fieldInWords(): string {
+    return this.shownFields().find(([name]) => name === this.field)?.[1] ?? "";
+  }
+
+  // The pressure of an instant has the colours of the peak pressure.
+  private map(): ColourMap {
+    const name = this.field === IN_CYCLE ? "peak_pressure_mpa" : this.field;
+    return this.maps.get(name) ?? this.maps.values().next().value!;
   }
 
   private shownValues(): Float32Array {
@@ -205,9 +260,28 @@ export class Viewer {
     return values;
   }
 
-  private range(): [number, number] {
-    if (this.field !== IN_CYCLE) return this.scene.fieldRange(this.field);
+  private range(): Range {
+    return this.ranges.get(this.field) ?? this.rangeOf(this.field);
+  }
+
+  private rangeOf(field: string): Range {
+    if (field !== IN_CYCLE) return this.scene.fieldRange(field);
     return [0, this.cycle ? this.scene.highestPressure(this.cycle.facts) : 1];
+  }
+
+  private chooseUpdate(update: number): void {
+    this.showUpdate(update);
+    this.onChoose({ update });
+  }
+
+  private chooseInstant(instant: number): void {
+    this.showInstant(instant);
+    this.onChoose({ instant });
+  }
+
+  private chooseField(field: string): void {
+    this.colourBy(field);
+    this.onChoose({ field });
   }
 
   private togglePlay(): void {
@@ -218,7 +292,7 @@ export class Viewer {
     const frame = (now: number) => {
       const part = ((now - began) / 1000 / SECONDS_A_CYCLE) % 1;
       const instant = Math.max(0, Math.floor(part * count));
-      if (instant !== this.instant || !this.isInCycle) this.showInstant(instant);
+      if (instant !== this.instant || !this.isInCycle) this.chooseInstant(instant);
       this.playing = requestAnimationFrame(frame);
     };
     this.playing = requestAnimationFrame(frame);
@@ -227,7 +301,7 @@ export class Viewer {
   private stop(): void {
     cancelAnimationFrame(this.playing);
     this.playing = 0;
-    this.instants.value = String(this.instant);
+    this.instants.value = this.instant;
     this.play.textContent = "Play";
   }
 
@@ -242,38 +316,37 @@ export class Viewer {
   }
 
   private legend(): HTMLElement {
-    return element("div", { class: "legend" }, this.bar, this.barEnds);
+    return element("div", { class: "legend" }, this.barTitle, this.bar, this.barEnds);
   }
 
   private controls(): HTMLElement {
     const box = element("div", { class: "controls" });
-    box.append(labelled("Colours show", this.fields), labelled("After update", this.updates));
-    if (this.cycles.length) box.append(labelled("Through the gait cycle", this.instants), this.play);
-    if (this.cycles.length > 1) box.append(labelled("Cycle", this.cycleChoice()));
-    box.append(
-      labelled(
-        "Wear made larger",
-        slider(1, 20, 1, 1, (times) => this.exaggerate(times)),
-      ),
-    );
-    box.append(labelled("Section at z", this.sectionSlider("z")), labelled("Section at x", this.sectionSlider("x")));
-    if (this.scene.facts.has_femur) box.append(labelled("Femur", this.femurChoice()));
-    const maps: [string, string][] = [
-      ["viridis", "Viridis"],
-      ["cividis", "Cividis"],
-    ];
-    box.append(
-      labelled(
-        "Colour map",
-        choice(maps, (map) => this.useMap(map as MapName)),
-      ),
-    );
+    box.append(labelled("Colours show", this.fields), this.updates.box);
+    if (this.cycles.length) box.append(this.instants.box, this.play);
     box.append(element("div", { class: "views" }, ...this.viewButtons()));
+    const more = this.moreControls();
+    if (more.childElementCount) box.append(element("details", { class: "more" }, element("summary", {}, "Cycle, sections and femur"), more));
+    return box;
+  }
+
+  private moreControls(): HTMLElement {
+    const box = element("div", { class: "controls" });
+    if (this.cycles.length > 1) box.append(labelled("Cycle", this.cycleChoice()));
+    if (this.stage.isFlat) return box;
+    const larger = new Slider(
+      "Wear made larger",
+      [1, 20, 1],
+      (times) => `${times} times`,
+      (times) => this.exaggerate(times),
+    );
+    larger.value = 1;
+    box.append(larger.box, this.sectionSlider("z"), this.sectionSlider("x"));
+    if (this.scene.facts.has_femur) box.append(labelled("Femur", this.femurChoice()));
     return box;
   }
 
   private viewButtons(): HTMLElement[] {
-    const views = VIEWS.map(([view, words]) => button(words, () => this.stage?.look(view)));
+    const views = this.stage.isFlat ? [] : VIEWS.map(([view, words]) => button(words, () => this.stage.look(view)));
     return [...views, button("Pick the highest", () => this.pickHighest()), button("Save picture", () => this.savePicture())];
   }
 
@@ -296,12 +369,15 @@ export class Viewer {
       ["1", "solid"],
       ["0", "hidden"],
     ];
-    return choice(options, (opacity) => this.stage?.showFemur(Number(opacity)));
+    return choice(options, (opacity) => this.stage.showFemur(Number(opacity)));
   }
 
-  private sectionSlider(axis: Axis): HTMLInputElement {
-    const moved = (at: number) => this.stage?.cut(axis, at >= SECTION_MM ? undefined : at);
-    return slider(-SECTION_MM, SECTION_MM, 1, SECTION_MM, moved);
+  private sectionSlider(axis: Axis): HTMLElement {
+    const moved = (at: number) => this.stage.cut(axis, at >= SECTION_MM ? undefined : at);
+    const words = (at: number) => (at >= SECTION_MM ? "none" : `${inDigits(at)} mm`);
+    const slider = new Slider(`Section at ${axis}`, [-SECTION_MM, SECTION_MM, 1], words, moved);
+    slider.value = SECTION_MM;
+    return slider.box;
   }
 
   private exaggerate(times: number): void {
@@ -309,20 +385,14 @@ export class Viewer {
     this.place();
   }
 
-  private useMap(map: MapName): void {
-    this.map = map;
-    this.recolour();
-  }
-
   private savePicture(): void {
-    if (!this.stage) return;
-    this.stage.draw();
-    savePicture(`${this.field}.png`, this.stage.canvas);
+    const { title } = this.scene.facts;
+    const legend = { title, field: this.fieldInWords(), state: this.status.textContent ?? "", range: this.range(), map: this.map() };
+    savePicture(`${this.field}.png`, slide(this.stage.shot(SLIDE_PX), legend));
   }
 
   private listen(): void {
-    const canvas = this.stage?.canvas;
-    if (!canvas) return;
+    const { canvas } = this.stage;
     let began = [0, 0];
     canvas.addEventListener("pointerdown", (event) => (began = [event.clientX, event.clientY]));
     canvas.addEventListener("pointerup", (event) => {
@@ -332,21 +402,21 @@ export class Viewer {
   }
 
   private pick(event: PointerEvent): void {
-    const node = this.stage?.pick(event);
-    if (node !== undefined) this.choose(node);
+    const node = this.stage.pick(event);
+    if (node !== undefined) this.chooseNode(node);
   }
 
   // Picks the node nearest to x, z, mm, seen from above, within a few millimetres.
   pickAt(x: number, z: number): void {
     const away = (node: number) => Math.hypot(this.surface[3 * node]! - x, this.surface[3 * node + 2]! - z);
     const node = this.best((one) => -away(one));
-    if (away(node) <= REACH_MM) this.choose(node);
+    if (away(node) <= REACH_MM) this.chooseNode(node);
   }
 
   // Picks the node with the highest value of the field that is shown.
   pickHighest(): void {
     const values = this.shownValues();
-    this.choose(this.best((node) => values[node]!));
+    this.chooseNode(this.best((node) => values[node]!));
   }
 
   private best(score: (node: number) => number): number {
@@ -360,9 +430,9 @@ export class Viewer {
     return [...this.surface.subarray(3 * node, 3 * node + 3)] as [number, number, number];
   }
 
-  private choose(node: number): void {
+  private chooseNode(node: number): void {
     this.node = node;
-    this.stage?.mark(node);
+    this.stage.mark(node);
     const [x, y, z] = this.placeOf(node);
     const place = `x ${inDigits(x)}, y ${inDigits(y)}, z ${inDigits(z)} mm`;
     const rows = this.valuesAt(node).map(([{ label, unit }, value]) =>

@@ -1,6 +1,7 @@
 import assert from "node:assert/strict";
 import test from "node:test";
 import { chartSvg } from "../src/chart_svg";
+import { ColourMap, roundMarks } from "../src/colours";
 import { aligned, csv } from "../src/plots";
 import { cyclesInWords, inDigits } from "../src/digits";
 import { Scene, type Chart } from "../src/scene";
@@ -39,6 +40,21 @@ test("a chart becomes an SVG file with escaped text", () => {
   const svg = chartSvg(CHART);
   assert.ok(svg.includes("Mass &lt;loss>") && !svg.includes("NaN"));
   assert.equal(svg.match(/<polyline/g)?.length, 2);
+});
+
+test("a colour bar has round marks inside of its range", () => {
+  assert.deepEqual(roundMarks([0, 0.2437]), [0, 0.05, 0.1, 0.15, 0.2]);
+  assert.deepEqual(roundMarks([-3, 7.2]), [-2, 0, 2, 4, 6]);
+  assert.deepEqual(roundMarks([2, 2]), [2]);
+});
+
+test("nothing has the colour of polyethylene, and much is the last colour", () => {
+  const map = new ColourMap(["#fcfdbf", "#721f81", "#0c0927"]);
+  assert.equal(map.css(0, [0, 4]), "rgb(242 240 234)");
+  assert.equal(map.css(4, [0, 4]), "rgb(12 9 39)");
+  const light = new Float32Array(6);
+  map.paint([0, 4], [0, 4], light);
+  assert.ok(light[0]! > 0.8 && light[3]! < 0.01);
 });
 
 test("numbers read as in the report", () => {

@@ -1,6 +1,7 @@
 import assert from "node:assert/strict";
 import test from "node:test";
 import { femurByName } from "../src/page/dropped";
+import { packed, unpacked } from "../src/page/memory";
 import { CaseSchema } from "../src/page/schema";
 import { zip } from "../src/page/zip";
 
@@ -28,6 +29,16 @@ test("the schema offers tables, keys and words", () => {
     ['"linear"', '"log"'],
   );
   assert.equal(schema.about("contact", "law"), "The pressure law.");
+});
+
+test("a case comes back from its address", async () => {
+  const text = 'title = "Gelenk − 膝"\n[contact]\nfriction = 0.1\n'.repeat(40);
+  const letters = await packed(text);
+  assert.match(letters, /^[\w-]+$/);
+  assert.ok(letters.length < text.length / 4);
+  assert.equal(await unpacked(letters), text);
+  assert.equal(await unpacked(letters.slice(5)), undefined);
+  assert.equal(await unpacked("%"), undefined);
 });
 
 test("the same files give the same zip", async () => {

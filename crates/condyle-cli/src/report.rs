@@ -45,12 +45,12 @@ pub fn report(arguments: &Report) -> Done {
         folders => {
             let runs = folders.iter().map(|folder| Run::read(folder));
             let runs: Vec<Run> = runs.collect::<Result<_, _>>()?;
-            let page = arguments.out.as_deref().unwrap_or(Path::new("runs.html"));
-            output::write_file(page, runs_html(&runs).as_bytes(), arguments.force)?;
             for run in &runs {
                 let left_out = run.results.left_out.iter();
                 output::warn(left_out.map(|why| format!("left out of {}: {why}", run.name)));
             }
+            let page = arguments.out.as_deref().unwrap_or(Path::new("runs.html"));
+            output::write_file(page, runs_html(runs).as_bytes(), arguments.force)?;
             folders.iter().for_each(|folder| note_unfinished(folder));
             output::print(&format!("wrote {}\n", page.display()))
         }

@@ -1,116 +1,324 @@
 //! Simplification of a body for pictures.
 
-use std::collections::BTreeMap;
+use std::{cmp::Reverse, collections::BinaryHeap};
 
-use crate::{Vec3, triangle_mesh::TriangleMesh};
+use crate::{CurvedMesh, Vec3, triangle_mesh::TriangleMesh};
 
-/// Cosine of the angle, 30 degrees, from which an edge is visibly sharp.
-const SHARP_COSINE: f64 = 0.866;
-/// Factor on the edge of the grid, and how often it is applied: where border and sharp edges take many triangles, larger
-/// cubes would spoil the surface between them.
-const WIDER: f64 = 1.1;
-const MAX_WIDENINGS: i32 = 3;
+/// Deviation of a body that is simplified for a picture, mm: less than a pixel of a picture that shows the whole body.
+pub const PICTURE_DEVIATION_MM: f64 = 0.1;
+/// Cosine of the largest angle, 25 degrees, between a triangle and the original triangle that it came from: shading depends
+/// on normals more than on places.
+const LEAST_COSINE: f64 = 0.906;
+/// Cost of the length of an edge, relative to that of a distance: on a plane, the shortest edges collapse first, which
+/// gives triangles of similar sizes.
+const COST_OF_LENGTH: f64 = 1e-4;
 
-/// The vertices that become one: those in a cube of a grid, or a single one of the border.
-#[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
-enum Cell {
-    Cube([i64; 3]),
-    Border(u32),
-}
-
-/// Returns a body of at most `max` triangles, or of more if border and sharp edges need them; a clone if the body has no
-/// more than `max`.
+/// Returns a body of fewer triangles that differs from `body` by at most `deviation_mm`.
 ///
-/// Border and sharp edges are unchanged. In each cube of a grid, the other vertices are replaced by the one nearest to
-/// their mean, so that all vertices stay on the surface, and a triangle of edge `h` deviates from a surface of radius
-/// `R` by up to `h^2 / (8 R)`.
-pub fn coarser(body: &TriangleMesh, max: usize) -> TriangleMesh {
-    if body.triangles.len() <= max {
-        return body.clone();
+/// Edges collapse in the order of their quadric error [garland-heckbert1997], computed from the present triangles
+/// [lindstrom-turk1998]. The vertices of the result are vertices of `body`; those of borders, and of edges with more than
+/// two triangles, all stay, and a closed body stays closed. Each vertex of `body` is within `deviation_mm` of the result, and
+/// the middles of the triangles and edges of the result are within `deviation_mm` of `body`.
+pub fn coarser(body: &TriangleMesh, deviation_mm: f64) -> TriangleMesh {
+    let mut collapses = Collapses::new(body, deviation_mm);
+    while let Some(vertex) = collapses.cheapest() {
+        collapses.remove(vertex);
     }
-    // A cube cuts a square out of the surface, which becomes two triangles.
-    let edge = (2.0 * area(body) / max as f64).sqrt();
-    let border = border(body);
-    let mut coarse = clustered(body, edge, &border);
-    for times in 1..=MAX_WIDENINGS {
-        if coarse.triangles.len() <= max {
-            break;
-        }
-        coarse = clustered(body, edge * WIDER.powi(times), &border);
-    }
-    coarse
+    collapses.into_mesh()
 }
 
-fn area(body: &TriangleMesh) -> f64 {
-    let normals = (0..body.triangles.len()).map(|triangle| normal(body, triangle));
-    normals.map(|normal| normal.norm() / 2.0).sum()
+/// A vertex in the queue: that of least cost leaves first.
+#[derive(Clone, Copy, PartialEq)]
+struct Candidate {
+    cost: f64,
+    vertex: u32,
+}
+
+impl Eq for Candidate {}
+
+impl PartialOrd for Candidate {
+    fn partial_cmp(&self, other: &Self) -> Option<std::cmp::Ordering> {
+        Some(self.cmp(other))
+    }
+}
+
+impl Ord for Candidate {
+    fn cmp(&self, other: &Self) -> std::cmp::Ordering {
+        let costs = self.cost.total_cmp(&other.cost);
+        costs.then(self.vertex.cmp(&other.vertex))
+    }
+}
+
+struct Collapses<'a> {
+    body: &'a TriangleMesh,
+    /// The triangles of the body around each vertex.
+    originals: Vec<Vec<u32>>,
+    triangles: Vec<[u32; 3]>,
+    /// The unit normals of the original triangles.
+    normals: Vec<Vec3>,
+    /// The present triangles around each vertex; none around a removed one.
+    around: Vec<Vec<u32>>,
+    is_fixed: Vec<bool>,
+    /// The removed vertices that are next to each triangle.
+    removed: Vec<Vec<u32>>,
+    /// How often the surroundings of each vertex have changed: its candidates of before are void.
+    stamps: Vec<u32>,
+    queue: BinaryHeap<(Reverse<Candidate>, u32)>,
+    deviation2: f64,
+}
+
+impl<'a> Collapses<'a> {
+    fn new(body: &'a TriangleMesh, deviation_mm: f64) -> Self {
+        let normal = |triangle| {
+            let normal = normal(&body.corners(triangle));
+            normal.try_normalize(0.0).unwrap_or_default()
+        };
+        let mut collapses = Self {
+            body,
+            originals: body.triangles_around(),
+            triangles: body.triangles.clone(),
+            normals: (0..body.triangles.len()).map(normal).collect(),
+            around: body.triangles_around(),
+            is_fixed: border(body),
+            removed: vec![Vec::new(); body.triangles.len()],
+            stamps: vec![0; body.vertices.len()],
+            queue: BinaryHeap::new(),
+            deviation2: deviation_mm.powi(2),
+        };
+        for vertex in 0..body.vertices.len() as u32 {
+            collapses.offer(vertex);
+        }
+        collapses
+    }
+
+    /// Puts a vertex into the queue, with the cost of its cheapest collapse, unless it is fixed.
+    fn offer(&mut self, vertex: u32) {
+        if !self.is_fixed[vertex as usize]
+            && let Some(&(cost, _)) = self.targets(vertex).first()
+        {
+            let candidate = Reverse(Candidate { cost, vertex });
+            self.queue.push((candidate, self.stamps[vertex as usize]));
+        }
+    }
+
+    /// Takes the vertex of least cost from the queue; those whose surroundings have changed since are dropped.
+    fn cheapest(&mut self) -> Option<u32> {
+        loop {
+            let (Reverse(next), stamp) = self.queue.pop()?;
+            if stamp == self.stamps[next.vertex as usize] {
+                return Some(next.vertex);
+            }
+        }
+    }
+
+    /// Returns the vertices that `vertex` may move to, each after its cost, the cheapest first.
+    fn targets(&self, vertex: u32) -> Vec<(f64, u32)> {
+        let neighbours = self.neighbours(vertex).into_iter();
+        let mut targets: Vec<_> = neighbours.map(|to| (self.cost(vertex, to), to)).collect();
+        targets.sort_by(|one, two| one.0.total_cmp(&two.0));
+        targets
+    }
+
+    /// Returns the sum of area times squared distance to the planes of the triangles around `from`, at `to`.
+    fn cost(&self, from: u32, to: u32) -> f64 {
+        let edge = self.body.vertices[to as usize] - self.body.vertices[from as usize];
+        let around = self.around[from as usize].iter();
+        let planes: f64 = around
+            .map(|&triangle| self.off_plane(triangle, &edge))
+            .sum();
+        planes + COST_OF_LENGTH * edge.norm_squared()
+    }
+
+    fn off_plane(&self, triangle: u32, edge: &Vec3) -> f64 {
+        let normal = normal(&self.corners(triangle));
+        normal.dot(edge).powi(2) / normal.norm().max(f64::MIN_POSITIVE)
+    }
+
+    fn neighbours(&self, vertex: u32) -> Vec<u32> {
+        let around = self.around[vertex as usize].iter();
+        let corners = around.flat_map(|&triangle| self.triangles[triangle as usize]);
+        let mut neighbours: Vec<u32> = corners.filter(|&corner| corner != vertex).collect();
+        neighbours.sort_unstable();
+        neighbours.dedup();
+        neighbours
+    }
+
+    fn corners(&self, triangle: u32) -> [Vec3; 3] {
+        self.places(self.triangles[triangle as usize])
+    }
+
+    fn places(&self, corners: [u32; 3]) -> [Vec3; 3] {
+        corners.map(|vertex| self.body.vertices[vertex as usize])
+    }
+
+    /// Removes a vertex by its cheapest permitted collapse, if there is one.
+    fn remove(&mut self, from: u32) {
+        for (_, to) in self.targets(from) {
+            if !self.is_manifold(from, to) {
+                continue;
+            }
+            let moved = self.moved(from, to);
+            if self.keeps_normals(&moved)
+                && let Some(next_to) = self.next_to(from, &moved)
+                && self.keeps_middles(&moved, &next_to)
+            {
+                return self.collapse(from, &moved, &next_to);
+            }
+        }
+    }
+
+    /// Returns whether a collapse keeps every edge at two triangles.
+    fn is_manifold(&self, from: u32, to: u32) -> bool {
+        let (of_from, of_to) = (self.neighbours(from), self.neighbours(to));
+        let shared = of_from
+            .iter()
+            .filter(|one| of_to.binary_search(one).is_ok());
+        // With three triangles around it, the collapse could leave two coincident triangles.
+        self.around[from as usize].len() > 3 && shared.count() == 2
+    }
+
+    /// Returns the triangles that a collapse leaves, with their new corners.
+    fn moved(&self, from: u32, to: u32) -> Vec<(u32, [u32; 3])> {
+        let renamed = |corner| if corner == from { to } else { corner };
+        let around = self.around[from as usize].iter();
+        let triangles = around.map(|&triangle| (triangle, self.triangles[triangle as usize]));
+        let left = triangles.filter(|(_, corners)| !corners.contains(&to));
+        left.map(|(triangle, corners)| (triangle, corners.map(renamed)))
+            .collect()
+    }
+
+    fn keeps_normals(&self, moved: &[(u32, [u32; 3])]) -> bool {
+        moved.iter().all(|&(triangle, corners)| {
+            let normal = normal(&self.places(corners));
+            let size = normal.norm();
+            size > 0.0 && self.normals[triangle as usize].dot(&normal) >= LEAST_COSINE * size
+        })
+    }
+
+    /// Returns whether the middles of the moved triangles, and of their edges, are near the body.
+    fn keeps_middles(&self, moved: &[(u32, [u32; 3])], next_to: &[(u32, u32)]) -> bool {
+        let removed = || next_to.iter().map(|(vertex, _)| *vertex);
+        moved.iter().all(|&(_, corners)| {
+            let [a, b, c] = self.places(corners);
+            let middles = [a + b, b + c, c + a].map(|sum| sum / 2.0);
+            let mut middles = middles.into_iter().chain([(a + b + c) / 3.0]);
+            middles.all(|middle| self.is_near_body(removed().chain(corners), &middle))
+        })
+    }
+
+    /// Returns whether a point is near the original triangles around the nearest of some vertices.
+    fn is_near_body(&self, vertices: impl Iterator<Item = u32>, point: &Vec3) -> bool {
+        let away = |vertex: u32| (self.body.vertices[vertex as usize] - point).norm_squared();
+        let nearest = vertices.min_by(|&one, &two| away(one).total_cmp(&away(two)));
+        let around = nearest.map(|vertex| &self.originals[vertex as usize]);
+        let mut around = around.into_iter().flatten();
+        around.any(|&triangle| self.is_near(&self.body.corners(triangle as usize), point))
+    }
+
+    fn is_near(&self, corners: &[Vec3; 3], point: &Vec3) -> bool {
+        CurvedMesh::distance2_to_triangle(corners, point) <= self.deviation2
+    }
+
+    /// Returns each vertex that a collapse removes or has to assign again, with the nearest of the moved triangles; `None`
+    /// if one is too far from all.
+    fn next_to(&self, from: u32, moved: &[(u32, [u32; 3])]) -> Option<Vec<(u32, u32)>> {
+        let around = self.around[from as usize].iter();
+        let removed = around.flat_map(|&triangle| &self.removed[triangle as usize]);
+        let vertices = removed.chain([&from]);
+        vertices
+            .map(|&vertex| Some((vertex, self.nearest(vertex, moved)?)))
+            .collect()
+    }
+
+    fn nearest(&self, vertex: u32, moved: &[(u32, [u32; 3])]) -> Option<u32> {
+        let point = &self.body.vertices[vertex as usize];
+        let distance2 = |corners| CurvedMesh::distance2_to_triangle(&self.places(corners), point);
+        let distances = moved
+            .iter()
+            .map(|&(triangle, corners)| (distance2(corners), triangle));
+        let nearest = distances.min_by(|one, two| one.0.total_cmp(&two.0))?;
+        (nearest.0 <= self.deviation2).then_some(nearest.1)
+    }
+
+    fn collapse(&mut self, from: u32, moved: &[(u32, [u32; 3])], next_to: &[(u32, u32)]) {
+        let ring = self.neighbours(from);
+        self.replace(from, &ring, moved);
+        for &(vertex, triangle) in next_to {
+            self.removed[triangle as usize].push(vertex);
+        }
+        for vertex in ring {
+            self.stamps[vertex as usize] += 1;
+            self.offer(vertex);
+        }
+    }
+
+    /// Replaces the triangles around `from`.
+    fn replace(&mut self, from: u32, ring: &[u32], moved: &[(u32, [u32; 3])]) {
+        let before = std::mem::take(&mut self.around[from as usize]);
+        for &triangle in &before {
+            self.removed[triangle as usize].clear();
+        }
+        for &vertex in ring {
+            self.around[vertex as usize].retain(|triangle| !before.contains(triangle));
+        }
+        for &(triangle, corners) in moved {
+            self.triangles[triangle as usize] = corners;
+            for corner in corners {
+                self.around[corner as usize].push(triangle);
+            }
+        }
+    }
+
+    fn into_mesh(self) -> TriangleMesh {
+        let is_used: Vec<bool> = self
+            .around
+            .iter()
+            .map(|around| !around.is_empty())
+            .collect();
+        let mut place = vec![0; is_used.len()];
+        let mut vertices = Vec::new();
+        for (vertex, _) in is_used.iter().enumerate().filter(|(_, is_used)| **is_used) {
+            place[vertex] = vertices.len() as u32;
+            vertices.push(self.body.vertices[vertex]);
+        }
+        let numbers = 0..self.triangles.len() as u32;
+        let is_there = |triangle: &u32| {
+            let [a, ..] = self.triangles[*triangle as usize];
+            self.around[a as usize].contains(triangle)
+        };
+        let triangles = numbers
+            .filter(is_there)
+            .map(|triangle| self.triangles[triangle as usize].map(|vertex| place[vertex as usize]));
+        TriangleMesh {
+            triangles: triangles.collect(),
+            vertices,
+        }
+    }
 }
 
 /// Returns the normal of a triangle, twice its area long.
-fn normal(body: &TriangleMesh, triangle: usize) -> Vec3 {
-    let [a, b, c] = body.corners(triangle);
+fn normal([a, b, c]: &[Vec3; 3]) -> Vec3 {
     (b - a).cross(&(c - a))
 }
 
-/// Returns true for each vertex on an edge of a single triangle or on a sharp edge.
+/// Returns true for each vertex on an edge that has other than two triangles.
 fn border(body: &TriangleMesh) -> Vec<bool> {
-    let of_triangle = |(number, &[a, b, c]): (usize, &[u32; 3])| {
-        let normal = normal(body, number).normalize();
-        [(a, b), (b, c), (c, a)].map(|(from, to)| ((from.min(to), from.max(to)), normal))
-    };
-    let triangles = body.triangles.iter().enumerate();
-    let mut edges: Vec<_> = triangles.flat_map(of_triangle).collect();
-    edges.sort_by_key(|(edge, _)| *edge);
+    let edges = body
+        .triangles
+        .iter()
+        .flat_map(|&[a, b, c]| [(a, b), (b, c), (c, a)]);
+    let mut edges: Vec<_> = edges.map(|(a, b)| (a.min(b), a.max(b))).collect();
+    edges.sort_unstable();
     let mut border = vec![false; body.vertices.len()];
-    for same in edges.chunk_by(|one, next| one.0 == next.0) {
-        let is_sharp = |pair: &[(_, Vec3)]| pair[0].1.dot(&pair[1].1) < SHARP_COSINE;
-        if same.len() == 1 || same.windows(2).any(is_sharp) {
-            let (a, b) = same[0].0;
-            border[a as usize] = true;
-            border[b as usize] = true;
-        }
+    for same in edges
+        .chunk_by(|one, next| one == next)
+        .filter(|same| same.len() != 2)
+    {
+        let (a, b) = same[0];
+        border[a as usize] = true;
+        border[b as usize] = true;
     }
     border
-}
-
-fn clustered(body: &TriangleMesh, edge: f64, border: &[bool]) -> TriangleMesh {
-    let cell = |(vertex, is_border): (u32, &bool)| match is_border {
-        true => Cell::Border(vertex),
-        false => {
-            let place = <[f64; 3]>::from(body.vertices[vertex as usize] / edge);
-            Cell::Cube(place.map(|at| at.floor() as i64))
-        }
-    };
-    let cells: Vec<Cell> = (0..).zip(border).map(cell).collect();
-    // Sorted cells give the same order of vertices on every machine.
-    let mut members: BTreeMap<Cell, Vec<Vec3>> = BTreeMap::new();
-    for (vertex, cell) in body.vertices.iter().zip(&cells) {
-        members.entry(*cell).or_default().push(*vertex);
-    }
-    let place: BTreeMap<Cell, u32> = members.keys().copied().zip(0..).collect();
-    let renumbered = |triangle: &[u32; 3]| triangle.map(|vertex| place[&cells[vertex as usize]]);
-    let mut triangles: Vec<_> = body.triangles.iter().map(renumbered).collect();
-    triangles.retain(|[a, b, c]| a != b && b != c && c != a);
-    // Pairs of coincident triangles face both ways and are removed: a closed surface stays closed.
-    let sorted = |triangle: &[u32; 3]| {
-        let mut corners = *triangle;
-        corners.sort_unstable();
-        corners
-    };
-    triangles.sort_by_key(sorted);
-    let same = triangles.chunk_by(|one, next| sorted(one) == sorted(next));
-    let odd = same.filter(|same| same.len() % 2 == 1);
-    TriangleMesh {
-        triangles: odd.map(|same| same[0]).collect(),
-        vertices: members.values().map(|vertices| middle(vertices)).collect(),
-    }
-}
-
-fn middle(vertices: &[Vec3]) -> Vec3 {
-    let mean = vertices.iter().sum::<Vec3>() / vertices.len() as f64;
-    let away = |vertex: &Vec3| (vertex - mean).norm_squared();
-    let nearest = vertices.iter().min_by(|a, b| away(a).total_cmp(&away(b)));
-    nearest.copied().unwrap_or(mean)
 }
 
 #[cfg(test)]
@@ -122,107 +330,130 @@ mod tests {
     /// Radius of a tube, as that of a condyle, and of the ring that it is bent to, mm.
     const RADIUS_MM: f64 = 25.0;
     const RING_MM: f64 = 30.0;
+    const DEVIATION_MM: f64 = PICTURE_DEVIATION_MM;
+
+    fn grid(along: u32, around: u32, is_ring: bool, at: impl Fn(u32, u32) -> Vec3) -> TriangleMesh {
+        let (rows, columns) = if is_ring {
+            (along, around)
+        } else {
+            (along + 1, around + 1)
+        };
+        let nodes = (0..rows).flat_map(|i| (0..columns).map(move |j| (i, j)));
+        let vertices = nodes.map(|(i, j)| at(i, j)).collect();
+        let node = |i: u32, j: u32| i % rows * columns + j % columns;
+        let places = (0..along).flat_map(|i| (0..around).map(move |j| (i, j)));
+        let corners =
+            |(i, j)| [(i, j), (i, j + 1), (i + 1, j + 1), (i + 1, j)].map(|(i, j)| node(i, j));
+        TriangleMesh::of_quads(vertices, places.map(corners))
+    }
 
     fn ring() -> TriangleMesh {
-        let (along, around) = (160_u32, 120_u32);
-        let at = |i: u32, j: u32| {
-            let (way, turn) = (
-                TAU * f64::from(i) / f64::from(along),
-                TAU * f64::from(j) / f64::from(around),
-            );
+        let (along, around) = (160, 120);
+        grid(along, around, true, |i, j| {
+            let turn = |at: u32, of: u32| TAU * f64::from(at) / f64::from(of);
+            let (way, turn) = (turn(i, along), turn(j, around));
             let out = RING_MM + RADIUS_MM * turn.cos();
             Vec3::new(out * way.cos(), RADIUS_MM * turn.sin(), out * way.sin())
-        };
-        let nodes = (0..along).flat_map(|i| (0..around).map(move |j| at(i, j)));
-        let node = |i: u32, j: u32| i % along * around + j % around;
-        let quad = |i: u32, j: u32| {
-            let [a, b, c, d] = [(i, j), (i, j + 1), (i + 1, j + 1), (i + 1, j)];
-            let [a, b, c, d] = [a, b, c, d].map(|(i, j)| node(i, j));
-            [[a, b, c], [a, c, d]]
-        };
-        let quads = (0..along).flat_map(|i| (0..around).flat_map(move |j| quad(i, j)));
-        TriangleMesh {
-            vertices: nodes.collect(),
-            triangles: quads.collect(),
-        }
+        })
+    }
+
+    /// Distance of a point from the surface of the ring, mm.
+    fn off_ring(point: &Vec3) -> f64 {
+        let out = point.x.hypot(point.z) - RING_MM;
+        (out.hypot(point.y) - RADIUS_MM).abs()
+    }
+
+    fn area(body: &TriangleMesh) -> f64 {
+        let areas =
+            (0..body.triangles.len()).map(|triangle| normal(&body.corners(triangle)).norm() / 2.0);
+        areas.sum()
     }
 
     #[test]
     fn a_coarse_ring_is_closed_and_within_its_stated_deviation() {
-        let coarse = coarser(&ring(), 6000);
-        assert!(coarse.triangles.len() <= 6000 && coarse.triangles.len() > 3000);
-        let mut edges = BTreeMap::new();
-        for [a, b, c] in &coarse.triangles {
-            for (from, to) in [(a, b), (b, c), (c, a)] {
-                *edges.entry((from.min(to), from.max(to))).or_insert(0) += 1;
+        let coarse = coarser(&ring(), DEVIATION_MM);
+        assert!(
+            coarse.triangles.len() < ring().triangles.len() / 8,
+            "{}",
+            coarse.triangles.len()
+        );
+        assert!(
+            border(&coarse).iter().all(|is_border| !is_border),
+            "it has a hole"
+        );
+        let sag = RADIUS_MM * (1.0 - (TAU / 240.0).cos());
+        for triangle in 0..coarse.triangles.len() {
+            let [a, b, c] = coarse.corners(triangle);
+            for point in [
+                (a + b + c) / 3.0,
+                (a + b) / 2.0,
+                (b + c) / 2.0,
+                (c + a) / 2.0,
+            ] {
+                assert!(
+                    off_ring(&point) < DEVIATION_MM + 3.0 * sag,
+                    "{}",
+                    off_ring(&point)
+                );
             }
         }
-        assert!(edges.values().all(|count| count % 2 == 0), "it has a hole");
-        let middles = coarse.triangles.iter().map(|triangle| {
-            let [a, b, c] = triangle.map(|node| coarse.vertices[node as usize]);
-            (a + b + c) / 3.0
-        });
-        let off = middles.map(|middle| {
-            let out = middle.x.hypot(middle.z) - RING_MM;
-            (out.hypot(middle.y) - RADIUS_MM).abs()
-        });
-        let most = off.fold(0.0, f64::max);
-        assert!(most < 0.35, "{most}");
+        let volume = coarse.signed_volume() / ring().signed_volume();
+        assert!((volume - 1.0).abs() < 0.01, "{volume}");
+    }
+
+    #[test]
+    fn every_vertex_is_near_the_coarse_body() {
+        let (fine, coarse) = (ring(), coarser(&ring(), DEVIATION_MM));
+        for vertex in fine.vertices.iter().step_by(97) {
+            let corners = (0..coarse.triangles.len()).map(|triangle| coarse.corners(triangle));
+            let distance2 =
+                corners.map(|corners| CurvedMesh::distance2_to_triangle(&corners, vertex));
+            let nearest = distance2.fold(f64::INFINITY, f64::min).sqrt();
+            assert!(nearest <= DEVIATION_MM, "{nearest}");
+        }
     }
 
     #[test]
     fn a_border_stays_where_it_is() {
         let mut open = ring();
-        let half = open.triangles.len() / 2;
-        open.triangles.truncate(half);
-        let coarse = coarser(&open, 4000);
-        let border = border(&open);
-        let places = open.vertices.iter().zip(&border).filter(|(_, is)| **is);
+        open.triangles.truncate(open.triangles.len() / 2);
+        let coarse = coarser(&open, DEVIATION_MM);
+        let places = open
+            .vertices
+            .iter()
+            .zip(border(&open))
+            .filter(|(_, is)| *is);
         for (place, _) in places {
             assert!(coarse.vertices.contains(place));
         }
-        assert!(coarse.triangles.len() <= 4000);
+        assert!(coarse.triangles.len() < open.triangles.len() / 4);
     }
 
     #[test]
     fn the_edges_of_a_box_stay_where_they_are() {
         // Two sides of a box, each of many squares.
-        let side = 40_u32;
-        let at = |i: u32, j: u32| {
-            let (i, j) = (f64::from(i), f64::from(j));
-            let half = f64::from(side) / 2.0;
-            Vec3::new(j, (i - half).max(0.0), (half - i).max(0.0))
-        };
-        let nodes = (0..=side).flat_map(|i| (0..=side).map(move |j| at(i, j)));
-        let node = |i: u32, j: u32| i * (side + 1) + j;
-        let quad = |i: u32, j: u32| {
-            let [a, b, c, d] = [(i, j), (i, j + 1), (i + 1, j + 1), (i + 1, j)];
-            let [a, b, c, d] = [a, b, c, d].map(|(i, j)| node(i, j));
-            [[a, b, c], [a, c, d]]
-        };
-        let quads = (0..side).flat_map(|i| (0..side).flat_map(move |j| quad(i, j)));
-        let folded = TriangleMesh {
-            vertices: nodes.collect(),
-            triangles: quads.collect(),
-        };
-        let coarse = coarser(&folded, 1000);
-        assert!(coarse.triangles.len() <= 1000);
-        // Both sides are covered: areas as vectors add up to the same.
+        const SIDE: u32 = 40;
+        let folded = grid(SIDE, SIDE, false, |i, j| {
+            let (i, j) = (f64::from(i) - f64::from(SIDE) / 2.0, f64::from(j));
+            Vec3::new(j, i.max(0.0), (-i).max(0.0))
+        });
+        let coarse = coarser(&folded, DEVIATION_MM);
+        assert!(coarse.triangles.len() < folded.triangles.len() / 5);
         let vector = |body: &TriangleMesh| -> Vec3 {
-            let corners = |triangle: &[u32; 3]| triangle.map(|node| body.vertices[node as usize]);
-            let corners = body.triangles.iter().map(corners);
-            corners.map(|[a, b, c]| (b - a).cross(&(c - a))).sum()
+            (0..body.triangles.len())
+                .map(|triangle| normal(&body.corners(triangle)))
+                .sum()
         };
+        // Both sides are covered, and no triangle crosses the edge between them.
         assert!((vector(&coarse) - vector(&folded)).norm() < 1e-9 * area(&folded));
-        for j in 0..=side {
-            assert!(coarse.vertices.contains(&at(side / 2, j)));
-        }
+        assert!((area(&coarse) - area(&folded)).abs() < 1e-9 * area(&folded));
     }
 
     #[test]
-    fn a_body_of_few_triangles_stays_as_it_is() {
-        let ring = ring();
-        let same = coarser(&ring, ring.triangles.len());
-        assert_eq!(same.triangles, ring.triangles);
+    fn a_body_that_needs_its_triangles_keeps_them() {
+        let block = TriangleMesh::block(Vec3::zeros(), Vec3::new(3.0, 2.0, 1.0));
+        assert_eq!(coarser(&block, DEVIATION_MM).triangles, block.triangles);
+        let empty = TriangleMesh::default();
+        assert_eq!(coarser(&empty, DEVIATION_MM), empty);
     }
 }

@@ -37,7 +37,7 @@ pub mod repair;
 mod roughness;
 mod triangle_mesh;
 
-pub use coarse::coarser;
+pub use coarse::{PICTURE_DEVIATION_MM, coarser};
 pub use condyle_fem::Vec3;
 pub use curved_mesh::{CurvedMesh, Foot};
 pub use divided_mesh::DividedMesh;

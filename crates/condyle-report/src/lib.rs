@@ -17,6 +17,7 @@ mod pictures;
 mod plots;
 #[cfg(feature = "png")]
 mod png;
+mod program;
 mod results;
 pub mod runs;
 pub mod scene;

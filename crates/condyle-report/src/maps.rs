@@ -85,6 +85,15 @@ pub(crate) static MAPS: [MappedField; 6] = [
     ),
 ];
 
+/// Returns the colours of a field at even distances from little to much: those of its map, or of a map of its own.
+pub(crate) fn colours(field: &str) -> Vec<String> {
+    const COUNT: usize = 33;
+    let mapped = MAPS.iter().find(|mapped| mapped.field == field);
+    let style = mapped.unwrap_or(&MAPS[1]).style;
+    let share = |at: usize| at as f64 / (COUNT - 1) as f64;
+    (0..COUNT).map(|at| style.colour(share(at))).collect()
+}
+
 impl MappedField {
     /// Returns the map of a surface; `None` without the field.
     pub(crate) fn of<'a>(

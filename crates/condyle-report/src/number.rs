@@ -71,6 +71,23 @@ pub(crate) fn in_words(key: &str) -> (String, String) {
     (first_letter_large(&words.join(" ")), unit)
 }
 
+/// Returns the dotted path of a key of a case as words: `insert.thickness_mm` is "Thickness of insert, mm". A name that is no
+/// path remains.
+pub(crate) fn path_in_words(name: &str) -> String {
+    let path = name.rsplit_once('.').filter(|_| !name.contains(' '));
+    let Some((tables, key)) = path else {
+        return name.to_owned();
+    };
+    let table = tables
+        .rsplit('.')
+        .next()
+        .unwrap_or(tables)
+        .replace('_', " ");
+    let (title, unit) = in_words(key);
+    let comma = if unit.is_empty() { "" } else { ", " };
+    format!("{title} of {table}{comma}{unit}")
+}
+
 /// Returns the text with its first letter in capitals.
 pub(crate) fn first_letter_large(text: &str) -> String {
     let mut letters = text.chars();
@@ -103,6 +120,18 @@ mod tests {
         assert_eq!(cycles_in_words(5e6), "5 million");
         assert_eq!(cycles_in_words(2.5e6), "2.5 million");
         assert_eq!(cycles_in_words(500_000.0), "500\u{202f}000");
+    }
+
+    #[test]
+    fn a_path_is_words_and_a_name_remains() {
+        for (path, words) in [
+            ("insert.thickness_mm", "Thickness of insert, mm"),
+            ("machine.axial_force.scale", "Scale of axial force"),
+            ("Design 1.5", "Design 1.5"),
+            ("friction", "friction"),
+        ] {
+            assert_eq!(path_in_words(path), words);
+        }
     }
 
     #[test]

@@ -1,6 +1,7 @@
 //! Plots of studies over runs: a line over a reference or over a cloud of points.
 
 use crate::figure::{Axis, Curve, MEASURED, Panel, finite_range, sheet};
+use crate::number::path_in_words;
 
 /// A plot of one line with a dot at every point, of a reference line and of unconnected points; each may be empty.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -105,15 +106,10 @@ pub fn plots_svg(title: &str, plots: &[Plot], columns: usize, keys: [&str; 3]) -
     sheet(title, &names.join("; "), &panels, columns.max(1), &key)
 }
 
-/// Returns the last word of a key, or two where the last is common to many keys, cut to fit under a small picture.
+/// Returns a key in words, cut to fit under a small picture.
 fn short(key: &str) -> String {
-    const MAX_LETTERS: usize = 28;
-    let mut words = key.rsplit('.');
-    let last = words.next().unwrap_or(key);
-    let whole = match words.next() {
-        Some(before) if matches!(last, "scale" | "offset") => format!("{before}.{last}"),
-        _ => last.to_owned(),
-    };
+    const MAX_LETTERS: usize = 32;
+    let whole = path_in_words(key);
     if whole.chars().count() <= MAX_LETTERS {
         return whole;
     }

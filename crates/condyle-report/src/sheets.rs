@@ -9,6 +9,7 @@ use serde_json::json;
 use crate::error::ReportError;
 use crate::figure::{STYLE, colour_variables};
 use crate::number::{fixed, significant};
+use crate::program::policy;
 
 pub(crate) const PAGE_STYLE: &str = include_str!("page/page.css");
 
@@ -22,13 +23,6 @@ pub(crate) fn render(template: &str, context: &impl Serialize) -> String {
     environment.set_syntax(syntax.expect("the default delimiters differ from each other"));
     environment.add_filter("fixed", fixed);
     environment.add_filter("significant", significant);
-    environment.add_filter("known", |value: Option<f64>, digits: i32| {
-        value.map_or_else(|| "\u{2013}".to_owned(), |value| significant(value, digits))
-    });
-    environment.add_filter("signed", |value: f64, digits: i32| {
-        let sign = if value < 0.0 { '\u{2212}' } else { '+' };
-        format!("{sign}{}", significant(value.abs(), digits))
-    });
     // Errors are those of the template itself, which the tests render.
     let page = environment.render_named_str("page.html", template, Serde(context));
     page.unwrap_or_else(|error| panic!("a template cannot be rendered: {error:#}"))
@@ -46,6 +40,19 @@ pub(crate) fn write_text(path: PathBuf, text: &str) -> Result<PathBuf, ReportErr
     }
 }
 
+/// File name, caption and text of a picture.
+pub(crate) type Sheet = (&'static str, String, String);
+
+/// Returns text and caption of a picture. Every picture calls its title and description `t` and `d`: on one page these
+/// need different names.
+pub(crate) fn with_own_ids((name, caption, svg): &Sheet) -> (String, String) {
+    let id = name.trim_end_matches(".svg");
+    let svg = svg.replace(r#"="t d""#, &format!(r#"="{id}-t {id}-d""#));
+    let svg = svg.replace(r#"id="t""#, &format!(r#"id="{id}-t""#));
+    let svg = svg.replace(r#"id="d""#, &format!(r#"id="{id}-d""#));
+    (svg, caption.clone())
+}
+
 /// A page of tables and pictures on white, one file that opens anywhere.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(crate) struct Sheets<'a> {
@@ -60,27 +67,20 @@ pub(crate) struct Sheets<'a> {
     pub body: &'a str,
     /// Heading and rows of each table; the first row is the head.
     pub tables: &'a [(String, Vec<Vec<String>>)],
-    /// File name, caption and text of each picture.
-    pub pictures: &'a [(&'static str, String, String)],
+    pub pictures: &'a [Sheet],
+    /// The program of the page, with its scenes, as HTML.
+    pub program: Option<&'a str>,
 }
 
 impl Sheets<'_> {
     pub(crate) fn html(&self) -> String {
         let (light, dark) = colour_variables();
-        let picture = |(name, caption, svg): &(&str, String, String)| {
-            // Every picture calls its title and description `t` and `d`: on one page these need different names.
-            let id = name.trim_end_matches(".svg");
-            let svg = svg.replace(r#"="t d""#, &format!(r#"="{id}-t {id}-d""#));
-            let svg = svg.replace(r#"id="t""#, &format!(r#"id="{id}-t""#));
-            (
-                svg.replace(r#"id="d""#, &format!(r#"id="{id}-d""#)),
-                caption.clone(),
-            )
-        };
-        let pictures: Vec<(String, String)> = self.pictures.iter().map(picture).collect();
+        let pictures: Vec<(String, String)> = self.pictures.iter().map(with_own_ids).collect();
         render(
             include_str!("sheets.html"),
             &json!({
+                "policy": policy(self.program.is_some()),
+                "program": self.program,
                 "light": light,
                 "dark": dark,
                 "style": PAGE_STYLE,
@@ -120,6 +120,7 @@ mod tests {
             body: "",
             tables: &tables,
             pictures: &pictures,
+            program: None,
         };
         let html = sheets.html();
         assert!(html.contains("a &lt; b") && html.contains("&lt;1&gt;") && html.contains("one-t"));

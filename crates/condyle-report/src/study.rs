@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use crate::error::ReportError;
 use crate::figure::{Axis, Curve, MEASURED, Panel, escape, finite_range, sheet, svg_file, titled};
-use crate::number::significant;
+use crate::number::{path_in_words, significant};
 use crate::sheets::{Sheets, write_text};
 
 const MAX_INTERVALS: usize = 6;
@@ -81,7 +81,7 @@ pub fn bars_svg(title: &str, unit: &str, middle: Option<f64>, bars: &[Bar]) -> S
         let [low, high] = bar.span;
         let (x, end) = (to_x(low.min(high)), to_x(low.max(high)));
         let (width, top, base) = ((end - x).max(1.0), y - THICK / 2.0, y + 3.8);
-        let (name, name_x) = (escape(&bar.name), LEFT - 10.0);
+        let (name, name_x) = (escape(&path_in_words(&bar.name)), LEFT - 10.0);
         body += &format!(
             r#"<text x="{name_x}" y="{base:.1}" text-anchor="end">{name}</text><rect class="bar" x="{x:.1}" y="{top:.1}" width="{width:.1}" height="{THICK}"/>"#
         );

@@ -8,9 +8,8 @@ use condyle::{
     spatial::Pose,
 };
 
-use condyle_mesh::{
-    coarser,
-    formats::{Grid, MeshFileError, PointArray, PointValues, compact_vtu_bytes, pvd_text},
+use condyle_mesh::formats::{
+    Grid, MeshFileError, PointArray, PointValues, compact_vtu_bytes, pvd_text,
 };
 
 use super::side::{Side, face_on_side, point_on_side};
@@ -107,18 +106,6 @@ pub fn cycle_pvd(cycle: KeptCycle, percents: &[f64]) -> String {
         let parts = parts.iter().enumerate();
         parts.map(|(part, file)| (*percent, part, file.as_str()))
     }))
-}
-
-/// Number of triangles that suffices to show a femur in motion.
-pub const FRAME_TRIANGLES: f64 = 6000.0;
-
-/// Returns the femur of the frames: a fine mesh is coarsened, since it is written hundreds of times.
-pub fn femur_of_frames(femur: TriangleMesh) -> TriangleMesh {
-    // A mesh slightly larger than the target is kept: a coarser one would lose shape and save little.
-    if femur.triangles.len() as f64 > 1.5 * FRAME_TRIANGLES {
-        return coarser(&femur, FRAME_TRIANGLES as usize);
-    }
-    femur
 }
 
 /// Name of the file with the pressures of a cycle.

@@ -36,8 +36,8 @@ pub use added::{
 };
 pub use checkpoint::{Checkpoint, CheckpointError};
 pub use cycle_files::{
-    BODIES, FRAME_TRIANGLES, KeptCycle, cycle_pressure_csv, cycle_pressure_file, cycle_pvd,
-    femur_of_frames, femur_on_side, femur_vtu, frame_name, insert_frame,
+    BODIES, KeptCycle, cycle_pressure_csv, cycle_pressure_file, cycle_pvd, femur_on_side,
+    femur_vtu, frame_name, insert_frame,
 };
 pub use declared::{python_types, results_schema, typescript_types};
 pub use error_estimate::{ErrorEstimate, ErrorParts, Part, QuantityError, QuantityErrors};

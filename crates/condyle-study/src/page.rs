@@ -6,6 +6,7 @@ use condyle_report::{
     Plot, plots_svg,
     study::{Bar, Distribution, bars_svg, distributions_svg, write_study_page},
 };
+use condyle_results::{catalogue, split_unit};
 
 use crate::{
     answers::{
@@ -93,9 +94,10 @@ fn progress(best: &Best) -> Option<Picture> {
     if best.progress.is_empty() {
         return None;
     }
+    let label = catalogue::output(best.minimised).map_or(best.minimised, |output| output.label);
     let plot = Plot {
-        title: "Best so far within all limits".to_owned(),
-        unit: best.minimised.to_owned(),
+        title: format!("Best {label} so far within all limits"),
+        unit: superscript(split_unit(best.minimised).1.unwrap_or_default()),
         x_title: "test".to_owned(),
         line: best.progress.clone(),
         ..Plot::default()

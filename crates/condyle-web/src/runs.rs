@@ -4,7 +4,7 @@ use std::{fs, ops::ControlFlow, path::Path};
 
 use condyle_case::{cache::Cache, case::Case};
 use condyle_lab::{InMemory, Outcome, Reached, RunError, RunEvent, RunOptions};
-use condyle_results::Summary;
+use condyle_results::{Directions, Summary};
 
 use crate::{
     failure::Failure,
@@ -31,7 +31,12 @@ pub fn run(case: &Path, out: &Path) -> Result<(), Failure> {
         reporter.report(&event)
     });
     let summary = done(outcome)?;
-    let scene = recorder.into_scene(summary.neutral_pose);
+    let mut scene = recorder.into_scene(summary.neutral_pose);
+    scene.directions = Directions {
+        joint: summary.joint,
+        side: case.heading.side,
+    };
+    scene.title = case.heading.title;
     write(out, "scene", &scene.to_bytes())?;
     let json = serde_json::to_vec_pretty(&summary).expect("numbers and text always serialise");
     write(out, "summary.json", &json)

@@ -9,6 +9,8 @@ import { Solver } from "./solver";
 import type { Bodies } from "./dropped";
 
 const CASE = "case.toml";
+// All keys of a case have defaults, but a text that was deleted is not meant to be one.
+const EMPTY = 'error: the case is empty\n\nWrite at least one key, such as `title = "Defaults"`, or go back to the case before.';
 // Pause after a change before a run starts, ms: a moving slider starts none.
 const PATIENCE_MS = 120;
 
@@ -26,6 +28,7 @@ export class Laboratory {
   private readonly runs: Solver;
   private readonly checks: Solver;
   private timer = 0;
+  private folder: { text: string; files: Files } | undefined;
 
   constructor(
     module: WebAssembly.Module,
@@ -72,18 +75,23 @@ export class Laboratory {
     const drafted = answer.files[CASE];
     if (answer.failure || !drafted) return undefined;
     this.bodies = files;
+    this.folder = undefined;
     return decode(drafted);
   }
 
-  // The results folder of the case, as the command writes it.
+  // The results folder of the case, as the command writes it; solved once for each text.
   async kept(folder: string): Promise<Files | undefined> {
+    if (this.folder?.text === this.text) return this.folder.files;
     this.cancel();
+    const { text } = this;
     this.listener.busy(true);
     const answer = await this.runs.call({ words: ["keep", CASE, folder], files: this.files(), output: folder }, this.listener.message);
     if (!answer) return undefined;
     this.listener.busy(false);
     this.listener.failed(answer.failure);
-    return answer.failure ? undefined : answer.files;
+    if (answer.failure) return undefined;
+    this.folder = { text, files: answer.files };
+    return answer.files;
   }
 
   // The meshes that the case names.
@@ -92,6 +100,7 @@ export class Laboratory {
   }
 
   private async checkAndRun(): Promise<void> {
+    if (this.text.trim() === "") return this.listener.failed({ message: EMPTY, problems: [] });
     const answer = await this.checks.call({ words: ["check", CASE], files: this.files(), output: CASE });
     if (!answer) return;
     this.listener.failed(answer.failure);

@@ -12,6 +12,7 @@ import genericCase from "../../../cases/stanmore-force.toml";
 import { take, takeDropped, type Bodies } from "./dropped";
 import { Editor } from "./editor";
 import { Laboratory } from "./laboratory";
+import { Memory } from "./memory";
 import { comparison, doubts, notes, tiles } from "./numbers";
 import style from "./page.css";
 import type { Failure, Message } from "./program";
@@ -37,14 +38,16 @@ class Page {
   private plots: Plot[] = [];
   private runs = 0;
 
-  constructor(module: WebAssembly.Module) {
-    // The first line names a schema file for editors on the disk.
-    const text = genericCase.replace(/^#:schema.*\n/, "");
+  constructor(
+    module: WebAssembly.Module,
+    text: string,
+    private readonly memory: Memory,
+  ) {
     this.laboratory = new Laboratory(module, text, {
       message: (message) => this.report(message),
       found: (found) => this.find(found),
       failed: (failure) => this.fail(failure),
-      busy: (isBusy) => document.documentElement.toggleAttribute("data-busy", isBusy),
+      busy: (isBusy) => this.begun(isBusy),
     });
     this.sliders = new Sliders(
       () => this.laboratory.text,
@@ -57,6 +60,7 @@ class Page {
     this.sliders.show();
     this.buttons();
     this.takeFiles();
+    memory.onReturn((text) => this.open(text));
   }
 
   begin(): Promise<void> {
@@ -115,6 +119,12 @@ class Page {
     else this.reach(1, "All cycles are done; their accuracy is being estimated");
   }
 
+  // A new run starts at nothing: words and bar of the run before are not its own.
+  private begun(isBusy: boolean): void {
+    document.documentElement.toggleAttribute("data-busy", isBusy);
+    if (isBusy) this.reach(0, "The run is being prepared");
+  }
+
   private reach(part: number, words: string): void {
     (byId("progress") as HTMLProgressElement).value = part;
     this.say(words);
@@ -135,6 +145,8 @@ class Page {
     const solved = summary.wall_s + (summary.error?.wall_s ?? 0);
     this.say(`${inDigits(summary.cycles / 1e6)} million cycles, solved in ${inDigits(solved)} s on this machine`);
     this.compare();
+    // Meshes are in no address: with them, the case would not run elsewhere.
+    if (Object.keys(this.laboratory.meshes).length === 0) void this.memory.remember(this.laboratory.text);
     document.documentElement.dataset["ready"] = "yes";
     document.documentElement.dataset["runs"] = String(++this.runs);
   }
@@ -205,7 +217,11 @@ async function compiled(): Promise<WebAssembly.Module> {
 
 async function start(): Promise<void> {
   document.head.append(element("style", {}, plotStyle + viewStyle + style));
-  const page = new Page(await compiled());
+  // The first line names a schema file for editors on the disk.
+  const generic = genericCase.replace(/^#:schema.*\n/, "");
+  const memory = new Memory(generic);
+  const [module, recalled] = await Promise.all([compiled(), memory.recalled()]);
+  const page = new Page(module, recalled ?? generic, memory);
   await page.begin();
   if ("serviceWorker" in navigator) await navigator.serviceWorker.register("service_worker.js");
 }

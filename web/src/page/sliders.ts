@@ -1,6 +1,6 @@
 // Sliders for numbers of the case.
 
-import { element, slider } from "../dom";
+import { element, Slider } from "../dom";
 import { inDigits } from "../digits";
 import { numberOf, valueAt, withValue, type Place } from "./case_text";
 
@@ -68,14 +68,14 @@ const GROUPS: [heading: string, moved: Moved[]][] = [
     [
       { table: "machine.axial_force", key: "scale", label: "Load, times that of the waveform", unit: "", least: 0.4, most: 1.6, step: 0.05, silent: 1 },
       { table: "contact", key: "friction", label: "Friction", unit: "", least: 0, most: 0.2, step: 0.01, silent: 0.07 },
-      { table: "march", key: "cycles", label: "Gait cycles", unit: "million", least: 0.5, most: 20, step: 0.5, silent: 5, times: 1e6 },
+      { table: "march", key: "cycles", label: "Cycles", unit: "million", least: 0.5, most: 20, step: 0.5, silent: 5, times: 1e6 },
     ],
   ],
 ];
 
 export class Sliders {
   readonly box = element("div", { class: "sliders" });
-  private readonly rows: { moved: Moved; input: HTMLInputElement; shown: HTMLOutputElement }[] = [];
+  private readonly rows: { moved: Moved; slider: Slider }[] = [];
 
   constructor(
     private readonly text: () => string,
@@ -91,7 +91,8 @@ export class Sliders {
   // Shows the numbers of the present case.
   show(): void {
     const text = this.text();
-    for (const { moved, input, shown } of this.rows) {
+    for (const { moved, slider } of this.rows) {
+      const { input } = slider;
       const times = moved.times ?? 1;
       const value = numberOf(text, moved);
       const found = value === undefined ? moved.silent : value / times;
@@ -99,18 +100,20 @@ export class Sliders {
       // A number outside of the slider widens its range.
       input.min = String(Math.min(moved.least, found));
       input.max = String(Math.max(moved.most, found));
-      input.value = String(found);
-      shown.textContent = input.disabled ? "by the mesh" : inWords(found, moved);
-      input.setAttribute("aria-valuetext", shown.textContent);
+      slider.value = found;
+      if (input.disabled) slider.say("by the mesh");
     }
   }
 
   private row(moved: Moved): HTMLElement {
-    const shown = element("output");
-    const input = slider(moved.least, moved.most, moved.step, moved.silent, (value) => this.move(moved, value));
-    input.id = `${moved.table}.${moved.key}`;
-    this.rows.push({ moved, input, shown });
-    return element("div", { class: "slider" }, element("label", { for: input.id }, moved.label), shown, input);
+    const slider = new Slider(
+      moved.label,
+      [moved.least, moved.most, moved.step],
+      (value) => inWords(value, moved),
+      (value) => this.move(moved, value),
+    );
+    this.rows.push({ moved, slider });
+    return slider.box;
   }
 
   private move(moved: Moved, value: number): void {

@@ -123,10 +123,37 @@ fn several_runs_stand_on_one_page_on_the_same_axes() {
         "other \u{2212} out",
         "class=\"run-2\"",
         "contact.friction",
+        "other wears ",
+        "discretisation errors of both",
+        "data-scene=\"scene-1\"",
+        "script-src &#x27;sha256-",
     ] {
         assert!(page.contains(words), "{words}");
     }
-    assert!(!page.contains("src=") && !page.contains("<script"));
+    assert!(!page.contains("src="));
+}
+
+#[test]
+fn runs_are_called_by_the_titles_of_their_cases_if_these_differ() {
+    let bench = two_runs("contact.friction=0.02");
+    let page = |titles: [&str; 2]| {
+        for (folder, title) in ["out", "other"].into_iter().zip(titles) {
+            let path = bench.path(folder).join("case.toml");
+            let case = fs::read_to_string(&path).expect("the case is there");
+            let rest = case.lines().filter(|line| !line.starts_with("title"));
+            let rest = rest.collect::<Vec<_>>().join("\n");
+            fs::write(&path, format!("title = \"{title}\"\n{rest}\n")).expect("can be written");
+        }
+        assert_eq!(
+            bench.say(&["report", "out", "other", "--force"]).code,
+            Some(0)
+        );
+        fs::read_to_string(bench.path("runs.html")).expect("the page is there")
+    };
+    let titled = page(["Rough <1>", "Smooth"]);
+    assert!(titled.contains("Changed from Rough &lt;1&gt; to Smooth"));
+    assert!(!titled.contains("<1>") && !titled.contains("<td>title</td>"));
+    assert!(page(["Same", "Same"]).contains("Changed from out to other"));
 }
 
 #[test]

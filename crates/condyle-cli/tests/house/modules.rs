@@ -66,7 +66,10 @@ const MAY_USE: &[(&str, &[&str])] = &[
         &["condyle_mesh::triangle_mesh"],
     ),
     ("condyle_mesh::repair", &["condyle_mesh::triangle_mesh"]),
-    ("condyle_mesh::coarse", &["condyle_mesh::triangle_mesh"]),
+    (
+        "condyle_mesh::coarse",
+        &["condyle_mesh::curved_mesh", "condyle_mesh::triangle_mesh"],
+    ),
     ("condyle_mesh::roughness", &["condyle_mesh::triangle_mesh"]),
     ("condyle_mesh::files", &[]),
     (
@@ -191,11 +194,16 @@ const MAY_USE: &[(&str, &[&str])] = &[
             "condyle_report::results",
         ],
     ),
-    ("condyle_report::plots", &["condyle_report::figure"]),
+    (
+        "condyle_report::plots",
+        &["condyle_report::figure", "condyle_report::number"],
+    ),
     ("condyle_report::png", &["condyle_report::figure"]),
+    ("condyle_report::program", &["condyle_report::scene"]),
     (
         "condyle_report::sheets",
         &[
+            "condyle_report::program",
             "condyle_results::files",
             "condyle_report::error",
             "condyle_report::figure",
@@ -212,7 +220,9 @@ const MAY_USE: &[(&str, &[&str])] = &[
             "condyle_report::maps",
             "condyle_report::number",
             "condyle_report::page",
+            "condyle_report::program",
             "condyle_report::results",
+            "condyle_report::scene",
             "condyle_report::sheets",
         ],
     ),
@@ -241,6 +251,7 @@ const MAY_USE: &[(&str, &[&str])] = &[
             "condyle_report::charts",
             "condyle_report::error",
             "condyle_report::figure",
+            "condyle_report::maps",
             "condyle_report::results",
             "condyle_results",
             "condyle_mesh",
@@ -256,6 +267,7 @@ const MAY_USE: &[(&str, &[&str])] = &[
             "condyle_report::figure",
             "condyle_report::maps",
             "condyle_report::number",
+            "condyle_report::program",
             "condyle_report::results",
             "condyle_report::scene",
             // The table of units.

@@ -7,9 +7,8 @@ use condyle_case::{
     case::{Assignment, Case, FEMUR_TRIANGLES, SharedBodies},
     config::DataFile,
 };
-use condyle_results::{
-    FRAME_TRIANGLES, FolderLock, Found, ResultsError, ResultsFolder, femur_of_frames,
-};
+use condyle_mesh::{PICTURE_DEVIATION_MM, coarser};
+use condyle_results::{FolderLock, Found, ResultsError, ResultsFolder};
 
 use crate::run::{
     Listener, Outcome, RunOptions,
@@ -127,7 +126,9 @@ impl WrittenRun {
         is_fresh: bool,
     ) -> Result<Self, RunError> {
         let in_frames = if run.case.output.cycle_frames {
-            Some(femur_of_frames(run.femur_triangles(FRAME_TRIANGLES)?))
+            // It is written hundreds of times.
+            let femur = run.femur_triangles(FEMUR_TRIANGLES)?;
+            Some(coarser(&femur, PICTURE_DEVIATION_MM))
         } else {
             None
         };

@@ -45,6 +45,15 @@ pub(crate) struct MapStyle {
     pub(crate) shades: Gradient,
 }
 
+impl MapStyle {
+    /// Returns the colour of a share of the range, `#rrggbb`.
+    pub(crate) fn colour(&self, share: f64) -> String {
+        // The lightest twentieth is hard to distinguish from paper.
+        let colour = self.shades.eval_continuous(1.0 - 0.95 * share);
+        format!("#{colour:x}")
+    }
+}
+
 #[derive(Clone, Copy)]
 pub(crate) enum ColourRange {
     Own,
@@ -213,9 +222,7 @@ impl Map<'_> {
         if self.is_both_ways() && is_next_to_zero {
             return BARE.to_owned();
         }
-        // The lightest twentieth is hard to distinguish from paper.
-        let colour = self.style.shades.eval_continuous(1.0 - 0.95 * share);
-        format!("#{colour:x}")
+        self.style.colour(share)
     }
 
     fn directions(&self, markers: &[Marker]) -> String {

@@ -6,24 +6,19 @@ mod tables;
 
 pub(crate) use numbers::{label_of, shown, unit_of};
 
-use std::io::Write;
-
-use base64::{Engine, engine::general_purpose::STANDARD};
 use condyle_results::{TestedJoint, catalogue::WEAR_OVER_CONVENTIONAL};
-use flate2::{Compression, write::ZlibEncoder};
 use serde_json::{Value, json};
 
 use crate::charts;
 use crate::figure::{Map, Panel, STYLE, colour_variables};
 use crate::maps::{self, DrawnMap};
 use crate::number::significant;
+use crate::program::{moving, policy};
 use crate::results::{CaseFacts, Results};
 use crate::scene::Scene;
 use crate::sheets::{PAGE_STYLE, render};
 
 const PAGE: &str = include_str!("page.html");
-/// The page's program: `web/src/report.ts`, bundled and deflated by `web/build.mjs`.
-const PROGRAM: &[u8] = include_bytes!("moving.js.zz");
 
 /// Scale of the maps, px per mm: the large one at the top, and those below it.
 const LARGE: f64 = 8.0;
@@ -62,10 +57,9 @@ fn page_of(results: &Results, scene: Option<&Scene>) -> String {
     render(
         PAGE,
         &json!({
-            "style": PAGE_STYLE,
-            "figure_style": STYLE,
-            "light": light,
-            "dark": dark,
+            "policy": policy(scene.is_some()),
+            "style": [PAGE_STYLE, STYLE],
+            "colours": [light, dark],
             "lede": sentences::lede(results, &facts),
             "unfinished": sentences::unfinished(results),
             "doubts": sentences::doubts(results),
@@ -102,7 +96,7 @@ fn page_of(results: &Results, scene: Option<&Scene>) -> String {
             "yields": facts.yields,
             "creeps": facts.creeps,
             "case": results.case,
-            "moving": scene.and_then(moving),
+            "moving": scene.and_then(|scene| moving(&[scene])),
         }),
     )
 }
@@ -124,16 +118,4 @@ fn activity_charts(results: &Results) -> Vec<Value> {
 
 fn svgs(panels: &[Panel]) -> Vec<String> {
     panels.iter().map(Panel::svg).collect()
-}
-
-/// Returns the program and its scene, compressed, as text of a page; none if the scene is empty.
-fn moving(scene: &Scene) -> Option<Value> {
-    if scene.is_empty() {
-        return None;
-    }
-    let mut deflated = ZlibEncoder::new(Vec::new(), Compression::new(6));
-    let written = deflated.write_all(&scene.to_bytes());
-    let scene = written.and_then(|()| deflated.finish());
-    let scene = scene.expect("writing to memory cannot fail");
-    Some(json!({ "program": STANDARD.encode(PROGRAM), "scene": STANDARD.encode(scene) }))
 }

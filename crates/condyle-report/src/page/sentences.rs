@@ -65,9 +65,19 @@ fn deepest(results: &Results) -> Option<String> {
     })
 }
 
-/// States that a run has no summary yet, and the remedy.
+/// States that a run has no summary, or a damaged one, and the remedy.
 pub(super) fn unfinished(results: &Results) -> Option<&'static str> {
     let is_begun = results.wear.is_some() || results.surface.is_some();
+    if results
+        .left_out
+        .iter()
+        .any(|why| why.contains("summary.json"))
+    {
+        return Some(
+            "The file summary.json is damaged: the numbers have not been checked for plausibility. Restore it from a copy, or run \
+             the case again.",
+        );
+    }
     (results.summary.is_none() && is_begun).then_some(
         "This run is not finished, or its next cycle could not be solved: there is no summary.json, and the numbers have not \
          been checked for plausibility. Continue it with condyle run and --resume.",
@@ -254,6 +264,7 @@ pub(super) fn provenance(results: &Results) -> Vec<(String, String)> {
     facts
 }
 
+/// Returns the files that are not in the folder; damaged ones are left out with reasons.
 pub(super) fn missing(results: &Results) -> Vec<&'static str> {
     let files = [
         ("summary.json", results.summary.is_none()),
@@ -263,7 +274,13 @@ pub(super) fn missing(results: &Results) -> Vec<&'static str> {
         ("insert_*.vtu", results.surface.is_none()),
         ("case.toml", results.case.is_none()),
     ];
+    let is_damaged = |name: &str| {
+        // Meshes have a number in place of the star.
+        let begin = name.split('*').next().unwrap_or(name);
+        results.left_out.iter().any(|why| why.contains(begin))
+    };
     let missing = files.into_iter().filter(|(_, is_missing)| *is_missing);
+    let missing = missing.filter(|(name, _)| !is_damaged(name));
     missing.map(|(name, _)| name).collect()
 }
 

@@ -6,7 +6,7 @@ use std::path::Path;
 
 use condyle_results::{
     Summary,
-    catalogue::{self, Scalar},
+    catalogue::{self, MASS_LOSS_MG, Scalar},
 };
 use serde::Serialize;
 use toml::Value;
@@ -14,14 +14,20 @@ use toml::Value;
 use crate::charts::{Channel, first_and_last};
 use crate::error::ReportError;
 use crate::maps::{MAPS, MappedField};
+use crate::number::significant;
 use crate::page::{label_of, unit_of};
-use crate::results::{Region, Results, SurfaceFields, Table, unworn_surface};
+use crate::results::{CaseFacts, Region, Results, SurfaceFields, Table, unworn_surface};
+
+use crate::scene::Scene;
 
 /// A results folder that is compared with others.
 #[derive(Clone, Debug)]
 pub struct Run {
-    /// The name of the run: the folder as it was given.
+    /// The name of the run: the folder as it was given; on the page of several runs, the title of its case if no other
+    /// run has the same.
     pub name: String,
+    /// The bodies in 3-D.
+    pub(super) scene: Scene,
     /// The readable part of the folder.
     pub results: Results,
     /// The surface before the first cycle, by which meshes are compared.
@@ -37,12 +43,21 @@ impl Run {
     /// # Errors
     /// The folder is missing, or nothing in it can be read.
     pub fn read(folder: &Path) -> Result<Self, ReportError> {
+        let results = Results::read_readable(folder)?;
         Ok(Self {
             name: folder.display().to_string(),
-            results: Results::read_readable(folder)?,
+            scene: Scene::read(folder, &results),
+            results,
             // With a damaged one, maps are not subtracted.
             unworn: unworn_surface(folder).unwrap_or(None),
         })
+    }
+
+    /// Returns the title of the case, if it has one.
+    pub(super) fn title(&self) -> Option<String> {
+        let facts = CaseFacts::of(self.results.case.as_deref()?);
+        // What a case without a title is called.
+        facts.title.filter(|title| title != "Untitled")
     }
 
     /// Returns the last surfaces of two runs, if their maps can be subtracted.
@@ -110,6 +125,38 @@ impl Differences {
             maps: maps(first, second),
             notes: notes(first, second),
         }
+    }
+
+    /// Returns the difference of the mass in one sentence; `None` if a mass is not known.
+    pub(super) fn verdict(&self) -> Option<String> {
+        let [first, second] = &self.runs;
+        let mut numbers = self.numbers.iter();
+        let Some(mass) = numbers.find(|number| number.key == MASS_LOSS_MG.key) else {
+            let is_known = !self.notes.iter().any(|note| note.contains("summary.json"));
+            return is_known.then(|| format!("{second} wears as much as {first}."));
+        };
+        let (size, more) = (significant(mass.difference.abs(), 3), mass.difference > 0.0);
+        let (more, sign) = if more {
+            ("more", '+')
+        } else {
+            ("less", '\u{2212}')
+        };
+        let percent = mass.difference_percent.map_or_else(String::new, |percent| {
+            format!(" ({sign}{} %)", significant(percent.abs(), 3))
+        });
+        let beside = match mass.times_errors {
+            None => "; the discretisation error is not known",
+            Some(times) if times < 1.0 => {
+                ", less than the discretisation errors of both: it may have no other cause"
+            }
+            Some(times) => &format!(
+                ", {} times the discretisation errors of both",
+                significant(times, 2)
+            ),
+        };
+        Some(format!(
+            "{second} wears {size} mg {more} than {first}{percent}{beside}."
+        ))
     }
 
     /// Returns whether nothing differs among the parts that could be compared.

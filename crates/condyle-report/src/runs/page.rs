@@ -3,7 +3,10 @@
 use condyle_results::catalogue::{self, Scalar};
 use serde_json::{Value, json};
 
-use super::differences::{Differences, NumberDifference, Run, subtracted};
+use super::differences::{
+    CurveDifference, Differences, MapDifference, NumberDifference, Run, SettingDifference,
+    subtracted,
+};
 use crate::charts;
 use crate::figure::{
     ColourRange, Curve, MEASURED, Map, MapStyle, Panel, escape, largest_size, sheet, svg_file,
@@ -11,13 +14,29 @@ use crate::figure::{
 use crate::maps::{MAPS, MappedField};
 use crate::number::significant;
 use crate::page::{label_of, shown, unit_of};
-use crate::sheets::{Sheets, render};
+use crate::program::moving;
+use crate::scene::Scene;
+use crate::sheets::{Sheet, Sheets, render, with_own_ids};
 
-type Sheet = (&'static str, String, String);
+/// Names every run by the title of its case, unless another run has the same.
+fn name_by_titles(runs: &mut [Run]) {
+    let titles: Vec<Option<String>> = runs.iter().map(Run::title).collect();
+    for (run, title) in runs.iter_mut().zip(&titles) {
+        let same = titles.iter().filter(|other| *other == title);
+        if let Some(title) = title
+            && same.count() == 1
+        {
+            run.name.clone_from(title);
+        }
+    }
+}
 
-/// Renders several runs side by side as one HTML page: numbers with their errors, ranked differences from the first run,
-/// curves with common axes and maps with common colours. It requests nothing outside itself.
-pub fn runs_html(runs: &[Run]) -> String {
+/// Renders several runs side by side as one HTML page: the difference of the mass in a sentence, different settings, bodies
+/// in 3-D with one view, numbers with their errors, ranked differences from the first run, curves with common axes and maps
+/// with common colours. It requests nothing outside itself.
+pub fn runs_html(mut runs: Vec<Run>) -> String {
+    name_by_titles(&mut runs);
+    let runs = runs.as_slice();
     let Some((first, others)) = runs.split_first() else {
         return String::new();
     };
@@ -30,20 +49,38 @@ pub fn runs_html(runs: &[Run]) -> String {
             notes.push(note.clone());
         }
     }
+    let verdicts: Vec<String> = differences
+        .iter()
+        .filter_map(Differences::verdict)
+        .collect();
+    let scenes: Vec<&Scene> = runs.iter().map(|run| &run.scene).collect();
+    let (program, mut pictures) = (moving(&scenes), sheets(runs));
+    // The maps of wear depth stand next to the bodies.
+    let wear = pictures
+        .iter()
+        .position(|picture| picture.0 == MAPS[0].style.id);
+    let wear = wear.map(|place| pictures.remove(place));
     let sheets = Sheets {
         kicker: "condyle \u{b7} virtual wear tests",
         title: &format!("{} runs side by side", runs.len()),
-        lede: &format!("Every run is compared with the first, {}.", first.name),
+        lede: &verdicts.join(" "),
         notes: &notes,
-        body: &tables(runs, &differences),
+        body: &tables(runs, &differences, program.is_some(), wear.as_ref()),
         tables: &[],
-        pictures: &sheets(runs),
+        pictures: &pictures,
+        program: program.as_deref(),
     };
     sheets.html()
 }
 
-/// Returns the tables as HTML: numbers of all runs with their errors, and differences from the first.
-fn tables(runs: &[Run], differences: &[Differences]) -> String {
+/// Returns the tables as HTML: numbers of all runs with their errors, and differences from the first; with places for the
+/// bodies, and the maps of wear depth.
+fn tables(
+    runs: &[Run],
+    differences: &[Differences],
+    has_bodies: bool,
+    wear: Option<&Sheet>,
+) -> String {
     let with_error = |run: &Run, scalar: &Scalar| {
         let summary = run.results.summary.as_ref()?;
         let value = shown(scalar, summary.get(scalar)?, 4);
@@ -61,32 +98,81 @@ fn tables(runs: &[Run], differences: &[Differences]) -> String {
     let numbers: Vec<Vec<Option<String>>> = catalogue::results().filter_map(row).collect();
     let names: Vec<&str> = runs.iter().map(|run| run.name.as_str()).collect();
     let differences: Vec<Value> = differences.iter().map(in_words).collect();
-    let context = json!({ "names": names, "numbers": numbers, "differences": differences });
+    let context = json!({
+        "names": names,
+        "numbers": numbers,
+        "differences": differences,
+        "has_bodies": has_bodies,
+        "wear": wear.map(with_own_ids),
+    });
     render(include_str!("tables.html"), &context)
 }
 
-/// Returns a difference as the template shows it: numbers with the digits and the words of the report.
+/// Returns a difference as the template shows it: rows of text, with the digits and the words of the report.
 fn in_words(difference: &Differences) -> Value {
+    let setting = |one: &SettingDifference| json!([one.key, one.first, one.second]);
     let number = |one: &NumberDifference| {
-        let sign = if one.difference < 0.0 {
-            '\u{2212}'
-        } else {
-            '+'
-        };
+        let [first, second] = [one.first, one.second].map(|value| shown(one.scalar, value, 4));
         let magnitude = shown(one.scalar, one.difference.abs(), 3);
-        json!({
-            "label": one.label,
-            "unit": one.unit,
-            "shown": format!("{sign}{magnitude}"),
-            "difference_percent": one.difference_percent,
-            "errors": one.errors(),
-            "verdict": one.verdict(),
-        })
+        let apart = format!("{}{magnitude}", sign(one.difference));
+        let percent = one.difference_percent.map(signed);
+        let errors = one.errors().map(|errors| significant(errors, 2));
+        json!([
+            one.label,
+            one.unit,
+            first,
+            second,
+            apart,
+            percent,
+            errors,
+            one.verdict()
+        ])
     };
-    let numbers: Vec<Value> = difference.numbers.iter().map(number).collect();
-    let mut whole = json!(difference);
-    whole["numbers"] = Value::Array(numbers);
-    whole
+    let curve = |one: &CurveDifference| {
+        let percent = one
+            .rms_percent_of_range
+            .map(|percent| significant(percent, 3));
+        let [rms, at] = [one.rms, one.largest_at_percent].map(|value| significant(value, 3));
+        json!([
+            one.title,
+            one.cycle,
+            one.unit,
+            rms,
+            percent,
+            signed(one.largest),
+            at
+        ])
+    };
+    let map = |one: &MapDifference| {
+        let percent = one.largest_percent.map(|percent| significant(percent, 3));
+        let [x, z, mean] =
+            [one.x_mm, one.z_mm, one.mean_absolute].map(|value| significant(value, 3));
+        json!([
+            one.title,
+            one.unit,
+            signed(one.largest),
+            percent,
+            format!("{x}, {z}"),
+            mean
+        ])
+    };
+    // The titles are the names of the runs.
+    let settings = difference.settings.iter().filter(|one| one.key != "title");
+    json!({
+        "runs": difference.runs,
+        "settings": settings.map(setting).collect::<Vec<_>>(),
+        "numbers": difference.numbers.iter().map(number).collect::<Vec<_>>(),
+        "curves": difference.curves.iter().map(curve).collect::<Vec<_>>(),
+        "maps": difference.maps.iter().map(map).collect::<Vec<_>>(),
+    })
+}
+
+fn sign(value: f64) -> char {
+    if value < 0.0 { '\u{2212}' } else { '+' }
+}
+
+fn signed(value: f64) -> String {
+    format!("{}{}", sign(value), significant(value.abs(), 3))
 }
 
 fn sheets(runs: &[Run]) -> Vec<Sheet> {

@@ -1,17 +1,13 @@
 //! A scene as bytes.
 
-use condyle_mesh::{TriangleMesh, Vec3, coarser};
+use condyle_mesh::{PICTURE_DEVIATION_MM, TriangleMesh, Vec3, coarser};
 use serde_json::{Value, json};
 
 use super::{Scene, SceneCycle, SceneUpdate};
 use crate::figure::{Curve, Panel, finite_range};
+use crate::maps;
 use crate::number::in_words;
 use crate::results::ARTICULATING;
-
-/// Triangles of the femur in a picture: with more, a processor does not draw thirty pictures a second.
-const FEMUR_TRIANGLES: usize = 3000;
-/// Triangles of the insert's walls and backside, on which no field is shown.
-const SKIN_TRIANGLES: usize = 1200;
 
 impl Scene {
     /// Encodes the scene as the page's programs read it; places and fields have 16 bits of their range.
@@ -20,7 +16,7 @@ impl Scene {
         self.add_insert(&mut arrays);
         let fields = self.add_fields(&mut arrays);
         if let Some(femur) = &self.femur {
-            add_body(&mut arrays, "femur", &coarser(femur, FEMUR_TRIANGLES));
+            add_body(&mut arrays, "femur", femur);
         }
         for cycle in &self.cycles {
             self.add_cycle(&mut arrays, cycle);
@@ -43,7 +39,10 @@ impl Scene {
         };
         let cycles: Vec<Value> = self.cycles.iter().map(of_cycle).collect();
         let charts: Vec<Value> = self.charts.iter().map(chart).collect();
+        let directions = [self.directions.along_x(), self.directions.along_z()].concat();
         arrays.to_bytes(&json!({
+            "title": self.title,
+            "directions": directions,
             "updates": updates,
             "fields": fields,
             "cycles": cycles,
@@ -59,7 +58,7 @@ impl Scene {
             return;
         };
         arrays.whole("surface.quads", insert.articulating.quads.as_flattened());
-        add_body(arrays, "skin", &coarser(&insert.skin, SKIN_TRIANGLES));
+        add_body(arrays, "skin", &insert.skin);
         add_places(arrays, "surface.nodes", &first.nodes);
         let moved = |update: usize| {
             let nodes = self.updates[update].nodes.iter().zip(&first.nodes);
@@ -99,7 +98,8 @@ impl Scene {
                 arrays.quantised(&name, values.into_iter(), of_all);
             }
             let (label, unit) = in_words(name);
-            kept.push(json!({ "name": name, "label": label, "unit": unit }));
+            let colours = maps::colours(name);
+            kept.push(json!({ "name": name, "label": label, "unit": unit, "colours": colours }));
         }
         kept
     }
@@ -146,6 +146,7 @@ fn chart(panel: &Panel) -> Value {
 }
 
 fn add_body(arrays: &mut Arrays, name: &str, body: &TriangleMesh) {
+    let body = coarser(body, PICTURE_DEVIATION_MM);
     add_places(arrays, &format!("{name}.nodes"), &body.vertices);
     let triangles = body.triangles.as_flattened();
     arrays.whole(&format!("{name}.triangles"), triangles);

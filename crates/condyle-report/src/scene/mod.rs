@@ -8,7 +8,7 @@ mod read;
 
 use condyle_fem::HexMesh;
 use condyle_mesh::{TriangleMesh, Vec3};
-use condyle_results::NeutralPose;
+use condyle_results::{Directions, NeutralPose};
 
 use crate::charts;
 use crate::figure::Panel;
@@ -20,6 +20,10 @@ pub struct Scene {
     insert: Option<SceneInsert>,
     updates: Vec<SceneUpdate>,
     charts: Vec<Panel>,
+    /// The names of its directions.
+    pub directions: Directions,
+    /// The title of the case.
+    pub title: String,
     /// The femur in the insert frame at neutral.
     pub femur: Option<TriangleMesh>,
     /// The pose of the femur at neutral.

@@ -11,7 +11,9 @@ use condyle_results::{KeptCycle, catalogue::UPDATES, check_file, cycle_pressure_
 
 use super::{Scene, SceneCycle};
 use crate::error::ReportError;
-use crate::results::{ARTICULATING, Results, Table, meshes, read_mesh, table, without_folder};
+use crate::results::{
+    ARTICULATING, CaseFacts, Results, Table, meshes, read_mesh, table, without_folder,
+};
 
 /// Files that only the 3-D view needs, and the consequence of the lack of each.
 const MOVING_FILES: [(&str, &str); 4] = [
@@ -51,6 +53,9 @@ impl Scene {
         scene.neutral_pose = summary.and_then(|summary| summary.neutral_pose);
         scene.cycles = kept_cycles(folder, &mut scene.missing);
         scene.add_charts(results);
+        scene.directions = results.directions();
+        let facts = results.case.as_deref().map(CaseFacts::of);
+        scene.title = facts.and_then(|facts| facts.title).unwrap_or_default();
         for (name, without) in MOVING_FILES {
             if !folder.join(name).exists() {
                 let why = format!("{name} is not in the folder: {without}.");

@@ -149,7 +149,25 @@ fn the_page_of_an_unfinished_run_states_its_progress() {
     results.case = Some(String::from("[march]\ncycles = 8_000_000\n"));
     let html = report_html(&results);
     assert!(html.contains("This run is not finished"));
-    assert!(html.contains("After 5 million of 8 million gait cycles"));
+    assert!(html.contains("After 5 million of 8 million cycles"));
+}
+
+#[test]
+fn a_damaged_file_is_not_called_missing() {
+    let folder = tempfile::tempdir().expect("a folder can be made");
+    fixture::write(folder.path());
+    let path = folder.path().join("summary.json");
+    std::fs::write(path, "{\"cycles\": 5").expect("can be written");
+    let results = Results::read_readable(folder.path()).expect("the rest is whole");
+    let html = report_html(&results);
+    assert!(html.contains("The file summary.json is damaged"));
+    for words in [
+        "This run is not finished",
+        "there is no summary.json",
+        "Missing in the folder",
+    ] {
+        assert!(!html.contains(words), "{words}");
+    }
 }
 
 #[test]
