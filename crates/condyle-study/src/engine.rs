@@ -23,7 +23,7 @@ use condyle_results::{Summary, catalogue};
 use crate::{
     error::StudyError,
     plan::{Plan, Shard, Test, TestOutputs, TestResult},
-    search::search,
+    search::next_tests,
     store::{DATABASE, Store},
 };
 
@@ -95,17 +95,21 @@ pub fn run_study(
         run_tests(tests, threads, &work, &mut keep, &mut progress, listener)
     };
     if plan.is_search() {
-        search(plan, &mut |tests| {
+        let mut known = Vec::new();
+        loop {
+            known.extend(store.known(plan, known.len() as u64)?);
+            let Some(tests) = next_tests(plan, &known) else {
+                return Ok(());
+            };
+            // Of an interrupted batch, some tests are stored.
             let mut left = Vec::new();
             for test in tests {
                 if store.outputs(test.row, plan)?.is_none() {
-                    left.push(test.clone());
+                    left.push(test);
                 }
             }
             run(&mut left.into_iter())?;
-            store.outputs_of(tests, plan)
-        })?;
-        return Ok(());
+        }
     }
     let rows = store.missing(plan)?.into_iter();
     run(&mut rows

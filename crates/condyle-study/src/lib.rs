@@ -6,8 +6,10 @@
 
 mod answers;
 mod converge;
+mod descent;
 mod design;
 mod distribution;
+mod emulator;
 mod engine;
 mod error;
 mod observed_order;

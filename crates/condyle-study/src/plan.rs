@@ -77,7 +77,7 @@ impl Plan {
         }
         let inputs = study.inputs.len();
         let most = match &study.design {
-            Design::Sobol(_) => MAX_AXES,
+            Design::Sobol(_) | Design::Optimise(_) => MAX_AXES,
             // A Saltelli design takes two independent values of each input from one point.
             Design::Saltelli(_) => MAX_AXES / 2,
             _ => usize::MAX,
@@ -85,8 +85,8 @@ impl Plan {
         if inputs > most {
             let design = study.design.word();
             return Err(StudyError::Plan(format!(
-                "a {design} design takes {most} inputs at most, and the study has {inputs}; use kind = \"latin-hypercube\", \
-                 or let fewer inputs vary"
+                "a {design} design takes {most} inputs at most, and the study has {inputs}; let fewer inputs vary, or use \
+                 kind = \"latin-hypercube\""
             )));
         }
         let mut copula = None;

@@ -298,14 +298,21 @@ impl Store {
         })
     }
 
-    /// Returns the results of several tests; none if one of them is not stored.
-    pub(crate) fn outputs_of(
+    /// Returns the stored tests from row `first` on, up to the first row that is not stored.
+    pub(crate) fn known(
         &self,
-        tests: &[Test],
         plan: &Plan,
-    ) -> Result<Option<Vec<TestResult>>, StudyError> {
-        let found = tests.iter().map(|test| self.outputs(test.row, plan));
-        found.collect()
+        first: u64,
+    ) -> Result<Vec<(Test, TestResult)>, StudyError> {
+        let mut known = Vec::new();
+        for row in first.. {
+            let both = (self.test(row, plan)?, self.outputs(row, plan)?);
+            let (Some(test), Some(result)) = both else {
+                break;
+            };
+            known.push((test, result));
+        }
+        Ok(known)
     }
 
     /// Returns test `row` with its stored inputs, which for a search are stored only here; none if it is not stored.

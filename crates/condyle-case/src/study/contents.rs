@@ -175,6 +175,8 @@ impl Study {
             Design::Rows(_) => out.line(&format!("{:?}", self.rows), ""),
             Design::Optimise(keys) => {
                 keys.write(&mut out);
+                // Stored tests of another method must not be taken for those of this one.
+                out.line("method", "emulators");
                 let bounds = self.answers.bounds.iter();
                 let bound = bounds.map(|bound| (bound.output.key, bound.least, bound.most));
                 out.line(&format!("{:?}", bound.collect::<Vec<_>>()), "");

@@ -101,7 +101,7 @@ settings! {
         /// The output to be minimised within the limits.
         minimise: String = "mass_loss_mg".to_owned();
         /// Largest number of tests.
-        size: u64 = 400, in within(10.0, 1e6);
+        size: u64 = 100, in within(10.0, 500.0);
         /// Seed of the random numbers: the same seed gives the same tests.
         seed: u64 = 1, in within(0.0, 9e15);
     }
@@ -180,7 +180,7 @@ variants! {
         OneAtATime(FactorialKeys) = "one-at-a-time",
         /// The rows of a CSV file.
         Rows(RowsKeys) = "rows",
-        /// A search for the optimum.
+        /// A search for the optimum, by emulators of the outputs.
         Optimise(OptimiseKeys) = "optimise",
     }
 }

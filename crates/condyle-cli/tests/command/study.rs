@@ -90,10 +90,23 @@ fn seeds_differ_and_pictures_are_there() {
 
 #[test]
 fn a_study_that_is_killed_goes_on_and_does_nothing_twice() {
+    goes_on_where_it_is_killed(&of("size = 40"));
+}
+
+#[test]
+fn a_search_that_is_killed_goes_on_and_does_nothing_twice() {
+    goes_on_where_it_is_killed(SEARCH);
+}
+
+/// A search of one range.
+const SEARCH: &str = "case = \"case.toml\"\n[design]\nkind = \"optimise\"\nsize = 24\n\
+                      [[vary]]\nkey = \"contact.friction\"\nlow = 0.02\nhigh = 0.1\n\
+                      [[limit]]\noutput = \"peak_pressure_mpa\"\nmost = 100\n";
+
+fn goes_on_where_it_is_killed(study: &str) {
     use std::{process::Stdio, thread::sleep, time::Duration};
-    let study = of("size = 40");
-    let whole = table(&bench(&study), &[]);
-    let killed = bench(&study);
+    let whole = table(&bench(study), &[]);
+    let killed = bench(study);
     let mut kept_before = 0;
     for _ in 0..6 {
         let mut command =
@@ -243,20 +256,27 @@ fn designs_are_ranked_under_the_same_disturbances() {
 
 #[test]
 fn a_search_finds_the_end_that_wears_least_and_says_how_it_ended() {
-    let study = "case = \"case.toml\"\n[design]\nkind = \"optimise\"\nsize = 60\n\
-                 [[vary]]\nkey = \"contact.friction\"\nlow = 0.02\nhigh = 0.1\n\
-                 [[limit]]\noutput = \"peak_pressure_mpa\"\nmost = 100\n";
-    let bench = bench(study);
+    let bench = bench(SEARCH);
     let said = bench.say(&["study", "study.toml", "--out", "out", "--threads", "2"]);
     assert_eq!(said.code, Some(0), "{}", said.err);
     let table = |out: &str| fs::read(bench.path(out).join("table.csv")).unwrap();
     let alone = ["study", "study.toml", "--out", "alone", "--threads", "1"];
     assert_eq!(bench.say(&alone).code, Some(0));
     assert_eq!(table("out"), table("alone"));
-    assert!(said.out.contains("The search"), "{}", said.out);
-    let best = &answers(&bench)["best"];
     assert!(
-        best["row"].is_u64() && best["outputs"][0][1].as_f64().unwrap() > 0.0,
+        said.out.contains("another test is expected to lower"),
+        "{}",
+        said.out
+    );
+    let best = &answers(&bench)["best"];
+    assert_eq!(best["inputs"][0]["first"], 0.07, "the case itself: {best}");
+    let mass = |of: &str| best["outputs"][0][of].as_f64().unwrap();
+    assert!(
+        best["row"].is_u64() && mass("value") < mass("first"),
+        "{best}"
+    );
+    assert!(
+        best["margins"][0]["margin"].as_f64().unwrap() > 0.0,
         "{best}"
     );
 }

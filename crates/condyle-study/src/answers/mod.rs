@@ -124,15 +124,7 @@ impl Answers {
             parts.insert(1, failed);
         }
         parts.extend(self.doubts());
-        if let Some(best) = &self.best {
-            let (generations, step) = (best.generations, percent(best.step));
-            let end = format!("after {generations} generations its steps are {step} of the ranges");
-            parts.push(if best.is_converged {
-                format!("The search has converged: {end}.\n")
-            } else {
-                format!("The search has not converged: {end}. Allow more tests.\n")
-            });
-        }
+        parts.extend(self.best.as_ref().and_then(end_of_search));
         parts.join("\n")
     }
 
@@ -268,13 +260,47 @@ impl Answers {
             Some(row) => format!("least {}: row {row}", best.minimised),
             None => "no test keeps every limit".to_owned(),
         };
-        let inputs = best.inputs.iter();
-        let inputs = inputs.map(|(key, value)| (key.as_str(), *value));
-        let values: Vec<_> = inputs.chain(best.outputs.iter().copied()).collect();
-        table(&[&head, "value"], &values, |(name, value)| {
-            vec![(*name).to_owned(), shown(*value)]
+        let inputs = best.inputs.iter().map(|one| (one, String::new()));
+        let outputs = best
+            .outputs
+            .iter()
+            .map(|one| (one, margins(best, &one.name)));
+        let values: Vec<_> = inputs.chain(outputs).collect();
+        let head = [&head, "value", "first test", "margin to its limit"];
+        table(&head, &values, |(one, margins)| {
+            vec![
+                one.name.clone(),
+                shown(one.value),
+                shown(one.first),
+                margins.clone(),
+            ]
         })
     }
+}
+
+/// Returns the margins of the best test to the limits of an output, in words.
+fn margins(best: &Best, output: &str) -> String {
+    let own = best.margins.iter().filter(|one| one.output == output);
+    let own = own.map(|one| format!("{} to {}", shown(one.margin), shown(one.limit)));
+    own.collect::<Vec<_>>().join(", ")
+}
+
+/// Returns how a search ended, in a sentence; none while no test is within the limits.
+fn end_of_search(best: &Best) -> Option<String> {
+    let standing = best.standing?;
+    let unit = best.unit;
+    let [improvement, error] =
+        [standing.expected_improvement, standing.left_out_error.abs()].map(shown);
+    let end = if standing.is_converged {
+        "The search has converged"
+    } else {
+        "The optimum may be a local one, allow more tests"
+    };
+    Some(format!(
+        "{end}: another test is expected to lower {} by {improvement} {unit} at most. Its emulator (Q2 {:.4}) predicts the best \
+         test from the others within {error} {unit}.\n",
+        best.minimised, standing.q2
+    ))
 }
 
 fn largest_first<'a, T>(own: impl Iterator<Item = &'a T>, size: impl Fn(&T) -> f64) -> Vec<&'a T> {

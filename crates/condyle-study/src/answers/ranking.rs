@@ -1,6 +1,6 @@
 //! Comparison of designs, the optimum of a search, and the Pareto front.
 
-use condyle_case::study::Design;
+use condyle_case::study::{Bound, Design};
 use condyle_results::catalogue::{self, Scalar};
 use serde::Serialize;
 
@@ -8,7 +8,7 @@ use crate::{
     answers::data::Data,
     error::StudyError,
     plan::designs,
-    search::search,
+    search::{Standing, standing},
     statistics::{mean, standard_deviation, wilson_interval},
     store::Store,
 };
@@ -133,26 +133,63 @@ fn wins(one: &[f64], other: &[f64]) -> f64 {
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub(crate) struct Best {
     pub minimised: &'static str,
+    #[serde(skip)]
+    pub unit: &'static str,
     /// The best test within every limit, if there is one.
     pub row: Option<u64>,
-    pub inputs: Vec<(String, f64)>,
-    pub outputs: Vec<(&'static str, f64)>,
-    pub generations: u64,
-    /// The largest step at the end, as a part of the ranges.
-    pub step: f64,
-    pub is_converged: bool,
+    pub inputs: Vec<Valued>,
+    pub outputs: Vec<Valued>,
+    /// Distances of the best test from the limits, positive within them.
+    pub margins: Vec<Margin>,
+    pub standing: Option<Standing>,
     /// The number of tests and the best value, at each improvement.
     #[serde(skip)]
     pub progress: Vec<(f64, f64)>,
+}
+
+/// A value of the best test, and that of the first one: the case itself, if it lies within the ranges.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub(crate) struct Valued {
+    pub name: String,
+    pub value: f64,
+    pub first: f64,
+}
+
+impl Valued {
+    fn new(name: &str, values: &[f64], row: usize) -> Self {
+        Self {
+            name: name.to_owned(),
+            value: values[row],
+            first: values[0],
+        }
+    }
+}
+
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub(crate) struct Margin {
+    pub output: &'static str,
+    pub limit: f64,
+    pub margin: f64,
+}
+
+/// Returns the distances of a value from the ends of a bound.
+fn margins(bound: &Bound, value: f64) -> impl Iterator<Item = Margin> {
+    let least = bound.least.map(|limit| (limit, value - limit));
+    let most = bound.most.map(|limit| (limit, limit - value));
+    let output = bound.output.key;
+    let margin = move |(limit, margin)| Margin {
+        output,
+        limit,
+        margin,
+    };
+    [least, most].into_iter().flatten().map(margin)
 }
 
 impl Best {
     /// Returns the optimum; none for a study that is not a search.
     pub fn read(data: &Data<'_>, store: &Store) -> Result<Option<Self>, StudyError> {
         let plan = data.plan;
-        // The search is repeated on its stored tests, and ends in the same state.
-        let searched = search(plan, &mut |tests| store.outputs_of(tests, plan))?;
-        let (Some(searched), Design::Optimise(keys)) = (searched, &plan.study().design) else {
+        let Design::Optimise(keys) = &plan.study().design else {
             return Ok(None);
         };
         let values = store.column(plan, &keys.minimise)?.values;
@@ -160,21 +197,26 @@ impl Best {
         let minimised = catalogue::output(&keys.minimise);
         let mut best = Self {
             minimised: minimised.map_or("", |output| output.key),
+            unit: minimised.map_or("", Scalar::unit),
             row: row.map(|row| row as u64),
             inputs: Vec::new(),
             outputs: Vec::new(),
-            generations: searched.generations,
-            step: searched.step,
-            is_converged: searched.is_converged(),
+            margins: Vec::new(),
+            standing: standing(plan, &store.known(plan, 0)?),
             progress,
         };
         if let Some(row) = row {
+            let valued = |name: &str, values: &[f64]| Valued::new(name, values, row);
             let inputs = plan.study().inputs.iter().zip(&data.inputs);
-            let inputs = inputs.map(|(input, column)| (input.key.clone(), column.values[row]));
+            let inputs = inputs.map(|(input, column)| valued(&input.key, &column.values));
             best.inputs = inputs.collect();
             for output in catalogue::outputs() {
-                let value = store.column(plan, output.key)?.values[row];
-                best.outputs.push((output.key, value));
+                let values = store.column(plan, output.key)?.values;
+                let bounds = plan.study().answers.bounds.iter();
+                let own = bounds.filter(|bound| bound.output.key == output.key);
+                best.margins
+                    .extend(own.flat_map(|bound| margins(bound, values[row])));
+                best.outputs.push(valued(output.key, &values));
             }
         }
         Ok(Some(best))
