@@ -105,6 +105,23 @@ def table_of_constants(fit, samples):
     return text
 
 
+def row_of_form(fit, samples, found, hips_wear):
+    """Constants, evidence, and predicted over measured with each laboratory left out."""
+    factor, exponent = 1.63 * math.exp(np.median(samples[:, 0])), np.median(samples[:, 1])
+    ratio = {row["test"]: found[row["test"]]["quantiles"][2] / float(row["value"]) for row in fit.rows}
+    knees, hips = ("fixed", "stable"), ("orbital-28", "iso-hip-bovine", "iso-hip-calf")
+    inside = [sum(each) for each in zip(*(each["inside"] for each in found.values()), strict=True)]
+    return [
+        type(fit.form).__name__,
+        "worn by runs" if hips_wear else "closed form, unworn",
+        f"{factor:.3g}, {exponent:.2f}",
+        f"{sum(each['log_density'] for each in found.values()):.1f}",
+        ", ".join(f"{ratio[test]:.2f}" for test in knees),
+        ", ".join(f"{ratio[test]:.2f}" for test in hips),
+        f"{inside[0]}, {inside[1]} of {len(found)}",
+    ]
+
+
 def draws(samples):
     chosen = samples[np.linspace(0, len(samples) - 1, DRAWS).astype(int)]
     rng = np.random.default_rng(SEED)
@@ -147,25 +164,25 @@ def main():
     stored = json.loads(rates_path.read_text(encoding="utf-8"))
     rows = tests()
     page, evidence = "", []
-    for title, form_of, key in [("Saturating", Saturating, "saturating"), ("Power", Power, "power")]:
-        own = {tuple(name.split()): np.array(list(by_m.values())) for name, by_m in stored[key].items()}
-        form = form_of(own)
+    for form_of, hips_wear in [(Saturating, False), (Power, False), (Saturating, True)]:
+        own = {test: np.array(list(by_m.values())) for test, by_m in stored[form_of.__name__.lower()].items()}
+        form = form_of(own, hips_wear)
         # Between the knees here, at the law in the middle of the prior: the implants of two laboratories are unknown.
         middle = [np.array([each]) for each in form.start]
-        logs = [np.log(form.rate((knee, "stable"), np.array([0.5]), middle)) for knee in KNEES]
+        logs = [np.log(form.rate(f"{knee} stable", np.array([0.5]), middle)) for knee in KNEES]
         geometry_log_sd = float(np.std(logs, ddof=1))
         fit = Fit(form, rows, geometry_log_sd)
         samples = sampled(fit)
         found = left_out(form, rows, geometry_log_sd)
-        evidence.append([title, f"{sum(each['log_density'] for each in found.values()):.1f}", f"{geometry_log_sd:.2f}"])
-        if form_of is Saturating:
+        evidence.append(row_of_form(fit, samples, found, hips_wear))
+        if form_of is Saturating and not hips_wear:
             draws_path.write_text(draws(samples), encoding="utf-8")
             picture_path.write_text(picture(rows, found), encoding="utf-8")
             page += (
                 table_of_constants(fit, samples) + "\n" + table_of_tests(rows, found) + "\n" + table_of_coverage(rows, found)
             )
-    page += "\n" + head(["form", "log predictive density, each laboratory left out", "deviation between knees, log"])
-    page += "".join(line(each) for each in evidence)
+    names = ["form", "hips", "factor, exponent", "log predictive density", "fixed, stable knee", "hips", "inside 50 %, 90 %"]
+    page += "\n" + head(names) + "".join(line(each) for each in evidence)
     page_path.write_text(page, encoding="utf-8")
 
 

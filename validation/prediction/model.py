@@ -20,6 +20,12 @@ EXPONENTS = np.array([0.0, 0.2, 0.4, 0.6, 0.8, 1.0])
 SATURATIONS = np.array([0.002, 0.005, 0.0125, 0.03, 0.08, 0.2, 0.5])
 POWERS = np.array([0.0, 0.1, 0.2, 0.4, 0.8, 1.6])
 KNEES = ["generic", "dm", "cams"]
+# Orders of the rotations of the hip simulator, from the cup to the head: the standard leaves them open.
+ISO_HIPS = {
+    "iso-hip fae": ["flexion", "abduction", "rotation"],
+    "iso-hip aef": ["abduction", "rotation", "flexion"],
+    "iso-hip efa": ["rotation", "flexion", "abduction"],
+}
 # Tracks of the disc: an arc that is bent by the sphere, and an ellipse.
 DISC_CROSS_SHEAR = [3e-4, 0.3]
 BALL_RADIUS_MM, BALL_LOAD_N, BALL_WORK_NM, BALL_CYCLES = 28.0, 126.0, 0.106, 200e6
@@ -62,13 +68,16 @@ class Surface:
 class Form:
     """A form of the effect of cross-shear: names and prior of its constants, and the predictions."""
 
-    def __init__(self, rates_of_knees):
-        """`rates_of_knees[knee, condition][m][k]`: mg a million cycles at the points of the grid, with the circle's factor."""
-        hips = {"orbital-28": [Hip(14, "orbital")], "iso-hip": [Hip(14, "iso", order) for order in ("fae", "aef", "efa")]}
-        self.rates = {name: self.surfaces(rates) for name, rates in rates_of_knees.items()}
-        for name, each in hips.items():
-            rates = np.mean([self.rates_of_hip(hip) for hip in each], axis=0)
-            self.rates[name] = self.surfaces(rates)
+    def __init__(self, runs, hips_wear):
+        """`runs[test][m][k]`: mg a million cycles at the points of the grid, with the circle's factor.
+
+        Hips that wear are those of runs, whose contact grows over 5 million cycles; the others keep the unworn shape.
+        """
+        rates = runs
+        if not hips_wear:
+            rates = runs | {name: self.rates_of_hip(Hip(14, "iso", name[-3:])) for name in ISO_HIPS}
+            rates["orbital-28"] = self.rates_of_hip(Hip(14, "orbital"))
+        self.rates = {test: self.surfaces(each) for test, each in rates.items()}
         self.ball = CubicSpline(EXPONENTS, [math.log(ball_over_circle(exponent)) for exponent in EXPONENTS])
 
     def rates_of_hip(self, hip):
@@ -80,19 +89,20 @@ class Form:
         """By test; every argument is an array of one value per sample."""
         rate = {name: np.log(self.rate(name, exponent, constants)) for name in self.rates}
 
-        def mean(condition, knees):
-            return np.mean([rate[knee, condition] for knee in knees], axis=0)
+        def mean(tests):
+            return np.mean([rate[test] for test in tests], axis=0)
 
+        stable, unstable = ([f"{knee} {condition}" for knee in KNEES[:2]] for condition in ("stable", "unstable"))
         at_circle = {
             "pins": np.zeros_like(exponent),
             "ball": self.ball(exponent),
             "orbital-28": rate["orbital-28"],
-            "iso-hip-bovine": rate["iso-hip"],
-            "iso-hip-calf": rate["iso-hip"],
-            "fixed": mean("stable", KNEES[:2]),
-            "stable": mean("stable", KNEES[:2]),
-            "unstable": mean("unstable", KNEES[:2]),
-            "in-house": rate["cams", "stable"],
+            "iso-hip-bovine": mean(ISO_HIPS),
+            "iso-hip-calf": mean(ISO_HIPS),
+            "fixed": mean(stable),
+            "stable": mean(stable),
+            "unstable": mean(unstable),
+            "in-house": rate["cams stable"],
         }
         logs = {test: log_factor + value for test, value in at_circle.items()}
         logs["pins"] += math.log(CIRCLE_FACTOR)

@@ -1,6 +1,6 @@
-"""Rates of knees by the law `power-law` on a grid of its constants, mg a million cycles, each law moving the surface itself.
+"""Rates of knees and hips by the law `power-law` on a grid of its constants, mg a million cycles, each law moving the surface itself.
 
-Usage: rates.py CONDYLE RUNS OUT. Writes OUT as JSON: by knee and condition a row per exponent of pressure, with the columns of
+Usage: rates.py CONDYLE RUNS OUT. Writes OUT as JSON: by test a row per exponent of pressure, with the columns of
 the saturating form (its saturations, then no cross-shear) and of powers.
 """
 
@@ -11,12 +11,15 @@ import sys
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
-from model import CIRCLE_FACTOR, EXPONENTS, KNEES, POWERS, SATURATIONS
+from model import CIRCLE_FACTOR, EXPONENTS, ISO_HIPS, KNEES, POWERS, SATURATIONS
 
 sys.path.append(str(Path(__file__).parents[1] / "published"))
 from knees import KNEES as CASES
 from knees import Runs
 
+TRANSLATIONS = ["lateral", "anterior", "penetration"]
+HIPS = {name: ("hip-iso", [f"machine.order={json.dumps([*TRANSLATIONS, *order])}"]) for name, order in ISO_HIPS.items()}
+HIPS["orbital-28"] = ("hip-orbital", [])
 # A saturation far above any cross-shear leaves a plain power.
 UNSATURATED = 1000.0
 
@@ -29,18 +32,18 @@ def constants():
 
 def main():
     condyle, folder, out = sys.argv[1:]
+    tests = {f"{knee} {condition}": CASES[knee][condition] for knee in KNEES for condition in ("stable", "unstable")} | HIPS
     jobs = [
-        (knee, condition, form, exponent, each)
-        for knee in KNEES
-        for condition in ("stable", "unstable")
+        (test, form, exponent, each)
+        for test in tests
         for form, own in constants().items()
         for exponent in EXPONENTS
         for each in own
     ]
 
     def rate(number):
-        knee, condition, _, exponent, (power, saturation, line) = jobs[number]
-        case, changes = CASES[knee][condition]
+        test, _, exponent, (power, saturation, line) = jobs[number]
+        case, changes = tests[test]
         own = [
             "wear.law=power-law",
             f"wear.circle_factor_mm3_per_nm={CIRCLE_FACTOR}",
@@ -59,8 +62,8 @@ def main():
     with ThreadPoolExecutor(os.cpu_count()) as pool:
         found = list(pool.map(rate, range(len(jobs))))
     rates = {}
-    for (knee, condition, form, exponent, _), each in zip(jobs, found, strict=True):
-        rows = rates.setdefault(form, {}).setdefault(f"{knee} {condition}", {})
+    for (test, form, exponent, _), each in zip(jobs, found, strict=True):
+        rows = rates.setdefault(form, {}).setdefault(test, {})
         rows.setdefault(f"{exponent:g}", []).append(each)
     Path(out).write_text(json.dumps(rates, indent=1) + "\n", encoding="utf-8")
 
