@@ -70,6 +70,16 @@ pub struct Directions {
 }
 
 impl Directions {
+    /// Returns whether the joint is a knee, whose surface has a medial and a lateral side.
+    pub fn is_knee(self) -> bool {
+        self.joint == TestedJoint::Knee
+    }
+
+    /// Returns the names of the counterface and of the bearing, such as `head` and `cup`.
+    pub fn bodies(self) -> [&'static str; 2] {
+        self.joint.bodies()
+    }
+
     /// Returns the names of +x and -x.
     pub fn along_x(self) -> [&'static str; 2] {
         match self.joint {

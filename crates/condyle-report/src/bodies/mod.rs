@@ -11,7 +11,6 @@ use condyle_results::Directions;
 use flate2::{Compression, Crc, write::ZlibEncoder};
 
 use crate::figure::{escape, finite_range, scale_bar, svg_file};
-use crate::number::first_letter_large;
 
 /// The axes of the machine in the insert frame, mm.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -82,10 +81,9 @@ pub fn bodies_svg(picture: &BodiesPicture<'_>) -> String {
     let (base, caption) = (height - 8.0, escape(picture.caption));
     body += &format!(r#"<text x="{BETWEEN:.1}" y="{base:.1}">{caption}</text>"#);
     body += &scale_bar((x - BETWEEN, height - 16.0), scale);
-    let [counterface, bearing] = picture.directions.joint.bodies();
+    let [counterface, bearing] = picture.directions.bodies();
     let desc = format!(
-        "{} and {bearing} from the front, from the right and from above.",
-        first_letter_large(counterface)
+        "The {counterface} and the {bearing} from the front, from the right and from above."
     );
     svg_file(picture.title, &desc, (x, height), &body)
 }

@@ -8,7 +8,7 @@ use super::{
     marker::{Marker, TextRow},
     svg::{Path, escape, scale_bar, titled},
 };
-use condyle_results::{Directions, TestedJoint};
+use condyle_results::Directions;
 
 use crate::number::{fixed, significant};
 use crate::results::{Extreme, Region, SurfaceFields};
@@ -206,7 +206,7 @@ impl Map<'_> {
         let heights = path(&contours.regions(&heights, &levels).concat());
         let mut middle = Path::default();
         let [(x_low, x_high), _] = self.surface.bounds();
-        if self.directions.joint == TestedJoint::Knee {
+        if self.directions.is_knee() {
             middle.open([x_high, x_low].map(|x| self.place()(x, 0.0)));
         }
         let middle = middle.data();

@@ -6,7 +6,7 @@ mod tables;
 
 pub(crate) use numbers::{label_of, shown, unit_of};
 
-use condyle_results::{TestedJoint, catalogue::WEAR_OVER_CONVENTIONAL};
+use condyle_results::catalogue::WEAR_OVER_CONVENTIONAL;
 use serde_json::{Value, json};
 
 use crate::charts;
@@ -73,9 +73,8 @@ fn page_of(results: &Results, scene: Option<&Scene>) -> String {
             "disagreements": sentences::disagreements(results),
             "wear_map": wear_map.map(|map| map.svg(&map.desc(), "")),
             "regions": tables::regions(results),
-            "is_cup": surface.is_some_and(|surface| surface.is_cup),
-            "is_knee": results.directions().joint == TestedJoint::Knee,
-            "bodies": results.directions().joint.bodies(),
+            "joint": results.directions().joint.name(),
+            "bodies": results.directions().bodies(),
             "wear_laws": summary.map_or(&[][..], |summary| &summary.wear_laws),
             "wear_over_conventional": times.map(|times| significant(times, 3)),
             "activities": activities,

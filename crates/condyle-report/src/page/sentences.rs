@@ -38,7 +38,7 @@ pub(super) fn lede(results: &Results, case: &CaseFacts) -> Option<String> {
     let volume = volume.map(|volume| format!(" ({} mm\u{b3})", significant(volume, 3)));
     let rate = (cycles > 0.0).then(|| significant(mass_mg * MILLION / cycles, 3));
     let rate = rate.map(|rate| format!(", {rate} mg in a million cycles on average"));
-    let [_, bearing] = results.directions().joint.bodies();
+    let [_, bearing] = results.directions().bodies();
     Some(format!(
         "After {done}{} cycles the {bearing} has lost {} mg{}{}.{}",
         of.unwrap_or_default(),

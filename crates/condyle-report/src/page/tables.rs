@@ -4,7 +4,7 @@ use serde_json::{Value, json};
 
 use super::numbers::unit_of;
 use super::sentences::{not_estimated, reached};
-use condyle_results::{ErrorParts, Part, Side, catalogue::VOLUME_LOSS_MM3};
+use condyle_results::{ErrorParts, Part, catalogue::VOLUME_LOSS_MM3};
 
 use crate::charts::{Channel, first_and_last};
 use crate::number::{first_letter_large, fixed, significant};
@@ -35,10 +35,8 @@ pub(super) fn regions(results: &Results) -> Value {
         return Value::Null;
     };
     let mut regions = Region::all_of(results.directions());
-    if results.side == Side::Left {
-        // Medial comes first.
-        regions.reverse();
-    }
+    // Medial comes first on both sides.
+    regions.sort_by_key(|(_, name)| *name == "Lateral");
     match regions.len() {
         1 => regions[0].1 = "Value",
         _ => regions.push((Region::Whole, "Both")),

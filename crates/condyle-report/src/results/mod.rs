@@ -15,7 +15,7 @@ use std::path::{MAIN_SEPARATOR, Path, PathBuf};
 use condyle_mesh::formats::{VtuFile, read_vtu_points};
 use condyle_results::{
     ActivitySummary, COMPARED, COMPARED_KINEMATICS, COMPARED_WEAR, Directions, MotionColumn, Side,
-    Summary, TestedJoint, check_file,
+    Summary, check_file,
 };
 
 use crate::error::ReportError;
@@ -100,9 +100,8 @@ impl Results {
         }
         let case = part(case(&folder.join("case.toml")), on_damage)?;
         let summary = part(summary(&folder.join("summary.json")), on_damage)?;
-        let is_cup = summary
-            .iter()
-            .any(|summary| summary.joint == TestedJoint::Hip);
+        let mut joints = summary.iter().map(|summary| summary.joint.name());
+        let is_cup = joints.any(|joint| joint == "hip");
         let mut activities = Vec::new();
         for activity in summary
             .iter()
@@ -140,7 +139,7 @@ impl Results {
     pub fn directions(&self) -> Directions {
         let summary = self.summary.as_ref();
         Directions {
-            joint: summary.map_or_else(TestedJoint::default, |summary| summary.joint),
+            joint: summary.map(|summary| summary.joint).unwrap_or_default(),
             side: self.side,
         }
     }

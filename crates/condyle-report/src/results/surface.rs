@@ -4,7 +4,7 @@ use std::collections::BTreeSet;
 use std::path::Path;
 
 use condyle_fem::{HexMesh, Vec3};
-use condyle_results::{Directions, TestedJoint};
+use condyle_results::Directions;
 
 use crate::error::ReportError;
 
@@ -50,7 +50,7 @@ impl Region {
     /// Returns the regions whose values are stated separately, with their names: the sides of a knee from -z to +z; the
     /// whole surface, without a name, of another joint.
     pub fn all_of(directions: Directions) -> Vec<(Self, &'static str)> {
-        if directions.joint == TestedJoint::Knee {
+        if directions.is_knee() {
             let [left, right] = directions.along_z();
             return vec![(Self::Left, left), (Self::Right, right)];
         }

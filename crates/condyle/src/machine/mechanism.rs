@@ -256,7 +256,7 @@ pub enum CycleQuantity {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum TestedJoint {
-    /// A knee.
+    /// Knee.
     #[default]
     Knee,
     /// A hip.
