@@ -106,7 +106,8 @@ need_page() {
     if [[ ! -d $(rustc --print sysroot)/lib/rustlib/$target ]]; then
         rustup target add "$target" || skip "there is no $target, and rustup cannot add it"
     fi
-    cargo build --profile web --target "$target" --locked --quiet -p condyle-web
+    # With its progress: the first build takes minutes.
+    cargo build --profile web --target "$target" --locked -p condyle-web
     mkdir -p "$built/page"
     page=$(cd "$built/page" && pwd)
     wasm=$page/condyle-web.wasm

@@ -110,6 +110,46 @@ async function sliders(page) {
   return solved_ms;
 }
 
+// A new run shows nothing of the run before from the moment it starts.
+async function freshStart(page) {
+  await page.evaluate(() => {
+    window.atStart = [];
+    const note = () => {
+      if (!document.documentElement.hasAttribute("data-busy")) return;
+      window.atStart.push({ words: document.getElementById("state").textContent, part: document.getElementById("progress").value });
+    };
+    new MutationObserver(note).observe(document.documentElement, { attributeFilter: ["data-busy"] });
+  });
+  await ran(page, () => page.getByLabel("Friction").fill("0.09"));
+  const [first] = await page.evaluate(() => window.atStart);
+  assert(first && first.part < 1 && !/solved/.test(first.words), JSON.stringify(first));
+}
+
+// The address has the case: it survives a reload, and the browser's back and forward undo and redo.
+async function remembered(page) {
+  const text = () => page.locator("#case-text").inputValue();
+  await ran(page, () => page.getByLabel("Friction").fill("0.11"));
+  const later = await text();
+  assert.match(new URL(page.url()).hash, /^#case=[\w-]+$/);
+  await ran(page, () => page.goBack());
+  assert.match(await text(), /friction = 0\.09/);
+  await ran(page, () => page.goForward());
+  assert.strictEqual(await text(), later);
+  await page.reload();
+  await page.waitForSelector("html[data-ready] .stage canvas");
+  assert.strictEqual(await text(), later, "a reload loses the case");
+}
+
+// An example replaces the case, and the sliders that it lacks are disabled.
+async function examples(page) {
+  await ran(page, () => page.getByLabel("Example").selectOption("Pin on disc"));
+  assert.match(await page.locator("#case-text").inputValue(), /preset = "pin-on-disc"/);
+  assert(await page.getByLabel("Distal radius").isDisabled(), "a pin has a distal radius");
+  await ran(page, () => page.getByLabel("Friction").fill("0.05"));
+  assert.strictEqual(await page.getByLabel("Example").inputValue(), "");
+  await ran(page, () => page.getByLabel("Example").selectOption("Knee, Stanmore simulator"));
+}
+
 async function comparing(page) {
   await page.getByRole("button", { name: "Keep this run" }).click();
   await ran(page, () => page.getByLabel("Friction").fill("0.14"));
@@ -130,6 +170,8 @@ async function textWithFaults(page) {
   assert.match(offered, /friction/, offered);
   await page.keyboard.press("Enter");
   assert.strictEqual(await page.locator("#case-text").inputValue(), "[contact]\nfriction");
+  await write(page, " \n");
+  await page.waitForFunction(() => /the case is empty/.test(document.getElementById("failure").textContent));
   await ran(page, () => write(page, QUICK));
   assert(await page.locator("#failure").isHidden(), "the message stays");
 }
@@ -220,6 +262,12 @@ async function offline(context, server, url) {
   await picture(page);
   const overhang = await page.evaluate(() => document.documentElement.scrollWidth - innerWidth);
   assert(overhang <= 0, `the page is ${overhang} px wider than a telephone`);
+  // The picture stays in sight above the slider that changes it.
+  await page.getByLabel("Friction").scrollIntoViewIfNeeded();
+  const [stage, slider] = await Promise.all([page.locator(".stage").boundingBox(), page.getByLabel("Friction").boundingBox()]);
+  assert(stage.y > -1 && stage.y + stage.height <= slider.y, `the picture is at ${stage.y} px, the slider at ${slider.y} px`);
+  await keep(page, "telephone-slider");
+  await page.evaluate(() => scrollTo(0, 0));
   await keep(page, "telephone");
 }
 
@@ -235,6 +283,9 @@ async function main() {
     const summary = await sameAsInNode(page);
     await numbers(page, summary);
     const solved_ms = await sliders(page);
+    await freshStart(page);
+    await remembered(page);
+    await examples(page);
     await comparing(page);
     await textWithFaults(page);
     await cancelled(page);

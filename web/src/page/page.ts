@@ -1,16 +1,16 @@
 // The laboratory as a web page: a case, its run, and the controls of both.
 
 import plotStyle from "uplot/dist/uPlot.min.css";
-import { element } from "../dom";
+import { choice, element, labelled } from "../dom";
 import { Plot } from "../plots";
 import { inDigits } from "../digits";
 import { save, saveText } from "../save";
 import type { Scene } from "../scene";
 import viewStyle from "../style.css";
 import schema from "../../../cases/condyle.schema.json";
-import genericCase from "../../../cases/stanmore-force.toml";
 import { take, takeDropped, type Bodies } from "./dropped";
 import { Editor } from "./editor";
+import { EXAMPLES } from "./examples";
 import { Laboratory } from "./laboratory";
 import { Memory } from "./memory";
 import { comparison, doubts, notes, tiles } from "./numbers";
@@ -33,6 +33,7 @@ class Page {
   private readonly shown = new ShownRun(byId("bodies"), byId("worn"), byId("gait"));
   private readonly sliders: Sliders;
   private readonly editor: Editor;
+  private readonly examples = this.newExamples();
   private now: Found | undefined;
   private kept: Found | undefined;
   private plots: Plot[] = [];
@@ -57,7 +58,9 @@ class Page {
     this.editor.text = text;
     byId("text").append(this.editor.box);
     byId("sliders").append(this.sliders.box);
+    byId("examples").append(labelled("Example", this.examples));
     this.sliders.show();
+    this.nameExample(text);
     this.buttons();
     this.takeFiles();
     memory.onReturn((text) => this.open(text));
@@ -76,6 +79,19 @@ class Page {
       "save-report": () => this.saveReport(),
     };
     for (const [id, act] of Object.entries(pressed)) byId(id).addEventListener("click", () => void act());
+  }
+
+  private newExamples(): HTMLSelectElement {
+    const options = EXAMPLES.map(([title]): [string, string] => [title, title]);
+    return choice([["", "Choose a case"], ...options], (chosen) => {
+      const example = EXAMPLES.find(([title]) => title === chosen);
+      if (example) this.open(example[1]);
+    });
+  }
+
+  // A text that is no longer that of an example has none, so that the example can be chosen again.
+  private nameExample(text: string): void {
+    this.examples.value = EXAMPLES.find(([, known]) => known === text)?.[0] ?? "";
   }
 
   private takeFiles(): void {
@@ -102,10 +118,12 @@ class Page {
 
   private change(text: string): void {
     this.editor.text = text;
+    this.nameExample(text);
     this.laboratory.change(text);
   }
 
   private typed(text: string): void {
+    this.nameExample(text);
     this.laboratory.change(text);
     this.sliders.show();
   }
@@ -217,8 +235,7 @@ async function compiled(): Promise<WebAssembly.Module> {
 
 async function start(): Promise<void> {
   document.head.append(element("style", {}, plotStyle + viewStyle + style));
-  // The first line names a schema file for editors on the disk.
-  const generic = genericCase.replace(/^#:schema.*\n/, "");
+  const generic = EXAMPLES[0]![1];
   const memory = new Memory(generic);
   const [module, recalled] = await Promise.all([compiled(), memory.recalled()]);
   const page = new Page(module, recalled ?? generic, memory);

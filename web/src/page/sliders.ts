@@ -101,7 +101,7 @@ export class Sliders {
       input.min = String(Math.min(moved.least, found));
       input.max = String(Math.max(moved.most, found));
       slider.value = found;
-      if (input.disabled) slider.say("by the mesh");
+      if (input.disabled) slider.say("not of this shape");
     }
   }
 
