@@ -161,6 +161,8 @@ const MAY_USE: &[(&str, &[&str])] = &[
         &[
             "condyle_report::error",
             "condyle_results",
+            // The joint of a body.
+            "condyle::machine::mechanism",
             "condyle_mesh",
             "condyle_fem",
         ],
@@ -171,6 +173,8 @@ const MAY_USE: &[(&str, &[&str])] = &[
             "condyle_results::side",
             "condyle_report::number",
             "condyle_report::results",
+            // The joint of a body.
+            "condyle::machine::mechanism",
         ],
     ),
     (
@@ -240,6 +244,7 @@ const MAY_USE: &[(&str, &[&str])] = &[
         &[
             "condyle_results::side",
             "condyle_report::figure",
+            "condyle_report::number",
             "condyle_report::results",
             "condyle_fem",
             "condyle_mesh",
@@ -270,8 +275,9 @@ const MAY_USE: &[(&str, &[&str])] = &[
             "condyle_report::program",
             "condyle_report::results",
             "condyle_report::scene",
-            // The table of units.
+            // The table of units, and the joint of a body.
             "condyle::parameter",
+            "condyle::machine::mechanism",
             "condyle_report::sheets",
         ],
     ),
