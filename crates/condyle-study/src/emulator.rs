@@ -234,6 +234,67 @@ impl Emulator {
         left_out.collect()
     }
 
+    /// Returns the emulator from the tests for which `is_left_out` is false; none if it cannot be conditioned.
+    pub fn without(&self, is_left_out: impl Fn(usize) -> bool) -> Option<Self> {
+        let kept = || (0..self.points.len()).filter(|test| !is_left_out(*test));
+        let points = kept().map(|test| self.points[test].clone()).collect();
+        let values = kept().map(|test| self.values[test]).collect();
+        Self::with(points, values, self.logarithms.clone())
+    }
+
+    /// Returns the factor by which errors of left-out tests exceed their predicted standard deviations, at least 1.
+    pub fn underestimate(&self) -> f64 {
+        let left_out = self.left_out();
+        let ratios = left_out
+            .iter()
+            .map(|one| (one.mean / one.standard_deviation).powi(2));
+        (ratios.sum::<f64>() / left_out.len() as f64)
+            .sqrt()
+            .max(1.0)
+    }
+
+    /// Returns the first and the total Sobol index of every axis for the mean of the process, with `nodes` equally likely
+    /// places along each. The mean is a sum over the tests of products over the axes, w_i c_1(x_1) c_2(x_2) ..., so that
+    /// all variances are products of means over one axis (Oakley and O'Hagan 2004).
+    pub fn indices(&self, nodes: &[Vec<f64>]) -> Vec<[f64; 2]> {
+        let axes = nodes.iter().enumerate().map(|(axis, nodes)| {
+            let with_node = |test: usize, node: usize| {
+                let place = [self.points[test][axis]];
+                correlation(&[self.lengths[axis]], &place, &[nodes[node]])
+            };
+            let with_nodes = DMatrix::from_fn(self.points.len(), nodes.len(), with_node);
+            let means = with_nodes.column_mean();
+            let products = &with_nodes * with_nodes.transpose() / nodes.len() as f64;
+            (means, products)
+        });
+        let (means, products): (Vec<DVector<f64>>, Vec<DMatrix<f64>>) = axes.unzip();
+        let weights = &self.process.weights;
+        let others = |axis: usize| (0..nodes.len()).filter(move |other| *other != axis);
+        let mean = means
+            .iter()
+            .fold(weights.clone(), |all, one| all.component_mul(one))
+            .sum();
+        let all = (1..nodes.len()).fold(products[0].clone(), |all, axis| {
+            all.component_mul(&products[axis])
+        });
+        let square = mean * mean;
+        let variance = weights.dot(&(all * weights)) - square;
+        let index = |axis: usize| {
+            let alone =
+                others(axis).fold(weights.clone(), |all, one| all.component_mul(&means[one]));
+            let alone = alone.dot(&(&products[axis] * &alone)) - square;
+            let rest = weights.component_mul(&means[axis]);
+            let count = self.points.len();
+            let of_rest = others(axis)
+                .fold(DMatrix::from_element(count, count, 1.0), |all, one| {
+                    all.component_mul(&products[one])
+                });
+            let of_rest = rest.dot(&(of_rest * &rest)) - square;
+            [alone / variance, 1.0 - of_rest / variance]
+        };
+        (0..nodes.len()).map(index).collect()
+    }
+
     /// Returns Q2, the share of the variance of the values that predictions from the other tests explain; 1 for constant
     /// values.
     pub fn q2(&self) -> f64 {
@@ -392,6 +453,38 @@ pub(crate) mod tests {
             println!("{count} tests: Q2 {unseen:.4} unseen, {left_out:.4} left out");
             assert!(unseen > least, "{unseen} {left_out}");
             assert!((unseen - left_out).abs() < 0.05, "{unseen} {left_out}");
+        }
+    }
+
+    fn exact_ishigami() -> Vec<[f64; 2]> {
+        vec![[0.3139, 0.5576], [0.4424, 0.4424], [0.0, 0.2437]]
+    }
+
+    fn exact_g_function() -> Vec<[f64; 2]> {
+        let own = G_WEIGHTS.map(|a| 1.0 / (3.0 * (1.0 + a).powi(2)));
+        let all: f64 = own.iter().map(|own| 1.0 + own).product();
+        own.map(|own| [own, own * all / (1.0 + own)].map(|part| part / (all - 1.0)))
+            .to_vec()
+    }
+
+    #[test]
+    fn verify_indices_in_closed_form() {
+        for (of, count, exact, within) in [
+            (ishigami as fn(&[f64]) -> f64, 256, exact_ishigami(), 0.01),
+            (g_function, 200, exact_g_function(), 0.01),
+        ] {
+            let tests = points(count, exact.len(), 1);
+            let emulator = Emulator::fit(&tests, &values(&tests, of)).unwrap();
+            let nodes: Vec<f64> = (0..128)
+                .map(|node| (f64::from(node) + 0.5) / 128.0)
+                .collect();
+            let found = emulator.indices(&vec![nodes; exact.len()]);
+            println!("{found:.4?}");
+            for (found, exact) in found.iter().zip(&exact) {
+                for (found, exact) in found.iter().zip(exact) {
+                    assert!((found - exact).abs() < within, "{found} {exact}");
+                }
+            }
         }
     }
 

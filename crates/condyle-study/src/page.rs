@@ -46,8 +46,9 @@ pub fn write_answers(plan: &Plan, folder: &Path) -> Result<Answers, StudyError> 
     };
     let title = Some(answers.title.as_str()).filter(|title| !title.is_empty());
     let doubts = answers.doubts().unwrap_or_default();
-    let lede = format!("{kept} tests of a {design} design; {end}. {doubts}");
-    let lede = lede.trim_end();
+    let answer = answers.sentence().unwrap_or_default();
+    let lede = format!("{answer} {kept} tests of a {design} design; {end}. {doubts}");
+    let lede = lede.trim();
     let (tables, pictures) = (answers.tables(), pictures(&answers));
     write_study_page(folder, title.unwrap_or("A study"), lede, &tables, &pictures)?;
     Ok(answers)

@@ -162,7 +162,7 @@ impl Plan {
     fn places(&self, row: u64) -> Vec<Place> {
         let inputs = self.study.inputs.len();
         let counts = |points| counts(&self.study, points);
-        let mut places = match &self.study.design {
+        let places = match &self.study.design {
             Design::LatinHypercube(keys) => latin_places(row, self.tests, inputs, keys.seed),
             Design::Sobol(keys) => sobol_places(row, inputs, keys.seed),
             Design::Saltelli(keys) => Saltelli::places(row, inputs, keys.seed),
@@ -171,6 +171,11 @@ impl Plan {
             Design::OneAtATime(keys) => one_at_a_time_places(row, &counts(keys.points)),
             Design::Rows(_) | Design::Optimise(_) => Vec::new(),
         };
+        self.correlated(places)
+    }
+
+    /// Returns places with the correlations of the study.
+    pub(crate) fn correlated(&self, mut places: Vec<Place>) -> Vec<Place> {
         if let Some(copula) = &self.copula {
             copula.apply(&mut places);
         }

@@ -21,13 +21,25 @@ pub(crate) struct Indices {
     pub input: String,
     /// By the input alone.
     pub first: f64,
-    /// The 95 % interval, by bootstrap.
+    /// The 95 % interval, by bootstrap or from the emulator.
     pub first_interval: [f64; 2],
     /// Total index: the input with its interactions.
     pub total: f64,
     pub total_interval: [f64; 2],
-    /// Bases with all tests done.
+    /// Bases with all tests done, or tests of the emulator.
     pub bases: usize,
+}
+
+impl Indices {
+    /// Returns the first index in words. It cannot exceed the total one, except by the scatter of both.
+    pub fn first_in_words(&self) -> String {
+        let noise = if self.first > self.total {
+            " (noise)"
+        } else {
+            ""
+        };
+        format!("{:.3}{noise}", self.first)
+    }
 }
 
 /// Returns the indices of a Saltelli design; empty for other designs.

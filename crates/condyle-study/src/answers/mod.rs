@@ -2,6 +2,7 @@
 
 pub(crate) mod data;
 pub(crate) mod effects;
+pub(crate) mod emulated;
 pub(crate) mod indices;
 pub(crate) mod ranking;
 
@@ -12,6 +13,7 @@ use crate::{
     answers::{
         data::{Data, Spread},
         effects::{Effect, Elementary},
+        emulated::{Emulated, MIN_Q2, emulated},
         indices::Indices,
         ranking::{Best, Front, Ranking},
     },
@@ -34,6 +36,7 @@ pub struct Answers {
     pub(crate) effects: Vec<Effect>,
     pub(crate) elementary: Vec<Elementary>,
     pub(crate) indices: Vec<Indices>,
+    pub(crate) emulated: Vec<Emulated>,
     pub(crate) ranking: Option<Ranking>,
     pub(crate) front: Option<Front>,
     pub(crate) best: Option<Best>,
@@ -45,16 +48,46 @@ pub(crate) struct TestsByReason {
     pub(crate) tests: u64,
 }
 
+/// Joins reasons that differ in their numbers only, such as the places of a failure; the most frequent kind first.
+fn by_kind(reasons: Vec<(String, u64)>) -> Vec<TestsByReason> {
+    let mut kinds: Vec<TestsByReason> = Vec::new();
+    for (reason, tests) in reasons {
+        let reason = without_numbers(&reason);
+        match kinds.iter_mut().find(|kind| kind.reason == reason) {
+            Some(kind) => kind.tests += tests,
+            None => kinds.push(TestsByReason { reason, tests }),
+        }
+    }
+    kinds.sort_by_key(|kind| std::cmp::Reverse(kind.tests));
+    kinds
+}
+
+/// Returns a text with every number replaced by `#`.
+fn without_numbers(text: &str) -> String {
+    let is_part = |c: char| c.is_ascii_digit() || c == '.' || c == '-' || c == '+';
+    let word = |word: &str| {
+        let number = word
+            .trim_matches(|c: char| !is_part(c))
+            .trim_end_matches('.');
+        let is_number = number.parse::<f64>().is_ok();
+        if is_number {
+            word.replace(number, "#")
+        } else {
+            word.to_owned()
+        }
+    };
+    text.split(' ').map(word).collect::<Vec<_>>().join(" ")
+}
+
 impl Answers {
     pub(crate) fn read(plan: &Plan, store: &Store) -> Result<Self, StudyError> {
         let study = plan.study();
         let data = Data::read(plan, store)?;
         let counted = |status| -> Result<Vec<TestsByReason>, StudyError> {
-            let reasons = store.reasons(status)?.into_iter();
-            Ok(reasons
-                .map(|(reason, tests)| TestsByReason { reason, tests })
-                .collect())
+            Ok(by_kind(store.reasons(status)?))
         };
+        let counted_indices = indices::indices(&data);
+        let (emulated, emulated_indices) = emulated(&data);
         Ok(Self {
             title: study.title.clone(),
             design: study.design.word(),
@@ -69,7 +102,13 @@ impl Answers {
                 .collect(),
             effects: effects::effects(&data),
             elementary: effects::elementary_effects(&data),
-            indices: indices::indices(&data),
+            // Counted indices need no emulator.
+            indices: if counted_indices.is_empty() {
+                emulated_indices
+            } else {
+                counted_indices
+            },
+            emulated,
             ranking: Ranking::read(&data, store)?,
             front: Front::read(&data, store)?,
             best: Best::read(&data, store)?,
@@ -112,6 +151,27 @@ impl Answers {
         self.failed.iter().map(|failed| failed.tests).sum()
     }
 
+    /// Returns the main answer in a sentence; none for a study without one.
+    pub(crate) fn sentence(&self) -> Option<String> {
+        let of_search = || self.best.as_ref().and_then(sentence_of_search);
+        let of_designs = || self.ranking.as_ref().and_then(sentence_of_designs);
+        of_search()
+            .or_else(of_designs)
+            .or_else(|| self.sentence_of_indices())
+    }
+
+    fn sentence_of_indices(&self) -> Option<String> {
+        let all = self.largest_indices();
+        let [one, other, ..] = all.as_slice() else {
+            return None;
+        };
+        let (both, output) = (percent(one.first + other.first), one.output);
+        let (one, other) = (&one.input, &other.input);
+        Some(format!(
+            "{one} and {other} explain {both} of the variance of {output}."
+        ))
+    }
+
     /// Tables in Markdown, short enough for a terminal.
     pub fn markdown(&self) -> String {
         let tables = self.tables();
@@ -133,6 +193,7 @@ impl Answers {
         let tables = [
             ("Outputs", self.table_of_spreads()),
             ("Ranking", self.table_of_designs()),
+            ("Emulators", self.table_of_emulators()),
             ("Sobol indices", self.table_of_indices()),
             ("Elementary effects of Morris", self.table_of_elementary()),
             ("Effects of inputs", self.table_of_effects()),
@@ -157,10 +218,8 @@ impl Answers {
         ];
         table(&head, &self.spreads, |spread| {
             let [_, p5, _, p50, _, p95, _] = spread.percentiles;
-            let beyond = spread.beyond.iter().map(|beyond| {
-                let [low, high] = beyond.interval.map(percent);
-                format!("{} ({low} to {high})", percent(beyond.share))
-            });
+            let beyond = spread.beyond.iter();
+            let beyond = beyond.map(|beyond| with_interval(beyond.share, beyond.interval));
             let (least, most) = (spread.least, spread.most);
             let numbers = [
                 least,
@@ -189,18 +248,50 @@ impl Answers {
                 design.name.clone(),
                 shown(design.mean),
                 shown(design.standard_deviation),
-                percent(design.within_limits),
-                percent(design.best),
+                with_interval(design.within_limits, design.within_limits_interval),
+                with_interval(design.best, design.best_interval),
             ]
         });
         for (place, other) in ranking.designs.iter().enumerate() {
             rows[0].push(format!("beats {}", other.name));
             for (own, design) in ranking.designs.iter().enumerate() {
-                let share = (own != place).then(|| percent(design.beats[place]));
+                let share = (own != place)
+                    .then(|| with_interval(design.beats[place], design.beats_intervals[place]));
                 rows[own + 1].push(share.unwrap_or_else(|| "-".to_owned()));
             }
         }
         rows
+    }
+
+    fn table_of_emulators(&self) -> Vec<Vec<String>> {
+        if self.emulated.is_empty() {
+            return Vec::new();
+        }
+        let head = [
+            "emulator of",
+            "tests",
+            "Q2",
+            "used for indices and limits",
+            "beyond its limit",
+        ];
+        table(&head, &self.emulated, |one| {
+            let beyond = one.beyond.iter().map(|beyond| {
+                let [low, high] = beyond.interval.map(chance);
+                format!("{} ({low} to {high})", chance(beyond.probability))
+            });
+            let used = if one.q2 >= MIN_Q2 {
+                "yes".to_owned()
+            } else {
+                format!("no, Q2 is below {MIN_Q2}")
+            };
+            vec![
+                one.title.to_owned(),
+                one.tests.to_string(),
+                format!("{:.4}", one.q2),
+                used,
+                beyond.collect::<Vec<_>>().join(", "),
+            ]
+        })
     }
 
     fn table_of_indices(&self) -> Vec<Vec<String>> {
@@ -210,7 +301,7 @@ impl Answers {
         table_of_most(&[&input, "first", "95 %", "total", "95 %"], &all, |index| {
             vec![
                 index.input.clone(),
-                format!("{:.3}", index.first),
+                index.first_in_words(),
                 range(index.first_interval),
                 format!("{:.3}", index.total),
                 range(index.total_interval),
@@ -234,7 +325,8 @@ impl Answers {
 
     /// Returns the table of effects, for designs without a specific table.
     fn table_of_effects(&self) -> Vec<Vec<String>> {
-        if !self.indices.is_empty() || !self.elementary.is_empty() || self.best.is_some() {
+        let is_counted = self.design == "saltelli";
+        if is_counted || !self.elementary.is_empty() || self.best.is_some() {
             return Vec::new();
         }
         let output = self.effects.first().map_or("", |one| one.output);
@@ -276,6 +368,25 @@ impl Answers {
             ]
         })
     }
+}
+
+fn sentence_of_search(best: &Best) -> Option<String> {
+    let minimised = best.outputs.iter().find(|one| one.name == best.minimised)?;
+    let [value, first] = [minimised.value, minimised.first].map(shown);
+    let (name, unit, row) = (best.minimised, best.unit, best.row?);
+    Some(format!(
+        "The least {name} within all limits is {value} {unit}, in row {row}; the first test has {first} {unit}."
+    ))
+}
+
+fn sentence_of_designs(ranking: &Ranking) -> Option<String> {
+    let first = ranking.designs.first()?;
+    let best = with_interval(first.best, first.best_interval);
+    let within = with_interval(first.within_limits, first.within_limits_interval);
+    let (name, title) = (&first.name, ranking.title);
+    Some(format!(
+        "{name} ranks first: it has the least {title} under {best} of the disturbances, and keeps every limit under {within}."
+    ))
 }
 
 /// Returns the margins of the best test to the limits of an output, in words.
@@ -340,6 +451,16 @@ pub(crate) fn shown(value: f64) -> String {
     }
     let decimals = (3 - value.abs().log10().floor() as i32).max(0) as usize;
     format!("{value:.decimals$}")
+}
+
+fn with_interval(share: f64, interval: [f64; 2]) -> String {
+    let [low, high] = interval.map(percent);
+    format!("{} ({low} to {high})", percent(share))
+}
+
+/// Returns a probability in percent, to a ten thousandth.
+fn chance(probability: f64) -> String {
+    format!("{:.2} %", 100.0 * probability)
 }
 
 fn percent(share: f64) -> String {

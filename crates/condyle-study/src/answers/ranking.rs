@@ -31,8 +31,10 @@ pub(crate) struct RankedDesign {
     pub standard_deviation: f64,
     /// Share of the disturbances under which the design is within every limit.
     pub within_limits: f64,
+    pub within_limits_interval: [f64; 2],
     /// Share of the disturbances under which no other design is better.
     pub best: f64,
+    pub best_interval: [f64; 2],
     /// The probability of beating each design of the list, ties counted half.
     pub beats: Vec<f64>,
     pub beats_intervals: Vec<[f64; 2]>,
@@ -81,7 +83,21 @@ impl Ranking {
     }
 }
 
-/// Returns the designs sorted by how often no other is better, then by the mean.
+/// Share of the disturbances under which a design must keep every limit to rank before those that do not.
+const MIN_WITHIN: f64 = 0.95;
+
+impl Outcomes {
+    fn within(&self) -> f64 {
+        let within = self.within_limits.iter().filter(|within| **within);
+        within.count() as f64
+    }
+
+    fn keeps_limits(&self) -> bool {
+        self.within() >= MIN_WITHIN * self.values.len() as f64
+    }
+}
+
+/// Returns the designs sorted by whether they keep the limits, then by how often no other is better, then by the mean.
 fn ranked(all: &[Outcomes]) -> Vec<RankedDesign> {
     let best = |design: &Outcomes| {
         let is_best = |row: &usize| {
@@ -95,20 +111,27 @@ fn ranked(all: &[Outcomes]) -> Vec<RankedDesign> {
         .iter()
         .map(|design| (best(design), mean(&design.values), design))
         .collect();
-    order.sort_by(|one, other| other.0.total_cmp(&one.0).then(one.1.total_cmp(&other.1)));
+    order.sort_by(|one, other| {
+        let by_limits = other.2.keeps_limits().cmp(&one.2.keeps_limits());
+        by_limits
+            .then(other.0.total_cmp(&one.0))
+            .then(one.1.total_cmp(&other.1))
+    });
     let ranked = order.iter().map(|&(best, mean, own)| {
         let tests = own.values.len() as f64;
         let others = order
             .iter()
             .map(|(_, _, other)| wins(&own.values, &other.values));
         let wins: Vec<f64> = others.collect();
-        let within = own.within_limits.iter().filter(|within| **within).count();
+        let within = own.within();
         RankedDesign {
             name: own.name.clone(),
             mean,
             standard_deviation: standard_deviation(&own.values),
-            within_limits: within as f64 / tests.max(1.0),
+            within_limits: within / tests.max(1.0),
+            within_limits_interval: wilson_interval(within, tests),
             best,
+            best_interval: wilson_interval(best * tests, tests),
             beats: wins.iter().map(|wins| wins / tests.max(1.0)).collect(),
             beats_intervals: wins
                 .iter()
@@ -315,6 +338,18 @@ mod tests {
         );
         assert!(ranked[0].beats_intervals[1][0] > 0.9);
         assert!(ranked[0].standard_deviation > 10.0);
+    }
+
+    #[test]
+    fn designs_within_their_limits_rank_first() {
+        let outcomes = |name: &str, value: f64, within: bool| Outcomes {
+            name: name.to_owned(),
+            values: vec![value; 20],
+            within_limits: vec![within; 20],
+        };
+        let ranked = ranked(&[outcomes("flat", 1.0, false), outcomes("deep", 2.0, true)]);
+        assert_eq!(ranked[0].name, "deep");
+        assert!(ranked[0].within_limits_interval[0] > 0.8);
     }
 
     #[test]

@@ -1,0 +1,238 @@
+//! Sobol indices and probabilities of limits from emulators of the outputs.
+
+use condyle_case::{
+    config::Level,
+    study::{Bound, Design, Input},
+};
+use condyle_results::catalogue::Scalar;
+use serde::Serialize;
+
+use crate::{
+    answers::{
+        data::{Data, is_sampled},
+        indices::Indices,
+    },
+    design::latin_places,
+    distribution::{level_at_share, normal_share},
+    emulator::Emulator,
+    plan::designs,
+    statistics::{NORMAL_95, extent, mean, wilson_interval},
+};
+
+/// Smallest Q2 of an emulator that answers are computed from: it leaves a tenth of the variance unexplained, by which
+/// its indices may be wrong.
+pub(crate) const MIN_Q2: f64 = 0.9;
+/// Largest number of tests that condition an emulator.
+const MAX_TESTS: usize = 256;
+/// Values of an input in integrals over its distribution, each equally likely.
+const NODES: usize = 128;
+/// Groups of tests of which each is left out once.
+const GROUPS: usize = 10;
+/// Points at which an emulator is compared with a limit.
+const POINTS: u64 = 20_000;
+const SEED: u64 = 20_220_101;
+
+/// An emulator of an output and what follows from it.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub(crate) struct Emulated {
+    pub output: &'static str,
+    pub title: &'static str,
+    pub unit: &'static str,
+    /// Tests that condition the emulator.
+    pub tests: usize,
+    pub q2: f64,
+    /// Probabilities of being beyond each limit; none if Q2 is too small.
+    pub beyond: Vec<Chance>,
+}
+
+/// The probability that an output is beyond a limit.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub(crate) struct Chance {
+    pub least: Option<f64>,
+    pub most: Option<f64>,
+    pub probability: f64,
+    /// The probability if all predictions are off by 1.96 standard deviations to either side, with the interval of the
+    /// points.
+    pub interval: [f64; 2],
+}
+
+/// The scale of an input: its coordinates in the tests span 1.
+struct Axis<'a> {
+    input: &'a Input,
+    low: f64,
+    width: f64,
+}
+
+impl Axis<'_> {
+    fn place(&self, value: f64) -> f64 {
+        (value - self.low) / self.width
+    }
+
+    /// Returns the place of the value at this share of the distribution.
+    fn at_share(&self, share: f64) -> f64 {
+        match level_at_share(self.input, share) {
+            Level::Number(value) => self.place(value),
+            Level::Word(_) => f64::NAN,
+        }
+    }
+
+    fn nodes(&self) -> Vec<f64> {
+        let share = |node: usize| (node as f64 + 0.5) / NODES as f64;
+        (0..NODES).map(|node| self.at_share(share(node))).collect()
+    }
+}
+
+/// Returns the emulators of all outputs and the Sobol indices from them; empty for studies without a random sample of
+/// numbers of one design.
+pub(crate) fn emulated(data: &Data<'_>) -> (Vec<Emulated>, Vec<Indices>) {
+    let study = data.plan.study();
+    let is_sample = matches!(
+        study.design,
+        Design::LatinHypercube(_) | Design::Sobol(_) | Design::Saltelli(_)
+    );
+    let has_words = data.inputs.iter().any(|column| !column.words.is_empty());
+    if !is_sample || has_words || designs(study) > 1 || study.inputs.is_empty() {
+        return Default::default();
+    }
+    let inputs = study.inputs.iter().zip(&data.inputs);
+    let axes = inputs.map(|(input, column)| {
+        let [low, high] = extent(
+            column
+                .values
+                .iter()
+                .copied()
+                .filter(|value| value.is_finite()),
+        );
+        let width = if high > low { high - low } else { 1.0 };
+        Axis { input, low, width }
+    });
+    let axes: Vec<Axis<'_>> = axes.collect();
+    let (mut all, mut indices) = (Vec::new(), Vec::new());
+    for (output, values) in &data.outputs {
+        let Some(emulator) = emulator(data, &axes, values) else {
+            continue;
+        };
+        let mut emulated = Emulated::new(output, &emulator);
+        if emulated.q2 >= MIN_Q2 {
+            let bounds = study.answers.bounds.iter();
+            let own = bounds.filter(|bound| bound.output.key == output.key);
+            emulated.beyond = own
+                .map(|bound| chance(data, &axes, &emulator, bound))
+                .collect();
+            if study.correlations.is_empty() {
+                indices.extend(of_output(&axes, &emulator, &emulated));
+            }
+        }
+        all.push(emulated);
+    }
+    (all, indices)
+}
+
+/// Returns an emulator of an output from the first tests of the sample that are done.
+fn emulator(data: &Data<'_>, axes: &[Axis<'_>], values: &[f64]) -> Option<Emulator> {
+    let rows = values.iter().enumerate();
+    let done = rows.filter(|(row, value)| value.is_finite() && is_sampled(data.plan, *row));
+    let places = done.take(MAX_TESTS).map(|(row, value)| {
+        let columns = axes.iter().zip(&data.inputs);
+        let point = columns.map(|(axis, column)| axis.place(column.values[row]));
+        (point.collect::<Vec<f64>>(), *value)
+    });
+    let (points, values): (Vec<_>, Vec<_>) = places.unzip();
+    // With fewer tests than lengths, the likeliest lengths mean little.
+    if points.len() <= axes.len() + 2
+        || extent(values.iter().copied())
+            .windows(2)
+            .any(|ends| ends[0] == ends[1])
+    {
+        return None;
+    }
+    Emulator::fit(&points, &values)
+}
+
+impl Emulated {
+    fn new(output: &Scalar, emulator: &Emulator) -> Self {
+        Self {
+            output: output.key,
+            title: output.label,
+            unit: output.unit(),
+            tests: emulator.left_out().len(),
+            q2: emulator.q2(),
+            beyond: Vec::new(),
+        }
+    }
+}
+
+/// Returns the indices of the emulator's mean. Their intervals are 1.96 standard errors by the jackknife over groups of
+/// tests (Efron 1982) and the part of the variance that the emulator does not explain, to either side.
+fn of_output(axes: &[Axis<'_>], emulator: &Emulator, emulated: &Emulated) -> Vec<Indices> {
+    let nodes: Vec<Vec<f64>> = axes.iter().map(Axis::nodes).collect();
+    let all = emulator.indices(&nodes);
+    let groups = (0..GROUPS).filter_map(|group| emulator.without(|test| test % GROUPS == group));
+    let without: Vec<Vec<[f64; 2]>> = groups.map(|one| one.indices(&nodes)).collect();
+    let index = |(place, axis): (usize, &Axis<'_>)| {
+        let interval = |kind: usize| {
+            let own: Vec<f64> = without.iter().map(|one| one[place][kind]).collect();
+            let half = NORMAL_95 * jackknife_error(&own) + (1.0 - emulated.q2);
+            [-half, half].map(|by| (all[place][kind] + by).clamp(0.0, 1.0))
+        };
+        Indices {
+            output: emulated.output,
+            input: axis.input.key.clone(),
+            // Rounding may leave the index of an inactive input below 0.
+            first: all[place][0].max(0.0),
+            first_interval: interval(0),
+            total: all[place][1].max(0.0),
+            total_interval: interval(1),
+            bases: emulated.tests,
+        }
+    };
+    axes.iter().enumerate().map(index).collect()
+}
+
+fn jackknife_error(without: &[f64]) -> f64 {
+    let (mean, count) = (mean(without), without.len() as f64);
+    let squares: f64 = without.iter().map(|one| (one - mean).powi(2)).sum();
+    ((count - 1.0) / count * squares).sqrt()
+}
+
+/// Returns the probability that predictions at points of the inputs' distributions are beyond a bound.
+fn chance(data: &Data<'_>, axes: &[Axis<'_>], emulator: &Emulator, bound: &Bound) -> Chance {
+    let underestimate = emulator.underestimate();
+    let [mut middle, mut low, mut high] = [0.0; 3];
+    for row in 0..POINTS {
+        let places = data
+            .plan
+            .correlated(latin_places(row, POINTS, axes.len(), SEED));
+        let values = data.plan.values_at(&places);
+        let point = axes.iter().zip(&values);
+        let point = point.map(|(axis, value)| match value {
+            Some(Level::Number(value)) => axis.place(*value),
+            _ => f64::NAN,
+        });
+        let found = emulator.predict(&point.collect::<Vec<f64>>());
+        let deviation = (found.standard_deviation * underestimate).max(f64::MIN_POSITIVE);
+        let sides = [
+            bound.least.map(|least| least - found.mean),
+            bound.most.map(|most| found.mean - most),
+        ];
+        // At most one of two limits is likely to be exceeded.
+        let excess = sides
+            .into_iter()
+            .flatten()
+            .fold(f64::NEG_INFINITY, f64::max)
+            / deviation;
+        middle += normal_share(excess);
+        low += f64::from(excess > NORMAL_95);
+        high += f64::from(excess > -NORMAL_95);
+    }
+    let points = POINTS as f64;
+    Chance {
+        least: bound.least,
+        most: bound.most,
+        probability: middle / points,
+        interval: [
+            wilson_interval(low, points)[0],
+            wilson_interval(high, points)[1],
+        ],
+    }
+}
