@@ -144,15 +144,9 @@ impl RunKeeper for Recorder {
         let tables = &mut self.record.tables;
         tables.insert("wear".into(), wear_csv(&march.state().updates));
         tables.insert("femur_pose".into(), femur_pose_csv(march, self.side));
-        let activities = march
-            .test()
-            .activities
-            .iter()
-            .zip(&march.state().activities);
-        for (number, (activity, state)) in activities.enumerate() {
-            let cycles = state.first_and_last.as_ref();
+        for (number, activity) in march.test().activities.iter().enumerate() {
             let name = kinematics_file(number, &activity.name);
-            let text = kinematics_csv(activity.machine.mechanism, cycles);
+            let text = kinematics_csv(march, number);
             tables.insert(name.trim_end_matches(".csv").to_owned(), text);
         }
     }

@@ -86,8 +86,9 @@ fn verify_a_pin_wears_by_load_times_path_on_every_path() {
     }
 }
 
-/// A ball on a flat without friction, pushed aside by 100 N against what `restraint` describes.
-fn ball_pushed_aside(spring: &str, ligament: &str) -> f64 {
+/// Returns the place of a ball on a flat without friction, pushed aside by 100 N against a spring and a ligament, mm, and the tension of
+/// the ligament, N.
+fn ball_pushed_aside(spring: &str, ligament: &str) -> (f64, Vec<f64>) {
     let text = format!(
         "[femur]\nshape = \"sphere\"\nradius_mm = 24.0\n[insert]\nshape = \"flat\"\nedge_mm = 2.0\nlayers = 2\n\
          [contact]\nfriction = 0.0\n{ONE_UPDATE}[machine]\ntests = \"specimen\"\n\
@@ -97,15 +98,16 @@ fn ball_pushed_aside(spring: &str, ligament: &str) -> f64 {
          [machine.joints.load]\nknots_n = [[0, 1000]]\n{ligament}"
     );
     let (_, march) = finished(&text);
-    rows(&march).last().unwrap().positions[0]
+    let positions = rows(&march).last().unwrap().positions;
+    (positions[0], march.ligament_tensions_n(0, &positions))
 }
 
 #[test]
 fn verify_a_spring_of_a_joint_in_balance() {
     let spring = "spring_n_per_mm = [50, 10]\nfree_play_mm = 1.0\n";
-    assert!((ball_pushed_aside(spring, "") - 3.0).abs() < 1e-3);
+    assert!((ball_pushed_aside(spring, "").0 - 3.0).abs() < 1e-3);
     let at_rest_elsewhere = format!("{spring}spring_rest_mm = 2.0\n");
-    assert!((ball_pushed_aside(&at_rest_elsewhere, "") - 5.0).abs() < 1e-3);
+    assert!((ball_pushed_aside(&at_rest_elsewhere, "").0 - 5.0).abs() < 1e-3);
 }
 
 #[test]
@@ -113,8 +115,10 @@ fn verify_a_ligament_in_balance() {
     // From the height of the ball's centre: 5000 N (x / 30 mm - 0.01) = 100 N.
     let ligament = "[[machine.ligaments]]\nname = \"line\"\non_bearing_mm = [-30, 24, 0]\non_counterface_mm = [0, 0, 0]\n\
                     stiffness_n = 5000\ntoe_strain = 0.01\nstrain_at_zero = 0.0\n";
-    let found = ball_pushed_aside("", ligament);
-    assert!((found - 0.9).abs() < 2e-3, "{found}");
+    let (found_mm, tensions_n) = ball_pushed_aside("", ligament);
+    assert!((found_mm - 0.9).abs() < 2e-3, "{found_mm}");
+    // The line is nearly along the load: its length changes in the second order of its slope.
+    assert!((tensions_n[0] - 100.0).abs() < 0.1, "{tensions_n:?}");
 }
 
 /// Under the load F a cylinder of radius r lies e below the axis of the trough of radius R: at the angle t from the load the

@@ -81,20 +81,24 @@ impl Channel {
         known.cloned().or_else(|| Self::of_joint(column))
     }
 
-    /// Returns the column of a joint by its name and unit.
+    /// Returns the column of a joint, or of a ligament's tension, by its name and unit.
     fn of_joint(column: &str) -> Option<Self> {
         let (name, _) = split_unit(column);
         let (unit, min_span) = match column.strip_prefix(name) {
             Some("_deg") => ("degrees", 1.0),
             Some("_mm") => ("mm", 0.1),
+            Some("_n") => ("N", 10.0),
             _ => return None,
         };
         Some(Self {
             column: Cow::Owned(column.to_owned()),
-            title: Cow::Owned(first_letter_large(&name.replace('_', " "))),
+            title: Cow::Owned(match unit {
+                "N" => format!("Tension of {}", name.replace('_', " ")),
+                _ => first_letter_large(&name.replace('_', " ")),
+            }),
             unit,
             positive: Cow::Borrowed(""),
-            from_zero: false,
+            from_zero: unit == "N",
             min_span,
         })
     }

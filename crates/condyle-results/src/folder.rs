@@ -334,12 +334,10 @@ impl ResultsFolder {
         )?;
         self.replace("insert.pvd", insert_pvd(&state.updates).as_bytes())?;
         self.replace("wear.csv", wear_csv(&state.updates).as_bytes())?;
-        let activities = march.test().activities.iter().zip(&state.activities);
-        for (number, (activity, own)) in activities.enumerate() {
-            let (mechanism, cycles) = (activity.machine.mechanism, own.first_and_last.as_ref());
+        for (number, activity) in march.test().activities.iter().enumerate() {
             self.replace(
                 &kinematics_file(number, &activity.name),
-                kinematics_csv(mechanism, cycles).as_bytes(),
+                kinematics_csv(march, number).as_bytes(),
             )?;
         }
         self.replace("femur_pose.csv", femur_pose_csv(march, side).as_bytes())?;

@@ -2,7 +2,10 @@
 
 use std::{collections::BTreeMap, ops::Index};
 
-use condyle::{evolve::March, machine::TestedJoint};
+use condyle::{
+    evolve::March,
+    machine::{Mechanism, TestedJoint},
+};
 use serde::{
     Deserialize, Deserializer, Serialize, Serializer, de::DeserializeOwned, ser::SerializeMap,
 };
@@ -75,16 +78,22 @@ impl Summary {
         let run = FinishedRun::new(march, facts)?;
         let values = catalogue::scalars();
         let values = values.filter_map(|scalar| Some((scalar.key, scalar.compute(&run)?)));
-        let mechanism = march.test().machine().mechanism;
         Some(Self {
             scalars: values.collect(),
             activities: ActivitySummary::of(march),
             creep: CreepSummary::of(march.state()),
+            version: env!("CARGO_PKG_VERSION").to_owned(),
+            ..Self::of_machine(march.test().machine().mechanism)
+        })
+    }
+
+    /// Creates a summary without numbers, which names the joints of a machine.
+    pub fn of_machine(mechanism: &Mechanism) -> Self {
+        Self {
             joint: mechanism.tests,
             motions: MotionColumn::all_of(mechanism),
-            version: env!("CARGO_PKG_VERSION").to_owned(),
             ..Self::default()
-        })
+        }
     }
 
     /// Returns the value of a number; none if the run does not have it.

@@ -2,7 +2,7 @@
 
 use condyle::{
     evolve::{CreepRecord, CycleRecord, March, UpdateRecord},
-    machine::{CycleRow, Mechanism},
+    machine::CycleRow,
 };
 
 use super::{
@@ -95,22 +95,26 @@ fn line(cells: impl Iterator<Item = String>) -> String {
     cells.collect::<Vec<_>>().join(",") + "\n"
 }
 
-/// `kinematics.csv`: a row an increment of the given cycles, with the columns of their mechanism.
+/// Returns `kinematics.csv` of an activity: a row an increment of its first and last cycle, with the columns of its mechanism
+/// and the tension of each ligament, N.
 ///
 /// A last cycle that is the first one is written once.
-pub fn kinematics_csv(
-    mechanism: &Mechanism,
-    cycles: Option<&(CycleRecord, CycleRecord)>,
-) -> String {
+pub fn kinematics_csv(march: &March, activity: usize) -> String {
+    let machine = &march.test().activities[activity].machine;
+    let mechanism = machine.mechanism;
     let columns = mechanism.columns.iter();
-    let columns = columns.map(|&quantity| mechanism.column(quantity));
-    let names = ["cycles", "percent"].into_iter().chain(columns);
-    let mut text = line(names.map(str::to_owned));
+    let columns = columns.map(|&quantity| mechanism.column(quantity).to_owned());
+    let ligaments = machine.ligaments.iter();
+    let tensions = ligaments.map(|ligament| ligament.name.replace('-', "_") + "_n");
+    let names = ["cycles", "percent"].map(str::to_owned).into_iter();
+    let mut text = line(names.chain(columns).chain(tensions));
+    let cycles = march.state().activities[activity].first_and_last.as_ref();
     for (cycles, row) in rows_of(cycles) {
         let values = mechanism.columns.iter();
         let values = values.map(|&quantity| mechanism.value(quantity, row));
         let cells = [cycles, row.percent].into_iter().chain(values);
-        text += &line(cells.map(|value| value.to_string()));
+        let tensions_n = march.ligament_tensions_n(activity, &row.positions);
+        text += &line(cells.chain(tensions_n).map(|value| value.to_string()));
     }
     text
 }

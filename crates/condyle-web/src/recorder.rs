@@ -10,8 +10,8 @@ use condyle_report::{
     scene::{Scene, SceneCycle},
 };
 use condyle_results::{
-    InsertFields, KeptCycle, NeutralPose, cycle_pressure_csv, cycle_pressure_file, femur_on_side,
-    femur_pose_csv, kinematics_csv, wear_csv,
+    InsertFields, KeptCycle, NeutralPose, Summary, cycle_pressure_csv, cycle_pressure_file,
+    femur_on_side, femur_pose_csv, kinematics_csv, wear_csv,
 };
 
 /// Records the scene of a run that its results folder would give.
@@ -52,9 +52,8 @@ impl Recorder {
     }
 
     fn add_tables(&mut self, march: &March) {
-        let activity = &march.state().activities[0];
         let mechanism = march.test().machine().mechanism;
-        let kinematics = kinematics_csv(mechanism, activity.first_and_last.as_ref());
+        let kinematics = kinematics_csv(march, 0);
         let poses = femur_pose_csv(march, self.side);
         self.scene.cycles = SceneCycle::of_poses(&table(&poses, "femur_pose.csv"));
         for (cycle, pressures) in self.scene.cycles.iter_mut().zip(&self.pressures) {
@@ -64,6 +63,8 @@ impl Recorder {
         self.scene.add_charts(&Results {
             wear: Some(table(&wear, "wear.csv")),
             kinematics: Some(table(&kinematics, "kinematics.csv")),
+            // Charts have the headings of the machine.
+            summary: Some(Summary::of_machine(mechanism)),
             ..Results::default()
         });
     }

@@ -19,7 +19,7 @@ use crate::{
     Vec3,
     contact::{Bodies, ContactCache, ContactMemory, ContactState, UnderSurface},
     geometry::{ArticulatingSurface, Counterface, Insert},
-    machine::{Chain, MachineState, SolverCounters},
+    machine::{Chain, Ligament, MachineState, SolverCounters},
     spatial::Pose,
 };
 
@@ -182,6 +182,17 @@ impl March {
     /// mm and rad.
     pub fn pose_at(&self, positions: &[f64; 6]) -> Pose {
         self.chains[0].at(positions).pose
+    }
+
+    /// Returns the tension of each ligament of an activity's machine with its joints at `positions`, mm and rad, N.
+    pub fn ligament_tensions_n(&self, activity: usize, positions: &[f64; 6]) -> Vec<f64> {
+        let pose = self.chains[activity].at(positions).pose;
+        let ligaments = self.test.activities[activity].machine.ligaments.iter();
+        let tension_n = |ligament: &Ligament| {
+            let strain = ligament.strain(&self.state.zero_mm, &pose);
+            ligament.tension_n(strain).0
+        };
+        ligaments.map(tension_n).collect()
     }
 
     /// Returns the settled pose of the counterface in the insert frame, at which the zeroed joints read zero.
