@@ -248,9 +248,9 @@ pub enum CycleError {
         readings: String,
         residual_n: f64,
     },
-    /// Explicit steps whose rates exceed all bounds.
+    /// Explicit steps that exceed all bounds or make energy.
     #[error(
-        "explicit steps leave all bounds at {percent:.2} % of the cycle, past {readings}{}; where friction rises steeply \
+        "explicit steps {how} at {percent:.2} % of the cycle, past {readings}{}; where friction rises steeply \
          with the speed or the load jumps no step is short enough: take a larger slip_tolerance_mm_per_s, a shorter explicit_step_s, or \
          integrator = \"implicit\"",
         if *added_inertia > HEAVY {
@@ -260,6 +260,7 @@ pub enum CycleError {
         }
     )]
     Unstable {
+        how: &'static str,
         percent: f64,
         readings: String,
         added_inertia: f64,

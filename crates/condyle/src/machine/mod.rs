@@ -6,6 +6,7 @@
 mod assembly;
 mod balance;
 mod chain;
+mod contact_energy;
 mod cycle;
 mod explicit;
 mod implicit;

@@ -4,7 +4,7 @@ use std::ops::{ControlFlow, Range};
 
 use super::{
     Chain, Cycle, CycleError, CycleRow, Integration, Machine, MachineState, SolverCounters,
-    TimeSettings, WarmStart, balance::Balance,
+    TimeSettings, WarmStart, balance::Balance, contact_energy::ContactEnergy,
 };
 use crate::{
     contact::{ContactModel, CycleHistory, Moment, Record, Settled, TouchedNode},
@@ -51,6 +51,8 @@ pub struct Simulator<'a> {
     pub history: CycleHistory,
     /// Lengths of the residuals of all Newton iterations of the last implicit increment, N, moments on a lever of 10 mm.
     pub residuals_n: Vec<f64>,
+    /// The energy of the contact in explicit steps of the present cycle.
+    pub(super) energy: ContactEnergy,
 }
 
 impl<'a> Simulator<'a> {
@@ -70,6 +72,7 @@ impl<'a> Simulator<'a> {
             warm_starts: Vec::new(),
             history: CycleHistory::default(),
             residuals_n: Vec::new(),
+            energy: ContactEnergy::default(),
         }
     }
 
@@ -92,6 +95,7 @@ impl<'a> Simulator<'a> {
         let mut increments: Vec<Option<Increment>> = vec![None; count];
         self.history.clear(count);
         self.contact.begin_cycle();
+        self.energy = ContactEnergy::default();
         let mut repeats = false;
         let mut solved = 0;
         while !repeats && solved < count * self.time.most_cycles_to_repeat {
