@@ -259,9 +259,10 @@ pub struct Converge {
         default_value = "updates=1,2,5,10,20,40"
     )]
     pub over: String,
-    /// Folder for the table, the picture and the results of every run; it must be empty.
+    /// Folder for the table, the picture and the results of every run; it must be empty [default: results/, the case's
+    /// name and -converge].
     #[arg(short, long, value_name = "DIR")]
-    pub out: PathBuf,
+    pub out: Option<PathBuf>,
     /// Resume the study that was stopped in that folder.
     #[arg(long)]
     pub resume: bool,

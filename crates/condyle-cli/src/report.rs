@@ -7,12 +7,9 @@ use std::{
 
 use condyle_report::{
     Picture, Results, pictures,
-    runs::{
-        CurveDifference, Differences, MapDifference, NumberDifference, Run, SettingDifference,
-        runs_html,
-    },
+    runs::{CurveDifference, Differences, MapDifference, NumberDifference, Run, runs_html},
 };
-use condyle_results::PLOTTED;
+use condyle_results::{PLOTTED, SettingDifference};
 
 use crate::{
     arguments::{Diff, PictureFormat, Plot, Report},

@@ -33,7 +33,10 @@ pub fn study(arguments: &Study) -> Done {
 }
 
 pub fn converge(arguments: &Converge) -> Done {
-    let (case, out) = (&arguments.case, &arguments.out);
+    let case = &arguments.case;
+    let name = case.file_stem().unwrap_or_default().to_string_lossy();
+    let default = || Path::new("results").join(format!("{name}-converge"));
+    let out = &arguments.out.clone().unwrap_or_else(default);
     let options = ConvergeOptions {
         out: out.clone(),
         threads: threads(arguments.threads),

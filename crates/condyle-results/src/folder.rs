@@ -21,11 +21,15 @@ use super::{
     },
     insert_fields::{insert_file_name, insert_pvd, insert_vtu},
     parts::kinematics_file,
+    settings::{SettingDifference, setting_differences},
     slip_paths::slip_paths_csv,
     summary::Summary,
     tables::{femur_pose_csv, kinematics_csv, wear_csv},
 };
 use condyle_mesh::formats::MeshFileError;
+
+/// Keys that a message names where two cases differ: enough to recognise a case.
+const MAX_KEYS_NAMED: usize = 3;
 
 /// A reason why a results folder cannot be used.
 #[derive(Debug, Error)]
@@ -204,8 +208,7 @@ impl ResultsFolder {
         let checkpoint = Checkpoint::from_bytes(&bytes)
             .map_err(|source| ResultsError::Checkpoint { file, source })?;
         if checkpoint.inputs_blake3 != inputs_blake3 {
-            let problem = "the run in this folder is of another case or other meshes; give another folder with --out";
-            return Err(unusable(path, problem));
+            return Err(unusable(path, folder.other_inputs(case_toml)));
         }
         if checkpoint.version != env!("CARGO_PKG_VERSION") {
             let (version, own) = (checkpoint.version, env!("CARGO_PKG_VERSION"));
@@ -223,6 +226,24 @@ impl ResultsFolder {
             Some(summary) if done => Found::Done(summary),
             Some(_) | None => Found::Checkpoint(Box::new(checkpoint), folder.time_spent_s()),
         })
+    }
+
+    /// Describes the difference of a case from that of the run in the folder.
+    fn other_inputs(&self, case_toml: &str) -> String {
+        let own = fs::read_to_string(self.file("case.toml")).unwrap_or_default();
+        let value = |value: Option<String>| value.unwrap_or_else(|| "absent".to_owned());
+        let differ = setting_differences(&own, case_toml).into_iter();
+        let differ = differ.map(|SettingDifference { key, first, second }| {
+            format!("{key} was {} and is {}", value(first), value(second))
+        });
+        let differ: Vec<String> = differ.take(MAX_KEYS_NAMED).collect();
+        let differ = match differ.is_empty() {
+            true => "all keys agree, and a mesh or waveform differs".to_owned(),
+            false => differ.join(", "),
+        };
+        format!(
+            "the run in this folder is of another case or other meshes: {differ}; give another folder with --out"
+        )
     }
 
     /// Returns whether the folder exists and holds nothing but the files of a run before its first file is complete.

@@ -15,6 +15,7 @@ mod folder;
 mod insert_fields;
 mod parts;
 mod prediction;
+mod settings;
 mod side;
 #[cfg(feature = "file-system")]
 mod slip_paths;
@@ -53,6 +54,7 @@ pub use parts::{
     joint_range, kinematics_file,
 };
 pub use prediction::{CALIBRATED_LAW, Interval, MAX_FACTOR, Prediction, Source};
+pub use settings::{SettingDifference, setting_differences};
 pub use side::{Directions, Side};
 pub use summary::{PlausibilityWarning, Summary};
 pub use tables::{WEAR_COLUMNS, WearColumn, femur_pose_csv, kinematics_csv, wear_csv};

@@ -117,5 +117,28 @@ fn a_run_of_a_changed_case_is_gone_on_with_by_the_same_changes() {
     let again = bench.say(&resume);
     assert_eq!((again.code, &again.out), (Some(0), &first.out));
     let other = bench.say(&["run", "case.toml", "-o", "out", "--resume"]);
-    other.assert_refused(2, &["is of another case"]);
+    other.assert_refused(2, &["is of another case", "march.updates was 2 and is 3"]);
+    let more = [
+        &resume[..],
+        &["--set", "friction=0.05", "--set", "wear.law=kang"],
+    ]
+    .concat();
+    let other = bench.say(&more);
+    other.assert_refused(2, &["contact.friction was 0.07 and is 0.05"]);
+}
+
+#[test]
+fn another_model_of_contact_takes_the_place_of_the_foundation_in_a_new_case() {
+    let bench = Bench::new();
+    assert_eq!(bench.say(&["new", "d.toml"]).code, Some(0));
+    let said = bench.say(&[
+        "check",
+        "d.toml",
+        "--set",
+        "contact.model=deformable",
+        "--set",
+        "insert.edge_mm=3",
+    ]);
+    assert_eq!(said.code, Some(0), "{}", said.err);
+    assert!(said.err.contains("contact.foundation"), "{}", said.err);
 }

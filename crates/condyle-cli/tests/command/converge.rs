@@ -30,6 +30,14 @@ fn over<'a>(out: &'a str, more: &[&'a str]) -> Vec<&'a str> {
 }
 
 #[test]
+fn the_folder_has_a_default() {
+    let bench = Bench::with_case(TINY);
+    let said = bench.say(&OVER[..4]);
+    assert_eq!(said.code, Some(0), "{}", said.err);
+    assert!(bench.path("results/case-converge/converge.svg").exists());
+}
+
+#[test]
 fn runs_once_for_each_value_from_coarse_to_fine_whatever_the_threads() {
     let bench = Bench::with_case(TINY);
     let said = bench.say(&over("one", &["--threads", "1"]));

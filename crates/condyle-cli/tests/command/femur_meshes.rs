@@ -92,3 +92,19 @@ fn verify_a_femur_with_long_facets_wears_as_the_same_solid_remeshed() {
         assert_same_or_doubtful((mass, peak, false), right, file);
     }
 }
+
+#[test]
+fn few_triangles_are_named_as_the_cause() {
+    let bench = Bench::new();
+    let mesh = "[femur]\nshape = \"mesh\"\nfile = \"femur.stl\"\nflexion_axis_mm = [0.0, 0.0]\nstart_mm = [-7.0, 0.0]\n";
+    bench.write("mesh.toml", &format!("{mesh}{SMALL}"));
+    let femur = GenericFemur::new(GenericFemurShape::default());
+    let coarse = femur.surface_mesh(9.0);
+    assert!(coarse.triangles.len() < 400, "{}", coarse.triangles.len());
+    let mut stl = Vec::new();
+    write_stl(&mut stl, &coarse).unwrap();
+    std::fs::write(bench.path("femur.stl"), stl).unwrap();
+    let said = bench.say(&["run", "mesh.toml", "--out", "out"]);
+    let shown = format!("{}{}", said.out, said.err);
+    assert!(shown.contains("triangles of its mesh"), "{shown}");
+}

@@ -167,9 +167,10 @@ pub(crate) fn insert_rocks(finished: &Finished<'_>) -> Option<PlausibilityWarnin
 pub(crate) fn thin_polyethylene(finished: &Finished<'_>) -> Option<PlausibilityWarning> {
     let fields = finished.march.fields();
     let in_scar = finished.summary[&MAX_DEPTH_MM] * SCAR;
-    let nodes = fields.wear_depth_mm.iter().zip(&fields.thickness_mm);
-    let under_scar = nodes.filter(|(depth_mm, _)| **depth_mm > in_scar);
-    let thinnest = under_scar.map(|(_, thickness_mm)| *thickness_mm);
+    // At the rim the normal misses the backside, and `condyle check` leaves it out too.
+    let nodes = (0..fields.wear_depth_mm.len()).filter(|node| !finished.is_on_rim(*node));
+    let under_scar = nodes.filter(|node| fields.wear_depth_mm[*node] > in_scar);
+    let thinnest = under_scar.map(|node| fields.thickness_mm[node]);
     let thinnest = thinnest.fold(f64::INFINITY, f64::min);
     let message = format!(
         "under the scar {thinnest:.2} mm of polyethylene are left at the thinnest; below {MIN_THICKNESS_MM:.0} mm stresses \

@@ -1,15 +1,14 @@
 //! The differences between two runs: settings, numbers, curves and maps.
 
 use std::cmp::Ordering;
-use std::collections::BTreeMap;
 use std::path::Path;
 
 use condyle_results::{
-    Summary,
+    SettingDifference, Summary,
     catalogue::{self, MASS_LOSS_MG, Scalar},
+    setting_differences,
 };
 use serde::Serialize;
-use toml::Value;
 
 use crate::charts::{Channel, first_and_last};
 use crate::error::ReportError;
@@ -119,7 +118,7 @@ impl Differences {
         let summaries = one.summary.as_ref().zip(two.summary.as_ref());
         Self {
             runs: [first.name.clone(), second.name.clone()],
-            settings: cases.map_or_else(Vec::new, |(one, two)| settings(one, two)),
+            settings: cases.map_or_else(Vec::new, |(one, two)| setting_differences(one, two)),
             numbers: summaries.map_or_else(Vec::new, |(one, two)| numbers(one, two)),
             curves: curves(one, two),
             maps: maps(first, second),
@@ -217,59 +216,6 @@ fn notes(first: &Run, second: &Run) -> Vec<String> {
         notes.push(format!("The runs are from condyle {one} and {two}."));
     }
     notes
-}
-
-/// A key with different values in two cases.
-#[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct SettingDifference {
-    /// The dotted path of the key.
-    pub key: String,
-    /// Its value in the first case; none if it is absent.
-    pub first: Option<String>,
-    /// Its value in the second case; none if it is absent.
-    pub second: Option<String>,
-}
-
-/// Keys with different values, in alphabetical order; cases are written with every default.
-fn settings(first: &str, second: &str) -> Vec<SettingDifference> {
-    let [first, second] = [first, second].map(|case| {
-        let mut values = BTreeMap::new();
-        flatten(
-            "",
-            &Value::Table(case.parse().unwrap_or_default()),
-            &mut values,
-        );
-        values
-    });
-    let mut keys: Vec<&String> = first.keys().chain(second.keys()).collect();
-    keys.sort_unstable();
-    keys.dedup();
-    keys.retain(|key| first.get(*key) != second.get(*key));
-    let difference = |key: &String| SettingDifference {
-        key: key.clone(),
-        first: first.get(key).cloned(),
-        second: second.get(key).cloned(),
-    };
-    keys.into_iter().map(difference).collect()
-}
-
-fn flatten(path: &str, value: &Value, into: &mut BTreeMap<String, String>) {
-    match value {
-        Value::Table(table) => {
-            for (key, value) in table {
-                let below = format!("{path}.{key}");
-                flatten(below.trim_start_matches('.'), value, into);
-            }
-        }
-        Value::Array(items) if items.iter().any(Value::is_table) => {
-            for (index, item) in items.iter().enumerate() {
-                flatten(&format!("{path}[{index}]"), item, into);
-            }
-        }
-        plain => {
-            into.insert(path.to_owned(), plain.to_string());
-        }
-    }
 }
 
 /// A number in which two runs differ.
@@ -516,7 +462,7 @@ mod tests {
     fn keys_that_differ_are_listed_by_their_path() {
         let first = "[contact]\nfriction = 0.04\nlaw = \"linear\"\n[[activity]]\nname = \"gait\"\n";
         let second = "[contact]\nfriction = 0.06\nlaw = \"linear\"\n[[activity]]\nname = \"stairs\"\nshare = 1\n";
-        let found = settings(first, second);
+        let found = setting_differences(first, second);
         let keys: Vec<&str> = found.iter().map(|found| found.key.as_str()).collect();
         assert_eq!(
             keys,

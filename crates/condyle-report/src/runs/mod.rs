@@ -3,7 +3,5 @@
 mod differences;
 mod page;
 
-pub use differences::{
-    CurveDifference, Differences, MapDifference, NumberDifference, Run, SettingDifference,
-};
+pub use differences::{CurveDifference, Differences, MapDifference, NumberDifference, Run};
 pub use page::runs_html;

@@ -1,11 +1,13 @@
 //! Several runs side by side on one page: tables, and curves and maps with common axes and colours.
 
-use condyle_results::catalogue::{self, Scalar};
+use condyle_results::{
+    SettingDifference,
+    catalogue::{self, Scalar},
+};
 use serde_json::{Value, json};
 
 use super::differences::{
-    CurveDifference, Differences, MapDifference, NumberDifference, Run, SettingDifference,
-    subtracted,
+    CurveDifference, Differences, MapDifference, NumberDifference, Run, subtracted,
 };
 use crate::charts;
 use crate::figure::{
