@@ -13,6 +13,7 @@ from __future__ import annotations
 from ._condyle import VERSION
 from .case import Case
 from .check import Check
+from .emulator import Emulator
 from .errors import BadInput, CondyleError, Interrupted, NotSolved, Problem, StudyInterrupted
 from .knee import Contact, Cycle, Knee
 from .laws import NodeCycle
@@ -33,6 +34,7 @@ __all__ = [
     "CondyleError",
     "Contact",
     "Cycle",
+    "Emulator",
     "Interrupted",
     "Knee",
     "NodeCycle",

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 from ._condyle import unit_of
 from ._extras import extra
+from .emulator import Emulator, read
 from .errors import BadInput
 
 if TYPE_CHECKING:
@@ -56,6 +57,14 @@ class StudyResult:
         if column not in self.table:
             raise KeyError(f"there is no column {column!r}; there are {', '.join(self.table)}")
         return self.table[column]
+
+    def emulator(self, output: str) -> Emulator:
+        """The emulator of an output, such as ``mass_loss_mg``.
+
+        Raises:
+            BadInput: an output without an emulator.
+        """
+        return read(self._folder, output)
 
     def to_pandas(self) -> pd.DataFrame:
         """The table as a data frame with the rows as its index; units are in ``.attrs["units"]``."""

@@ -293,6 +293,34 @@ def test_sobol_indices_are_those_of_salib(name: str, function: Any, small: condy
         assert low - 0.01 <= exact <= high + 0.01
 
 
+def test_an_emulator_predicts_and_does_not_extrapolate(small: condyle.Case, tmp_path: Path) -> None:
+    design = {"kind": "sobol", "size": 128, "seed": 5}
+    places, found, answers = made_up(design, ishigami, small, tmp_path / "out")
+    emulator = condyle.open_study(tmp_path / "out").emulator("mass_loss_mg")
+    assert emulator.q2 == answers["emulated"][0]["q2"] > 0.9
+    first = [index["first"] for index in answers["indices"]]
+    np.testing.assert_allclose(first, EXACT["ishigami"][0], atol=0.03)
+    ranges = emulator.ranges
+    ends = np.array(list(ranges.values()))
+
+    def at(points: np.ndarray) -> dict[str, np.ndarray]:
+        return dict(zip(ranges, (ends[:, 0] + points * (ends[:, 1] - ends[:, 0])).T))
+
+    # In coordinates from 0 to 1 over the tests; the nugget is small, so that tests are nearly interpolated.
+    scaled = (places - places.min(axis=0)) / np.ptp(places, axis=0)
+    mean, deviation = emulator.predict(at(scaled))
+    np.testing.assert_allclose(mean, found, atol=1e-3)
+    assert deviation.max() < 0.01
+    between, deviation = emulator.predict(at(np.full((1, 3), 0.4)))
+    assert between.shape == (1,) and deviation[0] > 0.0
+    with pytest.raises(condyle.BadInput, match="do not extrapolate"):
+        emulator.predict(at(np.full((1, 3), 1.01)))
+    with pytest.raises(condyle.BadInput, match="needs a value"):
+        emulator.predict({})
+    with pytest.raises(condyle.BadInput, match="has no emulator of 'ap_range_mm'"):
+        condyle.open_study(tmp_path / "out").emulator("ap_range_mm")
+
+
 def test_elementary_effects_are_those_of_salib(small: condyle.Case, tmp_path: Path) -> None:
     salib = pytest.importorskip("SALib.analyze.morris")
     design = {"kind": "morris", "walks": 40, "levels": 8, "seed": 5}

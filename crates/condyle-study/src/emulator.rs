@@ -1,6 +1,7 @@
 //! A Gaussian process as an emulator of an output: fitted to tests, it predicts others with a standard deviation.
 
 use nalgebra::{Cholesky, DMatrix, DVector, Dyn};
+use serde::Serialize;
 
 use crate::{
     descent::minimum,
@@ -47,6 +48,17 @@ struct Process {
     weights: DVector<f64>,
     mean: f64,
     variance: f64,
+}
+
+/// The numbers that predict an output without this program: m + sum of w_i c(x, x_i), in the unit of the output.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub(crate) struct Model {
+    lengths: Vec<f64>,
+    nugget: f64,
+    mean: f64,
+    standard_deviation: f64,
+    points: Vec<Vec<f64>>,
+    weights: Vec<f64>,
 }
 
 /// A predicted output.
@@ -232,6 +244,24 @@ impl Emulator {
             standard_deviation: self.scale * (self.process.variance / precision).sqrt(),
         });
         left_out.collect()
+    }
+
+    /// Returns the standard deviation by which a test scatters around the process, from the nugget.
+    pub fn noise(&self) -> f64 {
+        let (_, nugget) = parameters(&self.logarithms);
+        self.scale * (self.process.variance * nugget).sqrt()
+    }
+
+    pub fn model(&self) -> Model {
+        let process = &self.process;
+        Model {
+            lengths: self.lengths.clone(),
+            nugget: parameters(&self.logarithms).1,
+            mean: self.centre + self.scale * process.mean,
+            standard_deviation: self.scale * process.variance.sqrt(),
+            points: self.points.clone(),
+            weights: process.weights.iter().map(|one| self.scale * one).collect(),
+        }
     }
 
     /// Returns the emulator from the tests for which `is_left_out` is false; none if it cannot be conditioned.

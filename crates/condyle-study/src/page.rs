@@ -8,6 +8,8 @@ use condyle_report::{
 };
 use condyle_results::{catalogue, split_unit};
 
+use serde::Serialize;
+
 use crate::{
     answers::{
         Answers,
@@ -35,10 +37,11 @@ pub fn write_answers(plan: &Plan, folder: &Path) -> Result<Answers, StudyError> 
     let store = Store::existing(folder, plan)?;
     let answers = Answers::read(plan, &store)?;
     store.export_csv(&folder.join("table.csv"))?;
-    let json = serde_json::to_string_pretty(&answers).expect("numbers and text always serialise");
-    let path = folder.join("answers.json");
-    condyle_results::replace_file(&path, (json + "\n").as_bytes())
-        .map_err(StudyError::refused(&path))?;
+    write_json(&folder.join("answers.json"), &answers)?;
+    let emulators: Vec<_> = answers.emulated.iter().map(|one| &one.exported).collect();
+    if !emulators.is_empty() {
+        write_json(&folder.join("emulators.json"), &emulators)?;
+    }
     let (kept, design) = (answers.kept, answers.design);
     let end = match answers.failed_tests() {
         0 => "none of them failed".to_owned(),
@@ -52,6 +55,11 @@ pub fn write_answers(plan: &Plan, folder: &Path) -> Result<Answers, StudyError> 
     let (tables, pictures) = (answers.tables(), pictures(&answers));
     write_study_page(folder, title.unwrap_or("A study"), lede, &tables, &pictures)?;
     Ok(answers)
+}
+
+fn write_json(path: &Path, content: &impl Serialize) -> Result<(), StudyError> {
+    let json = serde_json::to_string_pretty(content).expect("numbers and text always serialise");
+    condyle_results::replace_file(path, (json + "\n").as_bytes()).map_err(StudyError::refused(path))
 }
 
 /// The file, its caption, and its text.

@@ -14,7 +14,7 @@ use crate::{
     },
     design::latin_places,
     distribution::{level_at_share, normal_share},
-    emulator::Emulator,
+    emulator::{Emulator, Model},
     plan::designs,
     statistics::{NORMAL_95, extent, mean, wilson_interval},
 };
@@ -43,6 +43,26 @@ pub(crate) struct Emulated {
     pub q2: f64,
     /// Probabilities of being beyond each limit; none if Q2 is too small.
     pub beyond: Vec<Chance>,
+    #[serde(skip)]
+    pub exported: Exported,
+}
+
+/// An emulator as a file has it: coordinates of its points go from 0 at the low end of an input to 1 at the high end.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub(crate) struct Exported {
+    output: &'static str,
+    q2: f64,
+    inputs: Vec<Range>,
+    #[serde(flatten)]
+    model: Model,
+}
+
+/// The values of an input in the tests.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+struct Range {
+    key: String,
+    low: f64,
+    high: f64,
 }
 
 /// The probability that an output is beyond a limit.
@@ -60,12 +80,21 @@ pub(crate) struct Chance {
 struct Axis<'a> {
     input: &'a Input,
     low: f64,
-    width: f64,
+    high: f64,
 }
 
 impl Axis<'_> {
     fn place(&self, value: f64) -> f64 {
-        (value - self.low) / self.width
+        let width = self.high - self.low;
+        (value - self.low) / if width > 0.0 { width } else { 1.0 }
+    }
+
+    fn range(&self) -> Range {
+        Range {
+            key: self.input.key.clone(),
+            low: self.low,
+            high: self.high,
+        }
     }
 
     /// Returns the place of the value at this share of the distribution.
@@ -103,8 +132,7 @@ pub(crate) fn emulated(data: &Data<'_>) -> (Vec<Emulated>, Vec<Indices>) {
                 .copied()
                 .filter(|value| value.is_finite()),
         );
-        let width = if high > low { high - low } else { 1.0 };
-        Axis { input, low, width }
+        Axis { input, low, high }
     });
     let axes: Vec<Axis<'_>> = axes.collect();
     let (mut all, mut indices) = (Vec::new(), Vec::new());
@@ -112,7 +140,7 @@ pub(crate) fn emulated(data: &Data<'_>) -> (Vec<Emulated>, Vec<Indices>) {
         let Some(emulator) = emulator(data, &axes, values) else {
             continue;
         };
-        let mut emulated = Emulated::new(output, &emulator);
+        let mut emulated = Emulated::new(output, &axes, &emulator);
         if emulated.q2 >= MIN_Q2 {
             let bounds = study.answers.bounds.iter();
             let own = bounds.filter(|bound| bound.output.key == output.key);
@@ -150,14 +178,21 @@ fn emulator(data: &Data<'_>, axes: &[Axis<'_>], values: &[f64]) -> Option<Emulat
 }
 
 impl Emulated {
-    fn new(output: &Scalar, emulator: &Emulator) -> Self {
+    fn new(output: &Scalar, axes: &[Axis<'_>], emulator: &Emulator) -> Self {
+        let exported = Exported {
+            output: output.key,
+            q2: emulator.q2(),
+            inputs: axes.iter().map(Axis::range).collect(),
+            model: emulator.model(),
+        };
         Self {
             output: output.key,
             title: output.label,
             unit: output.unit(),
             tests: emulator.left_out().len(),
-            q2: emulator.q2(),
+            q2: exported.q2,
             beyond: Vec::new(),
+            exported,
         }
     }
 }
@@ -197,7 +232,7 @@ fn jackknife_error(without: &[f64]) -> f64 {
 
 /// Returns the probability that predictions at points of the inputs' distributions are beyond a bound.
 fn chance(data: &Data<'_>, axes: &[Axis<'_>], emulator: &Emulator, bound: &Bound) -> Chance {
-    let underestimate = emulator.underestimate();
+    let (underestimate, noise) = (emulator.underestimate(), emulator.noise());
     let [mut middle, mut low, mut high] = [0.0; 3];
     for row in 0..POINTS {
         let places = data
@@ -210,7 +245,8 @@ fn chance(data: &Data<'_>, axes: &[Axis<'_>], emulator: &Emulator, bound: &Bound
             _ => f64::NAN,
         });
         let found = emulator.predict(&point.collect::<Vec<f64>>());
-        let deviation = (found.standard_deviation * underestimate).max(f64::MIN_POSITIVE);
+        let deviation = found.standard_deviation.hypot(noise) * underestimate;
+        let deviation = deviation.max(f64::MIN_POSITIVE);
         let sides = [
             bound.least.map(|least| least - found.mean),
             bound.most.map(|most| found.mean - most),
