@@ -61,14 +61,17 @@ pub(crate) fn in_words(key: &str) -> (String, String) {
         Some(name) => (name, Some("cycles")),
         None => split_unit(key),
     };
+    let unit = with_powers(unit.unwrap_or_default()).replace(' ', "\u{a0}");
+    (first_letter_large(&words(name)), unit)
+}
+
+fn words(name: &str) -> String {
     let word = |part: &str| match part {
         "ap" | "ie" | "ml" | "vv" | "is" => part.to_uppercase(),
         "mises" => "Mises".to_owned(),
         _ => part.to_owned(),
     };
-    let words: Vec<String> = name.split('_').map(word).collect();
-    let unit = with_powers(unit.unwrap_or_default()).replace(' ', "\u{a0}");
-    (first_letter_large(&words.join(" ")), unit)
+    name.split('_').map(word).collect::<Vec<_>>().join(" ")
 }
 
 /// Returns the dotted path of a key of a case as words: `insert.thickness_mm` is "Thickness of insert, mm". A name that is no
@@ -78,11 +81,7 @@ pub(crate) fn path_in_words(name: &str) -> String {
     let Some((tables, key)) = path else {
         return name.to_owned();
     };
-    let table = tables
-        .rsplit('.')
-        .next()
-        .unwrap_or(tables)
-        .replace('_', " ");
+    let table = words(tables.rsplit('.').next().unwrap_or(tables));
     let (title, unit) = in_words(key);
     let comma = if unit.is_empty() { "" } else { ", " };
     format!("{title} of {table}{comma}{unit}")
@@ -127,6 +126,7 @@ mod tests {
         for (path, words) in [
             ("insert.thickness_mm", "Thickness of insert, mm"),
             ("machine.axial_force.scale", "Scale of axial force"),
+            ("machine.ap_force.scale", "Scale of AP force"),
             ("Design 1.5", "Design 1.5"),
             ("friction", "friction"),
         ] {
