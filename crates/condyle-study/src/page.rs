@@ -20,7 +20,7 @@ use crate::{
     },
     error::StudyError,
     plan::Plan,
-    statistics::extent,
+    statistics::{extent, mean},
     store::Store,
 };
 
@@ -177,14 +177,17 @@ fn tornado(answers: &Answers) -> Option<Picture> {
         let (most, unit) = (shown(most), superscript(spread.unit));
         caption += &format!(" An inactive input would span up to {most} {unit} by chance.");
     }
-    let svg = bars_svg(&title, &superscript(spread.unit), Some(spread.mean), &all);
+    let own = answers.spreads.iter();
+    let own = own.filter(|one| one.output == spread.output);
+    let means: Vec<f64> = own.map(|one| one.mean).collect();
+    let svg = bars_svg(&title, &superscript(spread.unit), Some(mean(&means)), &all);
     Some(("tornado.svg", caption, svg))
 }
 
 fn distributions(answers: &Answers) -> Option<Picture> {
     let several = answers.spreads.iter().filter(|spread| spread.tests > 1);
     let all = several.map(|spread| Distribution {
-        title: spread.title.to_owned(),
+        title: spread.name(),
         unit: superscript(spread.unit),
         sorted: spread.sorted.clone(),
         marks: [1, 3, 5].map(|place| spread.percentiles[place]).to_vec(),
@@ -232,7 +235,11 @@ fn scatter(answers: &Answers) -> Option<Picture> {
     let columns = effects_on(answers, first.output);
     let columns = &columns[..columns.len().min(MAX_COLUMNS)];
     let mut all = Vec::new();
-    for spread in &answers.spreads {
+    // One of each output: the effects are those of all designs.
+    let outputs = answers
+        .spreads
+        .chunk_by(|one, next| one.output == next.output);
+    for spread in outputs.map(|designs| &designs[0]) {
         for column in columns {
             let mut effects = answers.effects.iter();
             let own = effects.find(|one| one.output == spread.output && one.input == column.input);

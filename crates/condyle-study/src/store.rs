@@ -235,18 +235,7 @@ impl Store {
         if plan.is_search() {
             return Err(StudyError::no_shards());
         }
-        let mut stored = vec![false; plan.tests() as usize];
-        self.checked(|connection| {
-            let mut statement = connection.prepare("SELECT \"row\" FROM tests")?;
-            let mut rows = statement.query([])?;
-            while let Some(row) = rows.next()? {
-                if let Some(one) = stored.get_mut(row.get::<_, i64>(0)? as usize) {
-                    *one = true;
-                }
-            }
-            Ok(())
-        })?;
-        let rows = (0..).zip(stored);
+        let rows = (0..).zip(self.kept(plan)?);
         Ok(rows.filter(|(_, is)| !is).map(|(row, _)| row).collect())
     }
 
@@ -362,6 +351,22 @@ impl Store {
             })?;
             reasons.collect()
         })
+    }
+
+    /// Returns whether each test is stored, done or failed.
+    pub(crate) fn kept(&self, plan: &Plan) -> Result<Vec<bool>, StudyError> {
+        let mut stored = vec![false; plan.tests() as usize];
+        self.checked(|connection| {
+            let mut statement = connection.prepare("SELECT \"row\" FROM tests")?;
+            let mut rows = statement.query([])?;
+            while let Some(row) = rows.next()? {
+                if let Some(one) = stored.get_mut(row.get::<_, i64>(0)? as usize) {
+                    *one = true;
+                }
+            }
+            Ok(())
+        })?;
+        Ok(stored)
     }
 
     /// Returns the column called `name` for every test that is done.

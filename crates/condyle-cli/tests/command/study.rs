@@ -255,6 +255,46 @@ fn designs_are_ranked_under_the_same_disturbances() {
 }
 
 #[test]
+fn scatter_and_limits_belong_to_each_design_and_count_what_could_not_be_solved() {
+    let bench = bench(
+        "case = \"case.toml\"\n[design]\nkind = \"rows\"\nfile = \"rows.csv\"\n\
+         [[alternative]]\nname = \"shallow\"\nset = [\"insert.sagittal_radius_mm=80\"]\n\
+         [[alternative]]\nname = \"deep\"\nset = [\"insert.sagittal_radius_mm=45\"]\n\
+         [[limit]]\noutput = \"peak_pressure_mpa\"\nmost = 0.001\n",
+    );
+    bench.write(
+        "rows.csv",
+        "insert.edge_mm,limits.memory_gb\n4,2\n4.1,2\n0.2,0.1\n",
+    );
+    let said = bench.say(&["study", "study.toml", "--out", "out"]);
+    assert!(said.out.contains("66.7 % to 100.0 %"), "{}", said.out);
+    let answers = answers(&bench);
+    let spreads = answers["spreads"].as_array().unwrap().iter();
+    let peaks = spreads.filter(|spread| spread["output"] == "peak_pressure_mpa");
+    let [shallow, deep] = peaks.collect::<Vec<_>>().try_into().unwrap();
+    assert_eq!(
+        (&shallow["design"], &deep["design"]),
+        (&"shallow".into(), &"deep".into())
+    );
+    assert!(
+        shallow["least"].as_f64() > deep["most"].as_f64(),
+        "{answers:#}"
+    );
+    for spread in [shallow, deep] {
+        assert_eq!(
+            (&spread["tests"], &spread["unsolved"]),
+            (&2.into(), &1.into())
+        );
+        let beyond = &spread["beyond"][0];
+        let ends = |key: &str| [0, 1].map(|end| beyond[key][end].as_f64().unwrap());
+        assert_eq!(ends("share"), [2.0 / 3.0, 1.0]);
+        // Wilson's interval of two of three begins at 0.2077; that of three of three ends at 1.
+        let [low, high] = ends("interval");
+        assert!((low - 0.2077).abs() < 1e-4 && high == 1.0, "{beyond}");
+    }
+}
+
+#[test]
 fn a_search_finds_the_end_that_wears_least_and_says_how_it_ended() {
     let bench = bench(SEARCH);
     let said = bench.say(&["study", "study.toml", "--out", "out", "--threads", "2"]);

@@ -20,6 +20,8 @@ pub(crate) struct Data<'a> {
     pub outputs: Vec<(&'static Scalar, Vec<f64>)>,
     /// True for each test that is done and within every limit.
     pub within: Vec<bool>,
+    /// True for each test that is done or could not be solved.
+    pub kept: Vec<bool>,
 }
 
 impl<'a> Data<'a> {
@@ -43,19 +45,49 @@ impl<'a> Data<'a> {
             inputs: inputs.collect::<Result<_, _>>()?,
             outputs: outputs.collect::<Result<_, _>>()?,
             within,
+            kept: store.kept(plan)?,
         })
+    }
+
+    /// Returns the tests of a design that belong to the sample, in their order; of a design without a sample, all.
+    pub fn tests_of(&self, design: usize) -> impl Iterator<Item = usize> {
+        let count = designs(self.plan.study());
+        let is_sample = self.is_sample();
+        let points = 0..self.kept.len() / count;
+        let points = points.filter(move |point| !is_sample || is_sampled(self.plan, *point));
+        points.map(move |point| point * count + design)
+    }
+
+    /// Returns whether the tests contain a random sample.
+    pub fn is_sample(&self) -> bool {
+        is_sampled(self.plan, 0)
+    }
+
+    /// Returns the distribution of every output, of each design by itself.
+    pub fn spreads(&self) -> Vec<Spread> {
+        let count = designs(self.plan.study());
+        let outputs = self.outputs.iter();
+        let of_designs = outputs.flat_map(|output| (0..count).map(move |design| (output, design)));
+        of_designs
+            .map(|((output, values), design)| Spread::new(self, output, values, design))
+            .collect()
     }
 }
 
 const PERCENTILES: [f64; 7] = [2.5, 5.0, 25.0, 50.0, 75.0, 95.0, 97.5];
 
-/// The distribution of an output, in its unit.
+/// The distribution of an output of one design, in its unit.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub(crate) struct Spread {
     pub output: &'static str,
     pub title: &'static str,
     pub unit: &'static str,
+    /// The name of the design, if the study compares designs.
+    pub design: Option<String>,
+    /// Tests that are solved.
     pub tests: usize,
+    /// Tests that could not be solved, whose output is unknown.
+    pub unsolved: usize,
     /// True if the tests are a random sample, so that shares of them are probabilities.
     pub is_sample: bool,
     pub least: f64,
@@ -73,63 +105,76 @@ pub(crate) struct Spread {
 pub(crate) struct Beyond {
     pub least: Option<f64>,
     pub most: Option<f64>,
-    pub share: f64,
-    /// The 95 % interval of the probability, if the tests are a sample.
+    /// The share if every unsolved test kept the limit, and if none did.
+    pub share: [f64; 2],
+    /// The 95 % interval of the probability, if the tests are a sample; wherever the unsolved tests would lie.
     pub interval: [f64; 2],
 }
 
 impl Spread {
-    pub fn new(plan: &Plan, output: &'static Scalar, values: &[f64]) -> Self {
-        let study = plan.study();
-        let rows = values.iter().enumerate();
-        let sample = rows.filter(|(row, _)| is_sampled(plan, row / designs(study)));
-        let mut sorted: Vec<f64> = sample.map(|(_, value)| *value).collect();
-        let is_sample = !sorted.is_empty();
-        if !is_sample {
-            sorted = values.to_vec();
-        }
-        sorted.retain(|value| value.is_finite());
+    fn new(data: &Data<'_>, output: &'static Scalar, values: &[f64], design: usize) -> Self {
+        let study = data.plan.study();
+        let kept = data.tests_of(design).filter(|test| data.kept[*test]);
+        let kept: Vec<f64> = kept.map(|test| values[test]).collect();
+        let solved = kept.iter().copied().filter(|value| value.is_finite());
+        let mut sorted: Vec<f64> = solved.collect();
         sorted.sort_by(f64::total_cmp);
+        let unsolved = kept.len() - sorted.len();
         let bounds = study.answers.bounds.iter();
         let own = bounds.filter(|bound| bound.output.key == output.key);
         Self {
             output: output.key,
             title: output.label,
             unit: output.unit(),
+            design: study.alternatives.get(design).map(|one| one.name.clone()),
             tests: sorted.len(),
-            is_sample,
+            unsolved,
+            is_sample: data.is_sample(),
             least: quantile(&sorted, 0.0),
             most: quantile(&sorted, 1.0),
             mean: mean(&sorted),
             standard_deviation: standard_deviation(&sorted),
             percentiles: PERCENTILES.map(|percent| quantile(&sorted, percent / 100.0)),
-            beyond: own.map(|bound| Beyond::new(bound, &sorted)).collect(),
+            beyond: own
+                .map(|bound| Beyond::new(bound, &sorted, unsolved))
+                .collect(),
             sorted,
+        }
+    }
+
+    /// Returns the title of the output, with the design if there are several.
+    pub fn name(&self) -> String {
+        match &self.design {
+            Some(design) => format!("{}, {design}", self.title),
+            None => self.title.to_owned(),
         }
     }
 }
 
 impl Beyond {
-    fn new(bound: &Bound, values: &[f64]) -> Self {
+    fn new(bound: &Bound, values: &[f64], unsolved: usize) -> Self {
         let beyond = values.iter().filter(|value| bound.excess(**value) > 0.0);
-        let (hits, tests) = (beyond.count() as f64, values.len() as f64);
+        let (hits, tests) = (beyond.count() as f64, (values.len() + unsolved) as f64);
+        // A test that could not be solved may be one that a loose or overloaded implant would fail: it counts both ways.
+        let either = [hits, hits + unsolved as f64];
+        let [low, high] = either.map(|hits| wilson_interval(hits, tests));
         Self {
             least: bound.least,
             most: bound.most,
-            share: hits / tests.max(1.0),
-            interval: wilson_interval(hits, tests),
+            share: either.map(|hits| hits / tests.max(1.0)),
+            interval: [low[0], high[1]],
         }
     }
 }
 
-/// Returns whether a row belongs to a random sample. In a Saltelli design the points A and B do; their mixtures
-/// depend on them.
-pub(crate) fn is_sampled(plan: &Plan, row: usize) -> bool {
+/// Returns whether a point of a design, which all alternatives share, belongs to a random sample. In a Saltelli design
+/// the points A and B do; their mixtures depend on them.
+pub(crate) fn is_sampled(plan: &Plan, point: usize) -> bool {
     let study = plan.study();
     match &study.design {
         Design::LatinHypercube(_) | Design::Sobol(_) | Design::Rows(_) => true,
         Design::Saltelli(_) => {
-            let (_, test) = Saltelli::of(row as u64, study.inputs.len());
+            let (_, test) = Saltelli::of(point as u64, study.inputs.len());
             !matches!(test, Saltelli::Changed(_))
         }
         Design::Morris(_)

@@ -4,8 +4,9 @@ use condyle_case::study::Design;
 use serde::Serialize;
 
 use crate::{
-    answers::data::{Data, is_sampled},
+    answers::data::Data,
     design::Walk,
+    plan::designs,
     random::Random,
     statistics::{extent, mean, rank_correlation, standard_deviation},
 };
@@ -41,7 +42,6 @@ pub(crate) struct Effect {
 }
 
 pub(crate) fn effects(data: &Data<'_>) -> Vec<Effect> {
-    let is_sample = is_sampled(data.plan, 0);
     let inputs = data.plan.study().inputs.iter().zip(&data.inputs);
     let mut effects = Vec::new();
     for (place, (input, column)) in inputs.enumerate() {
@@ -61,7 +61,7 @@ pub(crate) fn effects(data: &Data<'_>) -> Vec<Effect> {
                 rank_correlation: correlation.filter(|_| column.words.is_empty()),
                 words: column.words.clone(),
                 span: span(means.iter().map(|mean| mean.1)),
-                span_by_chance: is_sample.then(|| span_by_chance(&slices)),
+                span_by_chance: data.is_sample().then(|| span_by_chance(&slices)),
                 points,
                 means,
             });
@@ -70,8 +70,9 @@ pub(crate) fn effects(data: &Data<'_>) -> Vec<Effect> {
     effects
 }
 
-/// Returns the values of an input and an output in each test that is done. In a one-at-a-time design, tests that
-/// change another input do not count.
+/// Returns the values of an input and an output in each test that is done: of a Saltelli design in its independent
+/// points, and of several designs the mean of all at each point, since tests that depend on each other have less chance
+/// than as many independent ones. In a one-at-a-time design, tests that change another input do not count.
 fn pairs(data: &Data<'_>, place: usize, output: &[f64]) -> Vec<(f64, f64)> {
     let is_one_at_a_time = matches!(data.plan.study().design, Design::OneAtATime(_));
     let counts = |row: usize| {
@@ -81,9 +82,18 @@ fn pairs(data: &Data<'_>, place: usize, output: &[f64]) -> Vec<(f64, f64)> {
                 test.values[place].is_some() || test.values.iter().all(Option::is_none)
             })
     };
-    let rows = data.inputs[place].values.iter().zip(output).enumerate();
-    let done = rows.filter(|(row, (x, y))| x.is_finite() && y.is_finite() && counts(*row));
-    done.map(|(_, (x, y))| (*x, *y)).collect()
+    let designs = designs(data.plan.study());
+    let tests = data.tests_of(0).filter(|test| counts(*test));
+    // One design that cannot be solved leaves no mean of all.
+    let pairs = tests.map(|test| {
+        (
+            data.inputs[place].values[test],
+            mean(&output[test..test + designs]),
+        )
+    });
+    pairs
+        .filter(|(x, y)| x.is_finite() && y.is_finite())
+        .collect()
 }
 
 /// Returns the pairs at each value if there are few, otherwise in slices; `sorted` by the input.
@@ -195,7 +205,14 @@ impl Elementary {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::{design::morris_places, distribution::Place};
+    use condyle_results::catalogue::MASS_LOSS_MG;
+
+    use crate::{
+        design::{Saltelli, morris_places},
+        distribution::Place,
+        plan::Plan,
+        store::Column,
+    };
 
     #[test]
     fn verify_means_of_levels_and_of_slices() {
@@ -224,6 +241,92 @@ mod tests {
             (by_chance / (4.47 * 0.0456) - 1.0).abs() < 0.1,
             "{by_chance}"
         );
+    }
+
+    const KEYS: [(&str, f64); 8] = [
+        ("contact.friction", 0.05),
+        ("femur.distal_radius_mm", 37.0),
+        ("femur.posterior_radius_mm", 21.0),
+        ("femur.coronal_radius_mm", 23.0),
+        ("insert.sagittal_radius_mm", 55.0),
+        ("insert.coronal_radius_mm", 30.0),
+        ("insert.thickness_mm", 9.0),
+        ("material.poissons_ratio", 0.4),
+    ];
+
+    /// Returns a plan of eight inputs.
+    fn plan(design: &str) -> Plan {
+        let folder = tempfile::tempdir().unwrap();
+        let vary = KEYS.map(|(key, low)| {
+            let high = 1.01 * low;
+            format!("[[vary]]\nkey = \"{key}\"\nlow = {low}\nhigh = {high}\n")
+        });
+        let text = format!("case = \"case.toml\"\n{design}\n{}", vary.concat());
+        std::fs::write(folder.path().join("case.toml"), "").unwrap();
+        std::fs::write(folder.path().join("study.toml"), text).unwrap();
+        Plan::read(&folder.path().join("study.toml")).unwrap()
+    }
+
+    /// Returns the effects where the output of a test is `of` its row and its inputs, each a share of its range.
+    fn effects_of(
+        plan: &Plan,
+        shares: &dyn Fn(u64) -> Vec<f64>,
+        of: &dyn Fn(u64, &[f64]) -> f64,
+    ) -> Vec<Effect> {
+        let shares: Vec<Vec<f64>> = (0..plan.tests()).map(shares).collect();
+        let column = |place: usize| Column {
+            values: shares.iter().map(|shares| shares[place]).collect(),
+            words: Vec::new(),
+        };
+        let values = (0..).zip(&shares).map(|(row, shares)| of(row, shares));
+        effects(&Data {
+            plan,
+            inputs: (0..KEYS.len()).map(column).collect(),
+            outputs: vec![(&MASS_LOSS_MG, values.collect())],
+            within: vec![true; shares.len()],
+            kept: vec![true; shares.len()],
+        })
+    }
+
+    /// Returns how many of the effects exceed what an input without influence spans by chance.
+    fn beyond_chance(effects: &[Effect]) -> usize {
+        let beyond =
+            |effect: &&Effect| effect.span_by_chance.is_some_and(|most| effect.span > most);
+        effects.iter().filter(beyond).count()
+    }
+
+    #[test]
+    fn inputs_without_influence_stay_within_chance_though_saltelli_tests_depend_on_each_other() {
+        let plan = plan("[design]\nkind = \"saltelli\"\nsize = 256");
+        let shares = |row| {
+            let places = Saltelli::places(row, KEYS.len(), 1).into_iter();
+            let share = |place| match place {
+                Place::Share(share) => share,
+                _ => f64::NAN,
+            };
+            places.map(share).collect()
+        };
+        let found = effects_of(&plan, &shares, &|_, shares| shares[0]);
+        assert!(found[0].span > 2.0 * found[0].span_by_chance.unwrap());
+        // One in twenty is expected; if dependent rows are shuffled too, nearly all exceed it.
+        assert!(beyond_chance(&found[1..]) <= 2);
+    }
+
+    #[test]
+    fn designs_that_differ_hide_no_effect_of_an_input() {
+        let design = "[design]\nsize = 400\n[[alternative]]\nname = \"a\"\nset = [\"insert.edge_mm=2\"]\n\
+                      [[alternative]]\nname = \"b\"\nset = [\"insert.edge_mm=3\"]";
+        let plan = plan(design);
+        let shares = |row| {
+            let mut numbers = Random::stream(5, row / 2);
+            (0..KEYS.len()).map(|_| numbers.share()).collect()
+        };
+        let found = effects_of(&plan, &shares, &|row, shares| {
+            shares[0] + 10.0 * (row % 2) as f64
+        });
+        assert!(found[0].span > 2.0 * found[0].span_by_chance.unwrap());
+        assert!(beyond_chance(&found[1..]) <= 2);
+        assert_eq!(found[0].points.len(), 400);
     }
 
     #[test]

@@ -95,11 +95,7 @@ impl Answers {
             kept: store.count()?,
             failed: counted("failed")?,
             doubtful: counted("done")?,
-            spreads: data
-                .outputs
-                .iter()
-                .map(|(output, values)| Spread::new(plan, output, values))
-                .collect(),
+            spreads: data.spreads(),
             effects: effects::effects(&data),
             elementary: effects::elementary_effects(&data),
             // Counted indices need no emulator.
@@ -218,8 +214,10 @@ impl Answers {
         ];
         table(&head, &self.spreads, |spread| {
             let [_, p5, _, p50, _, p95, _] = spread.percentiles;
-            let beyond = spread.beyond.iter();
-            let beyond = beyond.map(|beyond| with_interval(beyond.share, beyond.interval));
+            let beyond = spread.beyond.iter().map(|beyond| {
+                let [low, high] = beyond.interval.map(percent);
+                format!("{} ({low} to {high})", percents(beyond.share))
+            });
             let (least, most) = (spread.least, spread.most);
             let numbers = [
                 least,
@@ -230,7 +228,7 @@ impl Answers {
                 spread.mean,
                 spread.standard_deviation,
             ];
-            let mut row = vec![spread.title.to_owned(), spread.unit.to_owned()];
+            let mut row = vec![spread.name(), spread.unit.to_owned()];
             row.extend(numbers.map(shown));
             row.push(beyond.collect::<Vec<_>>().join(", "));
             row
@@ -465,4 +463,12 @@ fn chance(probability: f64) -> String {
 
 fn percent(share: f64) -> String {
     format!("{:.1} %", 100.0 * share)
+}
+
+/// Returns the share between two ends, or one if they are equal.
+fn percents([low, high]: [f64; 2]) -> String {
+    match low == high {
+        true => percent(low),
+        false => format!("{} to {}", percent(low), percent(high)),
+    }
 }
