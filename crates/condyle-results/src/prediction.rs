@@ -5,7 +5,7 @@
 
 use std::sync::LazyLock;
 
-use condyle::{evolve::March, machine::knee::KNEE, wear::FamilyConstants};
+use condyle::{evolve::March, machine::TestedJoint, wear::FamilyConstants};
 use serde::{Deserialize, Serialize};
 
 use super::{
@@ -20,6 +20,8 @@ pub const CALIBRATED_LAW: &str = "power-law";
 const INPUTS_LOG_SD: f64 = 0.08;
 /// The wear of conventional inserts in force-controlled knee simulators [haider-garvin2008]; [reinders2014] found 8.0 +/- 0.9.
 const MEASURED_KNEES: &str = "knee simulators have weighed 8.1 +/- 2.6 mg/Mc";
+/// The wear of conventional cups of 28 mm (not read) on a machine of ISO 14242-1 in two lubricants [kaddick2001].
+const MEASURED_HIPS: &str = "hip simulators have weighed 22 and 27 mg/Mc";
 /// 90 % of a normal distribution are within this many deviations.
 const DEVIATIONS_OF_90_PERCENT: f64 = 1.645;
 /// Pressure that the factors of the draws refer to, MPa.
@@ -146,8 +148,11 @@ impl Prediction {
         };
         Some(Self {
             is_of_run,
-            measured: (*march.test().machine().mechanism == KNEE)
-                .then(|| MEASURED_KNEES.to_owned()),
+            measured: match march.test().machine().mechanism.tests {
+                TestedJoint::Knee => Some(MEASURED_KNEES.to_owned()),
+                TestedJoint::Hip => Some(MEASURED_HIPS.to_owned()),
+                _ => None,
+            },
             mass_loss_mg: interval(&masses, &MASS_LOSS_MG),
             max_depth_mm: interval(&depths, &MAX_DEPTH_MM),
             sources,

@@ -51,7 +51,7 @@ fn the_table_at_the_end_is_short_and_has_units() {
     let expected = [
         format!("{:.2} mg", summary[&catalogue::MASS_LOSS_MG]),
         format!("{:.4} mm", summary[&catalogue::MAX_DEPTH_MM]),
-        "gait cycles                 5000000".to_owned(),
+        "cycles                      5000000".to_owned(),
         format!("{}, ", summary[&catalogue::NEWTON_ITERATIONS]),
         format!(
             "{:.0} a cycle",

@@ -4,7 +4,7 @@ use super::{Scalar, scalar::scalars};
 
 scalars! { "Wear";
     /// Cycles that the insert has gone through.
-    CYCLES = Scalar::new("cycles", "gait cycles", 0, |run| run.last.cycles)
+    CYCLES = Scalar::new("cycles", "cycles", 0, |run| run.last.cycles)
         .exact()
         .printed();
 
