@@ -1,11 +1,18 @@
-"""Bodies from CAD files."""
+"""Bodies from CAD files.
+
+``python -m condyle.cad FILE.step FILE.ply`` converts a STEP file to triangles, as ``condyle new --femur FILE.step`` does.
+"""
 
 from __future__ import annotations
 
+import argparse
 import os
+import sys
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from ._extras import extra
+from ._ply import ply_bytes
 from .errors import BadInput
 
 if TYPE_CHECKING:
@@ -100,3 +107,22 @@ def _joined(parts: list[NDArray[np.float64]]) -> tuple[NDArray[np.float64], NDAr
     triangles = number.reshape(-1, 3)
     a, b, c = triangles.T
     return corners[first], triangles[(a != b) & (b != c) & (c != a)]
+
+
+def _main() -> None:
+    parser = argparse.ArgumentParser(prog="python -m condyle.cad", description="Convert a STEP file to triangles in mm.")
+    parser.add_argument("step", help="the STEP file")
+    parser.add_argument("ply", help="the PLY file to write; an existing one is replaced")
+    parser.add_argument("--deflection-mm", type=float, default=0.01, help="the largest distance of a triangle from its surface")
+    given = parser.parse_args()
+    try:
+        vertices, triangles = read_step(given.step, deflection_mm=given.deflection_mm)
+    except (BadInput, ImportError) as error:
+        sys.exit(str(error))
+    Path(given.ply).write_bytes(ply_bytes(vertices, triangles, "body"))
+    size = " x ".join(f"{edge:.1f}" for edge in vertices.max(axis=0) - vertices.min(axis=0))
+    print(f"{given.ply}: {len(triangles)} triangles, {size} mm, at most {given.deflection_mm:g} mm from the surface of {given.step}")
+
+
+if __name__ == "__main__":
+    _main()

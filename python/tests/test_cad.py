@@ -1,11 +1,14 @@
 """STEP files as bodies, written by OpenCASCADE itself."""
 
+import subprocess
+import sys
 from pathlib import Path
 
 import numpy as np
 import pytest
 
 import condyle
+from condyle._ply import ply_bytes
 from condyle.cad import read_step
 
 RADIUS_MM = 24.0
@@ -53,6 +56,17 @@ def test_a_ball_of_step_presses_like_the_ball(step: Path) -> None:
     place = [0.0, RADIUS_MM - 0.2, 0.0]
     exact, meshed = (condyle.Knee(case).contact(np.eye(3), place) for case in (ball, of_step))
     assert meshed.force_n[1] == pytest.approx(exact.force_n[1], rel=0.01)
+
+
+def test_the_module_converts_a_file_for_the_command(step: Path, tmp_path: Path) -> None:
+    mesh = tmp_path / "ball.ply"
+    command = [sys.executable, "-m", "condyle.cad"]
+    ran = subprocess.run([*command, step, mesh], capture_output=True, text=True, check=True)
+    assert "48.0 x 48.0 x 48.0 mm, at most 0.01 mm from" in ran.stdout
+    vertices, triangles = read_step(step)
+    assert mesh.read_bytes().endswith(ply_bytes(vertices, triangles, "ball")[-1000:])
+    refused = subprocess.run([*command, tmp_path / "no.step", mesh], capture_output=True, text=True, check=False)
+    assert refused.returncode == 1 and "no.step: this is not a STEP file" in refused.stderr
 
 
 def test_what_is_no_step_is_refused(tmp_path: Path) -> None:

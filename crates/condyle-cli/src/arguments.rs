@@ -152,19 +152,19 @@ pub struct New {
     /// The joint, for its usual simulator.
     #[arg(long, value_parser = joints(), conflicts_with = "preset")]
     joint: Option<Preset>,
-    /// A mesh of the femoral component: its unit and axes are concluded from the shape.
+    /// A mesh or STEP file of the femoral component: its unit and axes are concluded from the shape. STEP files are converted next to the case by the Python package.
     #[arg(long, value_name = "MESH", requires = "insert")]
     pub femur: Option<PathBuf>,
-    /// A mesh of the insert, closed or its articulating surface.
+    /// A mesh or STEP file of the insert, closed or its articulating surface.
     #[arg(long, value_name = "MESH", requires = "femur")]
     pub insert: Option<PathBuf>,
     /// The side of the knee, right or left; by default the side that the femur's trochlea shows.
     #[arg(long, value_parser = sides(), requires = "femur")]
     pub side: Option<Side>,
-    /// A mesh of the head of a hip: its ball is found in it.
+    /// A mesh or STEP file of the head of a hip: its ball is found in it.
     #[arg(long, value_name = "MESH", requires = "cup", conflicts_with_all = ["femur", "insert"])]
     pub head: Option<PathBuf>,
-    /// A mesh of the cup of a hip, closed: its socket and the direction in which it opens are found in it.
+    /// A mesh or STEP file of the cup of a hip, closed: its socket and the direction in which it opens are found in it.
     #[arg(long, value_name = "MESH", requires = "head")]
     pub cup: Option<PathBuf>,
 }

@@ -3,6 +3,7 @@
 use std::{
     io::ErrorKind,
     path::{Path, PathBuf},
+    process::Command,
     thread,
 };
 
@@ -23,7 +24,7 @@ const SCHEMA: &str = "condyle.schema.json";
 
 pub fn new(arguments: &New) -> Done {
     let path = &arguments.case;
-    let text = text(arguments).map_err(|error| match &error {
+    let text = text(arguments, &meshes(arguments)?).map_err(|error| match &error {
         DraftError::Case(problems) => Failure::from(problems),
         DraftError::Exchanged { femur, insert } => {
             let [case, femur, insert] = [path, femur, insert].map(|path| path.display());
@@ -76,18 +77,71 @@ fn settled(case: &Path, force: bool) -> Result<Option<PathBuf>, Failure> {
     }
 }
 
-/// Returns the case to write: of two meshes if they are given, else with the bodies that suit the machine.
-fn text(arguments: &New) -> Result<String, DraftError> {
-    let preset = arguments.preset();
+/// Returns the folder of the case.
+fn folder(arguments: &New) -> &Path {
     let folder = arguments.case.parent();
     let folder = folder.filter(|folder| *folder != Path::new(""));
-    let folder = folder.unwrap_or(Path::new("."));
-    let drafted = if let (Some(femur), Some(insert)) = (&arguments.femur, &arguments.insert) {
-        Drafted::new(preset, arguments.side, [femur, insert], folder)?
-    } else if let (Some(head), Some(cup)) = (&arguments.head, &arguments.cup) {
-        Drafted::hip(preset, [head, cup], folder)?
-    } else {
+    folder.unwrap_or(Path::new("."))
+}
+
+/// Returns the meshes of both bodies, counterface first: the given files, or those that STEP files are converted to next to the
+/// case; none without files.
+fn meshes(arguments: &New) -> Result<Option<[PathBuf; 2]>, Failure> {
+    let knee = arguments.femur.as_ref().zip(arguments.insert.as_ref());
+    let hip = arguments.head.as_ref().zip(arguments.cup.as_ref());
+    let Some((counterface, bearing)) = knee.or(hip) else {
+        return Ok(None);
+    };
+    let mesh = |file| converted(file, arguments);
+    Ok(Some([mesh(counterface)?, mesh(bearing)?]))
+}
+
+/// Returns a mesh file, or the one that the Python package converts a STEP file to.
+fn converted(file: &Path, arguments: &New) -> Result<PathBuf, Failure> {
+    let ending = file.extension().unwrap_or_default().to_ascii_lowercase();
+    if ending != "step" && ending != "stp" {
+        return Ok(file.to_owned());
+    }
+    let name = file.with_extension("ply");
+    let mesh = folder(arguments).join(name.file_name().unwrap_or_default());
+    if mesh.exists() && !arguments.force {
+        return Err(Failure::bad_input(format_args!(
+            "{} exists: give it in place of {}, or replace it with --force",
+            mesh.display(),
+            file.display()
+        )));
+    }
+    let python = if cfg!(windows) { "python" } else { "python3" };
+    let mut command = Command::new(python);
+    command.args(["-m", "condyle.cad"]).args([file, &mesh]);
+    let failed = |why: &str| {
+        Failure::bad_input(format_args!(
+            "{}: a STEP file needs the Python package to be converted: {}\nInstall it with: {python} -m pip install 'condyle[cad]'\n\
+             Or convert the file with another program, to STL with a chord error of at most 0.03 mm",
+            file.display(),
+            why.trim_end()
+        ))
+    };
+    let output = command
+        .output()
+        .map_err(|error| failed(&format!("{python}: {error}")))?;
+    if !output.status.success() {
+        return Err(failed(&String::from_utf8_lossy(&output.stderr)));
+    }
+    note(String::from_utf8_lossy(&output.stdout).trim_end());
+    Ok(mesh)
+}
+
+/// Returns the case to write: of two meshes if they are given, else with the bodies that suit the machine.
+fn text(arguments: &New, meshes: &Option<[PathBuf; 2]>) -> Result<String, DraftError> {
+    let (preset, folder) = (arguments.preset(), folder(arguments));
+    let Some(meshes) = meshes else {
         return Ok(template(preset));
+    };
+    let meshes = meshes.each_ref().map(PathBuf::as_path);
+    let drafted = match arguments.head {
+        Some(_) => Drafted::hip(preset, meshes, folder)?,
+        None => Drafted::new(preset, arguments.side, meshes, folder)?,
     };
     drafted.remarks.iter().for_each(note);
     Ok(drafted.text)

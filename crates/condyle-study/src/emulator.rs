@@ -112,13 +112,13 @@ impl Process {
 
     /// Returns n ln s^2 + ln |R|, twice the negative logarithm of the likelihood, less a constant, at the likeliest mean
     /// and variance s^2.
-    fn unlikelihood(&self) -> f64 {
+    fn deviance(&self) -> f64 {
         let count = self.weights.len() as f64;
         let diagonal = self.correlation.l_dirty().diagonal();
         count * self.variance.ln() + 2.0 * diagonal.iter().map(|one| one.ln()).sum::<f64>()
     }
 
-    /// Returns the derivatives of the unlikelihood with respect to the logarithms: tr(R^-1 dR) - w^T dR w / s^2, where
+    /// Returns the derivatives of the deviance with respect to the logarithms: tr(R^-1 dR) - w^T dR w / s^2, where
     /// w are the weights.
     fn slope(&self, points: &[Vec<f64>], logarithms: &DVector<f64>) -> DVector<f64> {
         let (lengths, nugget) = parameters(logarithms);
@@ -171,10 +171,10 @@ impl Emulator {
             .map(|value| (value - centre) / scale)
             .collect();
         let scaled = DVector::from_column_slice(&scaled[..fitted.len()]);
-        let unlikelihood = |logarithms: &DVector<f64>| {
+        let deviance = |logarithms: &DVector<f64>| {
             let process = Process::new(fitted, &scaled, logarithms)?;
             let slope = process.slope(fitted, logarithms);
-            Some((process.unlikelihood(), slope))
+            Some((process.deviance(), slope))
         };
         let all = |length: f64, nugget: f64| {
             let mut all = DVector::from_element(axes + 1, length.ln());
@@ -184,7 +184,7 @@ impl Emulator {
         let [low, high] = [0, 1].map(|end| all(LENGTHS[end], NUGGETS[end]));
         let starts = FIRST_LENGTHS.map(|length| all(length, FIRST_NUGGET));
         let fits = starts.into_iter();
-        let fits = fits.filter_map(|start| minimum(&unlikelihood, start, [&low, &high], MAX_STEPS));
+        let fits = fits.filter_map(|start| minimum(&deviance, start, [&low, &high], MAX_STEPS));
         let (logarithms, _) = fits.min_by(|one, other| one.1.total_cmp(&other.1))?;
         Self::with(points.to_vec(), values.to_vec(), logarithms)
     }
@@ -461,7 +461,7 @@ pub(crate) mod tests {
             let moved = |by: f64| {
                 let mut moved = logarithms.clone();
                 moved[axis] += by;
-                at(&moved).unlikelihood()
+                at(&moved).deviance()
             };
             let difference = (moved(1e-5) - moved(-1e-5)) / 2e-5;
             assert!(

@@ -161,3 +161,68 @@ fn a_draft_that_does_not_start_ends_with_the_code_of_its_error() {
     );
     assert!(!said.out.contains("run it with"), "{}", said.out);
 }
+
+/// Returns triangles as the text of a PLY file.
+#[cfg(unix)]
+fn ply(triangles: &[Triangle]) -> String {
+    let count = triangles.len();
+    let header = format!(
+        "ply\nformat ascii 1.0\nelement vertex {}\nproperty double x\nproperty double y\nproperty double z\n\
+         element face {count}\nproperty list uchar int vertex_indices\nend_header\n",
+        3 * count
+    );
+    let corners = triangles.iter().flatten();
+    let corners = corners.map(|[x, y, z]| format!("{x} {y} {z}\n"));
+    let faces = (0..count).map(|n| format!("3 {} {} {}\n", 3 * n, 3 * n + 1, 3 * n + 2));
+    header + &corners.chain(faces).collect::<String>()
+}
+
+/// Says `words` with another program in place of Python.
+#[cfg(unix)]
+fn say_with_python(bench: &Bench, python: &str, words: &[&str]) -> (Option<i32>, String) {
+    use std::os::unix::fs::PermissionsExt;
+    fs::create_dir_all(bench.path("bin")).unwrap();
+    bench.write("bin/python3", &format!("#!/bin/sh\n{python}\n"));
+    let executable = fs::Permissions::from_mode(0o755);
+    fs::set_permissions(bench.path("bin/python3"), executable).unwrap();
+    let path = format!("{}:/usr/bin:/bin", bench.path("bin").display());
+    let output = bench.command(words).env("PATH", path).output().unwrap();
+    (
+        output.status.code(),
+        String::from_utf8_lossy(&output.stderr).into_owned(),
+    )
+}
+
+#[cfg(unix)]
+#[test]
+fn step_files_are_converted_by_the_package_or_the_command_is_named() {
+    let bench = Bench::new();
+    bench.write("f.step", &ply(&femur()));
+    bench.write("i.STP", &ply(&insert()));
+    let new = ["new", "my.toml", "--femur", "f.step", "--insert", "i.STP"];
+    let missing = "echo \"No module named condyle\" >&2; exit 1";
+    let (code, err) = say_with_python(&bench, missing, &new);
+    assert_eq!(code, Some(2), "{err}");
+    for words in [
+        "f.step: a STEP file needs the Python package",
+        "No module named",
+        "pip install 'condyle[cad]'",
+    ] {
+        assert!(err.contains(words), "{err}");
+    }
+    assert!(!bench.path("my.toml").exists());
+    // The arguments are -m condyle.cad FILE MESH.
+    let (code, err) = say_with_python(&bench, "cp \"$3\" \"$4\" && echo \"$4: $2\"", &new);
+    assert_eq!(code, Some(0), "{err}");
+    assert!(err.contains("f.ply: condyle.cad"), "{err}");
+    let text = fs::read_to_string(bench.path("my.toml")).unwrap();
+    assert!(
+        text.contains("file = \"f.ply\"") && text.contains("file = \"i.ply\""),
+        "{text}"
+    );
+    let (code, err) = say_with_python(&bench, "exit 1", &new);
+    assert!(
+        code == Some(2) && err.contains("f.ply exists: give it in place of f.step"),
+        "{err}"
+    );
+}
