@@ -99,14 +99,18 @@ def _triangles_of(face: Any) -> NDArray[np.float64] | None:
 
 
 def _joined(parts: list[NDArray[np.float64]]) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
-    """The triangles of all faces, with the vertices of adjacent faces merged and degenerate triangles removed."""
+    """The triangles of all faces, with the vertices of adjacent faces merged; degenerate triangles and folded flaps are removed."""
     import numpy as np
 
     corners = np.concatenate(parts).reshape(-1, 3)
     _, first, number = np.unique(corners.round(6), axis=0, return_index=True, return_inverse=True)
     triangles = number.reshape(-1, 3)
     a, b, c = triangles.T
-    return corners[first], triangles[(a != b) & (b != c) & (c != a)]
+    triangles = triangles[(a != b) & (b != c) & (c != a)]
+    # Where two edges of a thin face nearly coincide, its triangles lie on those of its neighbour and face the other way: no
+    # surface is between them, and their edges would have more than two triangles.
+    _, same, count = np.unique(np.sort(triangles, axis=1), axis=0, return_inverse=True, return_counts=True)
+    return corners[first], triangles[count[same.ravel()] == 1]
 
 
 def _main() -> None:

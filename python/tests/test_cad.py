@@ -9,7 +9,7 @@ import pytest
 
 import condyle
 from condyle._ply import ply_bytes
-from condyle.cad import read_step
+from condyle.cad import _joined, read_step
 
 RADIUS_MM = 24.0
 
@@ -56,6 +56,15 @@ def test_a_ball_of_step_presses_like_the_ball(step: Path) -> None:
     place = [0.0, RADIUS_MM - 0.2, 0.0]
     exact, meshed = (condyle.Knee(case).contact(np.eye(3), place) for case in (ball, of_step))
     assert meshed.force_n[1] == pytest.approx(exact.force_n[1], rel=0.01)
+
+
+def test_faces_that_lie_on_each_other_cancel() -> None:
+    square = np.array([[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [1.0, 1.0, 0.0], [0.0, 1.0, 0.0]])
+    sheet = square[[[0, 1, 2], [0, 2, 3]]]
+    # A thin face whose third corner coincides with a neighbour's within the tolerance, on both sides.
+    flap = np.array([[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.5, 1e-4, 0.0]])
+    vertices, triangles = _joined([sheet, flap[None], flap[None, ::-1] + 1e-9])
+    assert len(triangles) == 2 and np.allclose(vertices[triangles], sheet)
 
 
 def test_the_module_converts_a_file_for_the_command(step: Path, tmp_path: Path) -> None:
