@@ -125,7 +125,9 @@ def _main() -> None:
         sys.exit(str(error))
     Path(given.ply).write_bytes(ply_bytes(vertices, triangles, "body"))
     size = " x ".join(f"{edge:.1f}" for edge in vertices.max(axis=0) - vertices.min(axis=0))
-    print(f"{given.ply}: {len(triangles)} triangles, {size} mm, at most {given.deflection_mm:g} mm from the surface of {given.step}")
+    print(
+        f"{given.ply}: {len(triangles)} triangles, {size} mm, at most {given.deflection_mm:g} mm from the surface of {given.step}"
+    )
 
 
 if __name__ == "__main__":
