@@ -35,7 +35,12 @@ pub(super) fn lede(results: &Results, case: &CaseFacts) -> Option<String> {
     let asked = case.cycles.filter(|asked| *asked > cycles);
     let of = asked.map(|asked| format!(" of {}", cycles_in_words(asked)));
     let volume = reached(results, &VOLUME_LOSS_MM3);
-    let volume = volume.map(|volume| format!(" ({} mm\u{b3})", significant(volume, 3)));
+    let volume = volume.map(|volume| format!("{} mm\u{b3}", significant(volume, 3)));
+    let facts: Vec<String> = volume.into_iter().chain(laboratories(results)).collect();
+    let facts = match facts.as_slice() {
+        [] => String::new(),
+        facts => format!(" ({})", facts.join("; ")),
+    };
     let rate = (cycles > 0.0).then(|| significant(mass_mg * MILLION / cycles, 3));
     let rate = rate.map(|rate| format!(", {rate} mg in a million cycles on average"));
     let [_, bearing] = results.directions().bodies();
@@ -43,10 +48,19 @@ pub(super) fn lede(results: &Results, case: &CaseFacts) -> Option<String> {
         "After {done}{} cycles the {bearing} has lost {} mg{}{}.{}",
         of.unwrap_or_default(),
         significant(mass_mg, 3),
-        volume.unwrap_or_default(),
+        facts,
         rate.unwrap_or_default(),
         deepest(results).unwrap_or_default()
     ))
+}
+
+/// Returns the interval of the mass that laboratories would weigh; none if it is that of another law.
+fn laboratories(results: &Results) -> Option<String> {
+    let prediction = results.summary.as_ref()?.prediction.as_ref()?;
+    let interval = prediction.interval(&MASS_LOSS_MG)?;
+    let [low, high] = [interval.low, interval.high].map(|value| significant(value, 2));
+    let is_of_run = prediction.is_of_run;
+    is_of_run.then(|| format!("90 % of laboratories: {low} to {high} mg"))
 }
 
 fn deepest(results: &Results) -> Option<String> {
