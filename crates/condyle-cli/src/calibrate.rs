@@ -60,7 +60,7 @@ fn part_folder(out: &Path, force: bool) -> Result<PathBuf, Unwritten> {
     // A folder that cannot be made is reported before the long search; a killed search leaves none.
     let made = match is_there {
         true => Err(ErrorKind::AlreadyExists.into()),
-        // That of a command killed while it wrote is used again.
+        // A killed command left it: it is used again.
         false if folder.is_dir() => Ok(()),
         false => fs::create_dir(&folder).and_then(|()| fs::remove_dir(&folder)),
     };

@@ -63,7 +63,7 @@ const TICKS: f64 = 1000.0;
 pub struct RunProgress {
     bar: Option<ProgressBar>,
     of_cycles: f64,
-    /// Whether the bodies are still built and placed.
+    /// True while the bodies are built and placed.
     is_placing: Arc<AtomicBool>,
     stop: Arc<AtomicBool>,
 }

@@ -61,7 +61,7 @@ struct Collapses<'a> {
     is_fixed: Vec<bool>,
     /// The removed vertices that are next to each triangle.
     removed: Vec<Vec<u32>>,
-    /// How often the surroundings of each vertex have changed: its candidates of before are void.
+    /// The number of changes around each vertex: candidates with a smaller one are void.
     stamps: Vec<u32>,
     queue: BinaryHeap<(Reverse<Candidate>, u32)>,
     deviation2: f64,

@@ -75,11 +75,6 @@ impl Directions {
         self.joint == TestedJoint::Knee
     }
 
-    /// Returns the names of the counterface and of the bearing, such as `head` and `cup`.
-    pub fn bodies(self) -> [&'static str; 2] {
-        self.joint.bodies()
-    }
-
     /// Returns the names of +x and -x.
     pub fn along_x(self) -> [&'static str; 2] {
         match self.joint {

@@ -118,7 +118,7 @@ fn space_filling(
 pub(crate) struct Standing {
     /// The improvement expected from the most promising test, with doubled standard deviations.
     pub expected_improvement: f64,
-    /// Whether it is too small for another test.
+    /// True if it is too small for another test.
     pub is_converged: bool,
     /// Q2 of the emulator of the minimised output.
     pub q2: f64,

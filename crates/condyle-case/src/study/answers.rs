@@ -30,6 +30,12 @@ pub struct Bound {
 }
 
 impl Answers {
+    /// Returns the limits of an output.
+    pub fn bounds_of(&self, output: &Scalar) -> impl Iterator<Item = &Bound> {
+        let bounds = self.bounds.iter();
+        bounds.filter(move |bound| bound.output.key == output.key)
+    }
+
     pub(super) fn read(root: &Section<'_>, log: &mut Log<'_>) -> Option<Self> {
         let bounds = root.list("limit", log);
         let bounds = bounds.map(|all| all.iter().map(|one| Bound::read(one, log)).collect());

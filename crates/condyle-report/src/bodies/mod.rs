@@ -81,7 +81,7 @@ pub fn bodies_svg(picture: &BodiesPicture<'_>) -> String {
     let (base, caption) = (height - 8.0, escape(picture.caption));
     body += &format!(r#"<text x="{BETWEEN:.1}" y="{base:.1}">{caption}</text>"#);
     body += &scale_bar((x - BETWEEN, height - 16.0), scale);
-    let [counterface, bearing] = picture.directions.bodies();
+    let [counterface, bearing] = picture.directions.joint.bodies();
     let desc = format!(
         "The {counterface} and the {bearing} from the front, from the right and from above."
     );

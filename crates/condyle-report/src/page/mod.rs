@@ -74,7 +74,7 @@ fn page_of(results: &Results, scene: Option<&Scene>) -> String {
             "wear_map": wear_map.map(|map| map.svg(&map.desc(), "")),
             "regions": tables::regions(results),
             "joint": results.directions().joint.name(),
-            "bodies": results.directions().bodies(),
+            "bodies": results.directions().joint.bodies(),
             "wear_laws": summary.map_or(&[][..], |summary| &summary.wear_laws),
             "wear_over_conventional": times.map(|times| significant(times, 3)),
             "activities": activities,

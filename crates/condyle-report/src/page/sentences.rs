@@ -43,7 +43,7 @@ pub(super) fn lede(results: &Results, case: &CaseFacts) -> Option<String> {
     };
     let rate = (cycles > 0.0).then(|| significant(mass_mg * MILLION / cycles, 3));
     let rate = rate.map(|rate| format!(", {rate} mg in a million cycles on average"));
-    let [_, bearing] = results.directions().bodies();
+    let [_, bearing] = results.directions().joint.bodies();
     Some(format!(
         "After {done}{} cycles the {bearing} has lost {} mg{}{}.{}",
         of.unwrap_or_default(),

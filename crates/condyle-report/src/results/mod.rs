@@ -15,7 +15,7 @@ use std::path::{MAIN_SEPARATOR, Path, PathBuf};
 use condyle_mesh::formats::{VtuFile, read_vtu_points};
 use condyle_results::{
     ActivitySummary, COMPARED, COMPARED_KINEMATICS, COMPARED_WEAR, Directions, MotionColumn, Side,
-    Summary, check_file,
+    Summary, TestedJoint, check_file,
 };
 
 use crate::error::ReportError;
@@ -100,8 +100,8 @@ impl Results {
         }
         let case = part(case(&folder.join("case.toml")), on_damage)?;
         let summary = part(summary(&folder.join("summary.json")), on_damage)?;
-        let mut joints = summary.iter().map(|summary| summary.joint.name());
-        let is_cup = joints.any(|joint| joint == "hip");
+        let mut joints = summary.iter().map(|summary| summary.joint);
+        let is_cup = joints.any(|joint| joint == TestedJoint::Hip);
         let mut activities = Vec::new();
         for activity in summary
             .iter()

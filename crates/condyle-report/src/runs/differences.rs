@@ -55,7 +55,7 @@ impl Run {
     /// Returns the title of the case, if it has one.
     pub(super) fn title(&self) -> Option<String> {
         let facts = CaseFacts::of(self.results.case.as_deref()?);
-        // What a case without a title is called.
+        // A case without a title has this one.
         facts.title.filter(|title| title != "Untitled")
     }
 

@@ -120,8 +120,7 @@ impl Spread {
         let mut sorted: Vec<f64> = solved.collect();
         sorted.sort_by(f64::total_cmp);
         let unsolved = kept.len() - sorted.len();
-        let bounds = study.answers.bounds.iter();
-        let own = bounds.filter(|bound| bound.output.key == output.key);
+        let own = study.answers.bounds_of(output);
         Self {
             output: output.key,
             title: output.label,

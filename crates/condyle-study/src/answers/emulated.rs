@@ -142,8 +142,7 @@ pub(crate) fn emulated(data: &Data<'_>) -> (Vec<Emulated>, Vec<Indices>) {
         };
         let mut emulated = Emulated::new(output, &axes, &emulator);
         if emulated.q2 >= MIN_Q2 {
-            let bounds = study.answers.bounds.iter();
-            let own = bounds.filter(|bound| bound.output.key == output.key);
+            let own = study.answers.bounds_of(output);
             emulated.beyond = own
                 .map(|bound| chance(data, &axes, &emulator, bound))
                 .collect();

@@ -235,8 +235,7 @@ impl Best {
             best.inputs = inputs.collect();
             for output in catalogue::outputs() {
                 let values = store.column(plan, output.key)?.values;
-                let bounds = plan.study().answers.bounds.iter();
-                let own = bounds.filter(|bound| bound.output.key == output.key);
+                let own = plan.study().answers.bounds_of(output);
                 best.margins
                     .extend(own.flat_map(|bound| margins(bound, values[row])));
                 best.outputs.push(valued(output.key, &values));

@@ -14,7 +14,7 @@ pub(super) struct ContactEnergy {
 }
 
 impl ContactEnergy {
-    /// Whether neither a contact force nor a load is known yet.
+    /// Returns true while neither a contact force nor a load is known.
     pub fn is_unpressed(&self) -> bool {
         self.most_n == 0.0
     }
@@ -27,7 +27,7 @@ impl ContactEnergy {
         self.taken_nmm -= energy_nmm;
     }
 
-    /// Whether the contact has given back more than it can hold.
+    /// Returns whether the contact has given back more than it can hold.
     pub fn is_made(&self) -> bool {
         !self.is_unpressed() && self.taken_nmm < -STORED_MM * self.most_n
     }
