@@ -11,7 +11,7 @@ use super::{
     creep::{CreepContact, CreepStep},
     depth::sum_mm,
     next_step::next_step,
-    placement::place,
+    placement::{place, start_of},
     rates::{Rates, SolvedStep, StepStart, WearStep, mean_cycles, volume_mm3, worn},
     solved_cycles::{SolvedCycles, solve},
 };
@@ -63,7 +63,11 @@ impl March {
             surface: &surface,
         };
         let (chain, settled) = place(&test, bodies, &mut counters)?;
-        let at_rest = |activity: &Activity| MachineState::at_rest(&activity.machine, settled);
+        let zero_mm = chain.zero_mm();
+        let at_start = |activity: &Activity| {
+            start_of(activity, &test, bodies, zero_mm, settled, &mut counters)
+        };
+        let starts: Vec<_> = test.activities.iter().map(at_start).collect();
         let state = MarchState {
             counters,
             settled,
@@ -71,8 +75,8 @@ impl March {
                 test.insert.mesh().nodes.clone(),
                 DepthFields::none(test.insert.surface_nodes().len()),
                 ContactState::default(),
-                test.activities.iter().map(at_rest),
-                chain.zero_mm(),
+                starts,
+                zero_mm,
             )
         };
         Ok(Self::from_parts(test, counterface, state))

@@ -1,11 +1,13 @@
 //! The placement of the counterface: it is lowered onto the insert, and settles.
 
-use super::{PlacementError, WearTest};
+use super::{Activity, PlacementError, WearTest};
 use crate::{
     Vec3,
     contact::{Bodies, ContactMemory, ContactModel},
     geometry::{ArticulatingSurface, Counterface},
-    machine::{Chain, Drive, JointKind, Settling, SolverCounters, settle},
+    machine::{
+        Chain, Drive, JointKind, MachineState, Settling, SolverCounters, settle, settle_from,
+    },
     spatial::{Pose, RelativeMotion},
 };
 
@@ -51,6 +53,36 @@ pub(super) fn place(
     let (chain, positions) = chain.zeroed_at(machine, &positions);
     check_ligaments(test, &chain, &positions)?;
     Ok((chain, positions))
+}
+
+/// Returns the machine of an activity at rest where its cycle starts, from the settled positions of the first activity.
+///
+/// An activity that does not come to rest there starts at those positions, and its cycle shows the reason.
+pub(super) fn start_of(
+    activity: &Activity,
+    test: &WearTest,
+    bodies: Bodies<'_>,
+    zero_mm: Vec3,
+    settled: [f64; 6],
+    counters: &mut SolverCounters,
+) -> MachineState {
+    let machine = &activity.machine;
+    let start = MachineState::at_rest(machine, settled);
+    if start.now.positions == settled {
+        return start;
+    }
+    let chain = Chain::new(machine, zero_mm, test.flexion_axis_mm);
+    let mut contact = test.contact.contact(bodies, ContactMemory::default());
+    let tolerance_n = test.time.force_tolerance_n;
+    let found = settle_from(
+        settled,
+        machine,
+        &chain,
+        contact.as_mut(),
+        tolerance_n,
+        counters,
+    );
+    found.map_or(start, |positions| MachineState::at_rest(machine, positions))
 }
 
 /// Refuses ligaments that would have torn where the counterface settles.

@@ -30,6 +30,7 @@ pub use mechanism::{
     Axis, Channel, ChannelUnit, CycleQuantity, CycleRow, JointDescription, JointIndex, JointKind,
     Loading, Mechanism, MovedBody, Region, Settling, TestedJoint,
 };
+pub(crate) use settle::settle_from;
 pub use settle::{NotSettled, settle};
 pub use simulator::Simulator;
 pub use waveform::{Interpolation, Knot, Waveform, WaveformError, low_passed, without_drift};

@@ -44,16 +44,74 @@ pub fn settle(
     counters: &mut SolverCounters,
 ) -> Result<[f64; 6], NotSettled> {
     let machine = settling(machine);
-    let (loads, levers) = (machine.loads_at(0.0), machine.levers());
     let mut positions = [0.0; 6];
     machine.drive(0.0, &mut positions, &mut [0.0; 6]);
+    balanced(
+        &machine,
+        chain,
+        contact,
+        force_tolerance_n,
+        positions,
+        counters,
+    )
+}
+
+/// Finds the positions from which an activity starts: those of `from` where the machine is loaded, balanced in height
+/// and tilt under the load at the start of the cycle.
+///
+/// Flexion that starts elsewhere than the settled one would leave the counterface above the insert or inside it.
+///
+/// # Errors
+/// If the counterface does not come to rest.
+pub(crate) fn settle_from(
+    from: [f64; 6],
+    machine: &Machine,
+    chain: &Chain,
+    contact: &mut dyn ContactModel,
+    force_tolerance_n: f64,
+    counters: &mut SolverCounters,
+) -> Result<[f64; 6], NotSettled> {
+    let mut start = machine.clone();
+    start.springs.clear();
+    start.ligaments.clear();
+    for (joint, position) in start.joints.iter_mut().zip(from) {
+        if joint.is_loaded() {
+            joint.drive = match joint.description.settling {
+                Settling::Free | Settling::HeldAtZero => Drive::Locked(position),
+                Settling::DrivenWithoutLoad => Drive::Loaded(Waveform::constant(0.0)),
+                Settling::Driven => continue,
+            };
+        }
+    }
+    let mut positions = from;
+    start.drive(0.0, &mut positions, &mut [0.0; 6]);
+    balanced(
+        &start,
+        chain,
+        contact,
+        force_tolerance_n,
+        positions,
+        counters,
+    )
+}
+
+/// Finds the positions of static balance of a machine under the loads at the start of the cycle, from `positions`.
+fn balanced(
+    machine: &Machine,
+    chain: &Chain,
+    contact: &mut dyn ContactModel,
+    force_tolerance_n: f64,
+    mut positions: [f64; 6],
+    counters: &mut SolverCounters,
+) -> Result<[f64; 6], NotSettled> {
+    let (loads, levers) = (machine.loads_at(0.0), machine.levers());
     // At least a newton, so that an unloaded machine has a finite first step.
     let mut damping = levers.largest_n(&loads).max(1.0) / FIRST_MOTION_MM;
     let (mut last_residual_n, mut moved_mm) = (f64::INFINITY, f64::INFINITY);
     for _ in 0..MAX_ITERATIONS {
         // Without rates there is no friction, and the contact is a function of the pose alone.
         let still = Kinematics::at_rest(positions);
-        let balance = Balance::new(&machine, chain, contact, still);
+        let balance = Balance::new(machine, chain, contact, still);
         counters.contact_evaluations += 1;
         let residual = balance.residual(&loads);
         let residual_n = levers.largest_n(&residual);
