@@ -6,6 +6,8 @@ use nalgebra::{DMatrix, DVector};
 const SUFFICIENT_DECREASE: f64 = 1e-4;
 /// A step that is halved this often is shorter than the rounding of the point.
 const MAX_HALVINGS: usize = 40;
+/// Steps of a descent: emulators need fewer, and a curved valley is left where it is followed for longer.
+const MAX_STEPS: usize = 60;
 /// The descent ends at a relative decrease below this.
 const MIN_DECREASE: f64 = 1e-10;
 
@@ -18,14 +20,13 @@ pub(crate) fn minimum(
     function: &Smooth<'_>,
     start: DVector<f64>,
     [low, high]: [&DVector<f64>; 2],
-    max_steps: usize,
 ) -> Option<(DVector<f64>, f64)> {
     let axes = start.len();
     let inside = |point: DVector<f64>| point.sup(low).inf(high);
     let mut point = inside(start);
     let (mut value, mut slope) = function(&point)?;
     let mut inverse = DMatrix::identity(axes, axes) / slope.norm().max(1.0);
-    for _ in 0..max_steps {
+    for _ in 0..MAX_STEPS {
         let is_held = |axis: usize| {
             (point[axis] <= low[axis] && slope[axis] > 0.0)
                 || (point[axis] >= high[axis] && slope[axis] < 0.0)
@@ -75,7 +76,7 @@ mod tests {
     fn in_unit_square(function: &Smooth<'_>) -> (DVector<f64>, f64) {
         let ends = [0.0, 1.0].map(|end| DVector::from_element(2, end));
         let start = DVector::from_vec(vec![0.2, 0.9]);
-        minimum(function, start, [&ends[0], &ends[1]], 200).unwrap()
+        minimum(function, start, [&ends[0], &ends[1]]).unwrap()
     }
 
     #[test]

@@ -2,9 +2,11 @@
 
 use condyle_case::{
     config::Level,
-    study::{Input, TriangularKeys, TruncatedKeys, Variation},
+    study::{BetaKeys, Input, TriangularKeys, TruncatedKeys, Variation},
 };
-use statrs::distribution::{ContinuousCDF, Normal};
+use statrs::distribution::{Beta, ContinuousCDF, Normal};
+
+use crate::statistics;
 
 /// The rule by which a test sets an input.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -17,7 +19,8 @@ pub(crate) enum Place {
     Along(f64),
 }
 
-/// Ends of the range of a normal input in designs that need ends: 95 % of its values lie between.
+/// Ends of the range of an unbounded input in designs that need ends, in standard deviations of its normal scores: 95 % of
+/// its values lie between.
 const END_DEVIATIONS: f64 = 2.0;
 
 /// Returns the quantile of this share; of levels, each has the same share.
@@ -42,7 +45,13 @@ pub(crate) fn level_along(input: &Input, part: f64) -> Level {
             input.level(keys.mean.unwrap_or_default() + deviations * keys.standard_deviation)
         }
         other => {
-            let [low, high] = [0.0, 1.0].map(|share| quantile(other, share));
+            let ends = match other {
+                Variation::Lognormal(_) | Variation::Weibull(_) => {
+                    [-END_DEVIATIONS, END_DEVIATIONS].map(normal_share)
+                }
+                _ => [0.0, 1.0],
+            };
+            let [low, high] = ends.map(|share| quantile(other, share));
             input.level(low + part * (high - low))
         }
     }
@@ -56,6 +65,16 @@ fn quantile(variation: &Variation, share: f64) -> f64 {
         }
         Variation::TruncatedNormal(keys) => truncated_normal(keys, share),
         Variation::Triangular(keys) => triangular(keys, share),
+        Variation::Lognormal(keys) => {
+            let deviations = normal_quantile(share);
+            keys.median.unwrap_or_default()
+                * (deviations * keys.geometric_standard_deviation.ln()).exp()
+        }
+        Variation::Weibull(keys) => {
+            keys.low + keys.scale * (-(-share).ln_1p()).powf(1.0 / keys.shape)
+        }
+        Variation::Beta(keys) => beta(keys, share),
+        Variation::Empirical(keys) => statistics::quantile(&keys.sorted(), share),
         Variation::Levels(_) => f64::NAN,
     }
 }
@@ -78,6 +97,11 @@ fn truncated_normal(keys: &TruncatedKeys, share: f64) -> f64 {
     value.clamp(keys.low, keys.high)
 }
 
+fn beta(keys: &BetaKeys, share: f64) -> f64 {
+    let part = Beta::new(keys.alpha, keys.beta).map_or(f64::NAN, |one| one.inverse_cdf(share));
+    keys.low + part * (keys.high - keys.low)
+}
+
 /// Inverts F = (x - low)^2 / ((high - low) (mode - low)) below the mode, and the mirrored formula above it.
 fn triangular(keys: &TriangularKeys, share: f64) -> f64 {
     let (low, high) = (keys.low, keys.high);
@@ -93,7 +117,63 @@ fn triangular(keys: &TriangularKeys, share: f64) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use condyle_case::study::{NormalKeys, UniformKeys};
+    use condyle_case::{
+        config::Levels,
+        study::{EmpiricalKeys, LognormalKeys, NormalKeys, UniformKeys, WeibullKeys},
+    };
+
+    #[test]
+    fn verify_quantiles_in_closed_form() {
+        let lognormal = Variation::Lognormal(LognormalKeys {
+            median: Some(2.0),
+            geometric_standard_deviation: 3.0,
+        });
+        let weibull = Variation::Weibull(WeibullKeys {
+            low: 1.0,
+            scale: 2.0,
+            shape: 0.5,
+        });
+        let beta = Variation::Beta(BetaKeys {
+            low: 1.0,
+            high: 3.0,
+            alpha: 2.0,
+            beta: 1.0,
+        });
+        let values = [4.0, 1.0, 2.0].map(Level::Number).to_vec();
+        let empirical = Variation::Empirical(EmpiricalKeys {
+            file: None,
+            values: Levels(values),
+        });
+        // One deviation above the median; F = 1 - exp(-sqrt((x - 1) / 2)); F = ((x - 1) / 2)^2; half way from 2 to 4.
+        for (variation, share, exact) in [
+            (&lognormal, normal_share(1.0), 6.0),
+            (&lognormal, 0.5, 2.0),
+            (&weibull, 1.0 - (-2.0_f64).exp(), 9.0),
+            (&beta, 0.36, 2.2),
+            (&beta, 1.0, 3.0),
+            (&empirical, 0.75, 3.0),
+            (&empirical, 0.0, 1.0),
+        ] {
+            let found = quantile(variation, share);
+            assert!((found - exact).abs() < 1e-8, "{found} {exact}");
+        }
+    }
+
+    #[test]
+    fn unbounded_inputs_have_ends_in_designs_of_points() {
+        let keys = WeibullKeys {
+            low: 0.0,
+            scale: 1.0,
+            shape: 2.0,
+        };
+        let input = Input::new("contact.friction", Variation::Weibull(keys));
+        for (part, exact) in [(0.0, 0.151_72), (1.0, 1.945_01)] {
+            let Level::Number(found) = level_along(&input, part) else {
+                panic!("a distribution has numbers")
+            };
+            assert!((found - exact).abs() < 1e-4, "{found}");
+        }
+    }
 
     #[test]
     fn verify_medians_and_ends() {

@@ -296,7 +296,14 @@ fn front(front: &Front) -> Option<Picture> {
         1,
         ["", "within limits", "the front"],
     );
-    let caption =
-        "Tests within all limits; no test is better in both outputs than one on the line.";
-    Some(("pareto.svg", caption.to_owned(), svg))
+    let mut caption =
+        "Tests within all limits; no test is better in both outputs than one on the line."
+            .to_owned();
+    if let Some(part) = front.hypervolume {
+        let percent = 100.0 * part;
+        caption += &format!(
+            " The line beats {percent:.1} % of the rectangle from its best to the worst values (its hypervolume)."
+        );
+    }
+    Some(("pareto.svg", caption, svg))
 }

@@ -23,7 +23,7 @@ use crate::{
 pub(crate) const DATABASE: &str = "study.db";
 /// Name of the file under which a new database is created.
 const NEW_DATABASE: &str = "study.db.part";
-const FORMAT: &str = "2";
+const FORMAT: &str = "3";
 /// The last column of the tests: the checksum of the others, so that damage to the file is no result.
 const CHECKSUM: &str = "checksum";
 /// Longest time for which a reading process may delay a write.
@@ -72,6 +72,7 @@ impl Store {
                            or remove it";
             return Err(StudyError::folder(out, problem));
         }
+        store.grow(plan)?;
         Ok(store)
     }
 
@@ -202,10 +203,38 @@ impl Store {
     /// Rejects a database with the tests of another plan.
     fn check_tests(&self, folder: &Path, plan: &Plan) -> Result<(), StudyError> {
         if self.fact("inputs_blake3")?.as_deref() == Some(plan.inputs_blake3()) {
-            return Ok(());
+            let stored = self.fact("tests")?.and_then(|tests| tests.parse().ok());
+            let stored: u64 = stored.unwrap_or_default();
+            if stored <= plan.tests() {
+                return Ok(());
+            }
+            let problem = format!(
+                "the folder holds this study with {stored} tests, more than the {} of the file; raise its number of tests again, \
+                 or give another folder with --out",
+                plan.tests()
+            );
+            return Err(StudyError::folder(folder, &problem));
         }
         let problem = "the folder holds another study; give another one with --out, or remove it";
         Err(StudyError::folder(folder, problem))
+    }
+
+    /// Takes the number of tests of a plan that has more of them than the study in the folder had.
+    fn grow(&self, plan: &Plan) -> Result<(), StudyError> {
+        let facts = [
+            ("tests", plan.tests().to_string()),
+            ("study.toml", plan.study().text.clone()),
+        ];
+        if self.fact("tests")?.as_ref() == Some(&facts[0].1) {
+            return Ok(());
+        }
+        let update = "UPDATE study SET value = ?2 WHERE name = ?1";
+        self.checked(|connection| {
+            for (name, value) in facts {
+                connection.execute(update, [name, &value])?;
+            }
+            Ok(())
+        })
     }
 
     fn fact(&self, name: &str) -> Result<Option<String>, StudyError> {
@@ -617,6 +646,30 @@ mod tests {
         }
         let said = refusal(|path| fs::write(path, "").unwrap());
         assert!(said.contains("it holds no study"), "{said}");
+    }
+
+    #[test]
+    fn a_study_grows_but_does_not_shrink() {
+        let folder = tempfile::tempdir().unwrap();
+        fs::write(folder.path().join("case.toml"), "").unwrap();
+        let plan = |kind: &str, size: u32| {
+            let text = STUDY.replace("size = 3", &format!("kind = \"{kind}\"\nsize = {size}"));
+            fs::write(folder.path().join("study.toml"), text).unwrap();
+            Plan::read(&folder.path().join("study.toml")).unwrap()
+        };
+        let take = |kind: &str, size| Store::take(&plan(kind, size), &folder.path().join(kind));
+        for kind in ["sobol", "saltelli"] {
+            let (small, large) = (plan(kind, 4), plan(kind, 8));
+            assert!((0..small.tests()).all(|row| small.test(row) == large.test(row)));
+            drop(take(kind, 4).unwrap());
+            let missing = take(kind, 8).unwrap().missing(&large).unwrap();
+            assert_eq!(missing.len() as u64, large.tests());
+            let said = take(kind, 4).err().unwrap().to_string();
+            assert!(said.contains("raise its number of tests again"), "{said}");
+        }
+        drop(take("latin-hypercube", 4).unwrap());
+        let said = take("latin-hypercube", 8).err().unwrap().to_string();
+        assert!(said.contains("another study"), "{said}");
     }
 
     #[test]

@@ -5,11 +5,11 @@ use std::ops::Range;
 use std::path::{Path, PathBuf};
 
 use super::answers::Answers;
-use super::declared::{Design, Variation};
+use super::declared::{Design, MorrisKeys, OptimiseKeys, SampleKeys, Variation};
 use super::input::Input;
 use crate::case::{Assignment, Case, CaseReader, ChangeError};
 use crate::config::*;
-use condyle_results::catalogue;
+use condyle_results::catalogue::{self, Scalar};
 
 /// A study as its file describes it, checked, with every default filled in.
 #[derive(Clone, Debug)]
@@ -37,6 +37,9 @@ pub struct Study {
     pub(super) folder: PathBuf,
     pub(super) cases: CaseReader,
 }
+
+/// The value of `minimise` for a search with two objectives.
+pub(super) const PARETO: &str = "pareto";
 
 /// One of several designs, each tested under the same disturbances.
 #[derive(Clone, Debug)]
@@ -94,6 +97,18 @@ impl Study {
         })
     }
 
+    /// Returns the outputs that a search minimises: one, or the two of the Pareto front; none for other studies.
+    pub fn objectives(&self) -> Vec<&'static Scalar> {
+        let Design::Optimise(keys) = &self.design else {
+            return Vec::new();
+        };
+        let both = self.answers.pareto.filter(|_| keys.minimise == PARETO);
+        both.map_or_else(
+            || catalogue::output(&keys.minimise).into_iter().collect(),
+            |both| both.to_vec(),
+        )
+    }
+
     /// Returns the changes of the case in one test: those of the design, then the inputs'. An input without a value
     /// sets nothing.
     pub fn assignments(&self, alternative: usize, values: &[Option<Level>]) -> Vec<Assignment> {
@@ -124,7 +139,8 @@ impl Study {
 
     /// Hash of the case, its meshes, the variations and the design, in hexadecimal.
     ///
-    /// The questions and the places of files do not count; for a search the minimised output and the limits do, since its
+    /// The questions and the places of files do not count, and the number of tests does not where more tests begin with
+    /// the same ones; for a search the minimised output and the limits do, since its
     /// tests depend on them.
     ///
     /// # Errors
@@ -171,10 +187,20 @@ impl Study {
                 out.line(&format!("{scaled:?}"), "");
             }
         }
-        match &self.design {
+        match self.design.growing() {
             Design::Rows(_) => out.line(&format!("{:?}", self.rows), ""),
             Design::Optimise(keys) => {
                 keys.write(&mut out);
+                out.line(
+                    &format!(
+                        "{:?}",
+                        self.objectives()
+                            .iter()
+                            .map(|one| one.key)
+                            .collect::<Vec<_>>()
+                    ),
+                    "",
+                );
                 // Stored tests of another method must not be taken for those of this one.
                 out.line("method", "emulators");
                 let bounds = self.answers.bounds.iter();
@@ -189,5 +215,28 @@ impl Study {
             out.line(&design.name, &set.join(", "));
         }
         out.into_text()
+    }
+}
+
+impl Design {
+    /// Returns the design without its number of tests, if its tests are the first ones of every larger number.
+    fn growing(&self) -> Self {
+        let sample = |keys: &SampleKeys| SampleKeys {
+            size: 0,
+            ..keys.clone()
+        };
+        match self {
+            Self::Sobol(keys) => Self::Sobol(sample(keys)),
+            Self::Saltelli(keys) => Self::Saltelli(sample(keys)),
+            Self::Morris(keys) => Self::Morris(MorrisKeys {
+                walks: 0,
+                ..keys.clone()
+            }),
+            Self::Optimise(keys) => Self::Optimise(OptimiseKeys {
+                size: 0,
+                ..keys.clone()
+            }),
+            other => other.clone(),
+        }
     }
 }

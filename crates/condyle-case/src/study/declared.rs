@@ -60,6 +60,44 @@ settings! {
         high: f64;
     }
 
+    /// Lognormal.
+    LognormalKeys {
+        /// Median, above 0; the value of the case if not given.
+        median: Option<f64> = None;
+        /// Geometric standard deviation: 68 % of the values lie within this factor of the median.
+        geometric_standard_deviation: f64, in within(1.000_001, 1e3);
+    }
+
+    /// Weibull.
+    WeibullKeys {
+        /// Least.
+        low: f64 = 0.0;
+        /// Distance from the least value that 63 % of the values stay below.
+        scale: f64, in within(1e-300, 1e300);
+        /// Shape: 1 for an exponential distribution, 3.6 for a nearly symmetric one.
+        shape: f64, in within(0.1, 1e3);
+    }
+
+    /// Beta.
+    BetaKeys {
+        /// Least.
+        low: f64;
+        /// Most.
+        high: f64;
+        /// First shape: the mean lies at alpha / (alpha + beta) of the range.
+        alpha: f64, in within(0.05, 1e4);
+        /// Second shape.
+        beta: f64, in within(0.05, 1e4);
+    }
+
+    /// Measured values, linear between neighbours.
+    EmpiricalKeys {
+        /// CSV file: the first line has keys or names, every other line values; the column named like the key counts, or the only one.
+        file: Option<DataFile> = None;
+        /// The values, instead of a file.
+        values: Levels = Levels::default();
+    }
+
     /// One of a few values.
     LevelKeys {
         /// The values, each as likely as the others: numbers, words, or names of files counted from the study's folder.
@@ -98,7 +136,7 @@ settings! {
 
     /// A search for the optimum.
     OptimiseKeys {
-        /// The output to be minimised within the limits.
+        /// The output to be minimised within the limits; "pareto" for both outputs of the key pareto of the answers.
         minimise: String = "mass_loss_mg".to_owned();
         /// Largest number of tests.
         size: u64 = 100, in within(10.0, 500.0);
@@ -156,6 +194,14 @@ variants! {
         TruncatedNormal(TruncatedKeys) = "truncated-normal",
         /// Triangular around the likeliest value.
         Triangular(TriangularKeys) = "triangular",
+        /// Lognormal.
+        Lognormal(LognormalKeys) = "lognormal",
+        /// Weibull.
+        Weibull(WeibullKeys) = "weibull",
+        /// Beta, between two values.
+        Beta(BetaKeys) = "beta",
+        /// Measured values, linear between neighbours.
+        Empirical(EmpiricalKeys) = "empirical",
         /// One of a few values.
         Levels(LevelKeys) = "levels",
     }

@@ -4,13 +4,17 @@ use std::collections::BTreeSet;
 use std::ops::Range;
 use std::path::Path;
 
-use super::declared::{InputKeys, LevelKeys, TriangularKeys, Variation};
+use super::declared::{EmpiricalKeys, InputKeys, LevelKeys, TriangularKeys, Variation};
 use crate::case::{Assignment, Case};
 use crate::config::*;
 
 /// Deviation from the mean, in standard deviations, up to which a case must accept a normal input: of a million
 /// values 63 lie beyond.
 const NORMAL_REACH: f64 = 4.0;
+
+/// Power of the distance from the least value, in scales, up to which a case must accept a Weibull input: it exceeds as
+/// many values as the reach of a normal one, ln(2 / 63e-6).
+const WEIBULL_REACH: f64 = 10.4;
 
 /// Up to this many levels, all are tried on the case.
 const FEW_LEVELS: usize = 64;
@@ -130,6 +134,15 @@ impl Input {
                 let mean = keys.mean.unwrap_or_default();
                 (mean - reach, mean + reach)
             }
+            Variation::Lognormal(keys) => {
+                let reach = keys.geometric_standard_deviation.powf(NORMAL_REACH);
+                let median = keys.median.unwrap_or_default();
+                (median / reach, median * reach)
+            }
+            Variation::Weibull(keys) => {
+                let most = WEIBULL_REACH.powf(1.0 / keys.shape);
+                (keys.low, keys.low + keys.scale * most)
+            }
             Variation::Levels(keys) if keys.levels.0.len() <= FEW_LEVELS => {
                 return keys.levels.0.clone();
             }
@@ -182,12 +195,32 @@ impl Variation {
             Self::Uniform(keys) => Some((keys.low, keys.high)),
             Self::TruncatedNormal(keys) => Some((keys.low, keys.high)),
             Self::Triangular(keys) => Some((keys.low, keys.high)),
-            Self::Normal(_) | Self::Levels(_) => None,
+            Self::Beta(keys) => Some((keys.low, keys.high)),
+            Self::Empirical(keys) => {
+                let values = keys.sorted();
+                values.first().copied().zip(values.last().copied())
+            }
+            Self::Normal(_) | Self::Lognormal(_) | Self::Weibull(_) | Self::Levels(_) => None,
         }
     }
 
-    /// Takes the value of the case where the file gives no mean or mode; reports a case without a number, reversed ends,
-    /// and a mode outside of them.
+    /// Reports a median that is not positive.
+    fn check_median(&self, section: &Section<'_>, log: &mut Log<'_>) -> Option<()> {
+        if let Self::Lognormal(keys) = self
+            && keys.median.is_some_and(|median| median <= 0.0)
+        {
+            let fault = Fault::new(
+                "the median of a lognormal distribution is not above 0",
+                "give a positive `median`, or use `distribution = \"normal\"`",
+            );
+            log.problem(section.value_span("distribution"), fault);
+            return None;
+        }
+        Some(())
+    }
+
+    /// Takes the value of the case where the file gives no mean, mode or median, and measured values from their file;
+    /// reports a case without a number, reversed ends, a mode outside of them, and a median that is not positive.
     fn completed(
         mut self,
         key: &str,
@@ -195,23 +228,32 @@ impl Variation {
         section: &Section<'_>,
         log: &mut Log<'_>,
     ) -> Option<Self> {
+        if let Self::Empirical(keys) = &mut self {
+            keys.read_file(key, section, log)?;
+        }
         let middle = match &mut self {
             Self::Normal(keys) => Some(&mut keys.mean),
             Self::TruncatedNormal(keys) => Some(&mut keys.mean),
             Self::Triangular(keys) => Some(&mut keys.mode),
-            Self::Uniform(_) | Self::Levels(_) => None,
+            Self::Lognormal(keys) => Some(&mut keys.median),
+            Self::Uniform(_)
+            | Self::Weibull(_)
+            | Self::Beta(_)
+            | Self::Empirical(_)
+            | Self::Levels(_) => None,
         };
         if let Some(middle) = middle {
             *middle = middle.or_else(|| case.number_at_or_written(key));
             if middle.is_none() {
                 let fault = Fault::new(
                     format!("the case has no number at `{key}` to start from"),
-                    "give `mean` or `mode`, or write the key in the case",
+                    "give `mean`, `mode` or `median`, or write the key in the case",
                 );
                 log.problem(section.value_span("key"), fault);
                 return None;
             }
         }
+        self.check_median(section, log)?;
         let Some((low, high)) = self.range() else {
             return Some(self);
         };
@@ -230,6 +272,49 @@ impl Variation {
         };
         log.problem(section.value_span("high"), fault);
         None
+    }
+}
+
+impl EmpiricalKeys {
+    /// Returns the values in ascending order.
+    pub fn sorted(&self) -> Vec<f64> {
+        let numbers = self.values.0.iter().filter_map(|level| match level {
+            Level::Number(number) => Some(*number),
+            Level::Word(_) => None,
+        });
+        let mut sorted: Vec<f64> = numbers.collect();
+        sorted.sort_by(f64::total_cmp);
+        sorted
+    }
+
+    /// Replaces the file by its values; reports words, and fewer than two different values.
+    fn read_file(&mut self, key: &str, section: &Section<'_>, log: &mut Log<'_>) -> Option<()> {
+        let mut span = section.value_span("values");
+        if let Some(file) = self.file.take() {
+            span = section.value_span("file");
+            let source = file.source(section, "file", log)?;
+            let (names, rows) = log.noted(&source, split(source.inner()))?;
+            let own = names.iter().position(|name| name == key);
+            let Some(column) = own.or((names.len() == 1).then_some(0)) else {
+                let message = format!("the file has several columns, and none is named `{key}`");
+                let advice = format!("name the column of the values `{key}`");
+                log.problem(span, Fault::new(message, advice));
+                return None;
+            };
+            let values = rows.into_iter().map(|mut row| row.swap_remove(column));
+            self.values = Levels(values.collect());
+        }
+        let sorted = self.sorted();
+        let is_constant = sorted.first() == sorted.last();
+        if is_constant || sorted.len() < self.values.0.len() {
+            let fault = Fault::new(
+                "measured values need two different numbers at least, and no words",
+                "give `file` or `values = [0.03, 0.04, 0.06]`",
+            );
+            log.problem(span, fault);
+            return None;
+        }
+        Some(())
     }
 }
 

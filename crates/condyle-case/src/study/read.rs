@@ -4,7 +4,7 @@ use std::path::Path;
 use std::sync::Arc;
 
 use super::answers::{Answers, output};
-use super::contents::{Alternative, Correlation, Study};
+use super::contents::{Alternative, Correlation, PARETO, Study};
 use super::declared::{AlternativeKeys, CorrelationKeys, Design, HeadingKeys, Variation};
 use super::input::{Input, check_count, read_rows};
 use crate::case::{Assignment, Case, CaseReader, ChangeError};
@@ -291,7 +291,15 @@ impl Study {
         }
         match &self.design {
             Design::Optimise(keys) => {
-                output(&keys.minimise, "minimise", section, log);
+                if keys.minimise != PARETO {
+                    output(&keys.minimise, "minimise", section, log);
+                } else if self.answers.pareto.is_none() {
+                    let fault = Fault::new(
+                        "a search for a Pareto front needs two outputs",
+                        "give `pareto = [\"mass_loss_mg\", \"peak_pressure_mpa\"]` in `[answers]`",
+                    );
+                    log.problem(section.value_span("minimise"), fault);
+                }
                 let is_range = |input: &&Input| {
                     matches!(input.variation, Variation::Uniform(_)) && !input.is_whole
                 };

@@ -322,6 +322,33 @@ fn a_search_finds_the_end_that_wears_least_and_says_how_it_ended() {
 }
 
 #[test]
+fn a_search_for_a_front_grows_to_the_tests_of_a_larger_one() {
+    let study = |size: u32| {
+        format!(
+            "case = \"case.toml\"\n[design]\nkind = \"optimise\"\nminimise = \"pareto\"\nsize = {size}\n\
+             [[vary]]\nkey = \"insert.sagittal_radius_mm\"\nlow = 40.0\nhigh = 80.0\n\
+             [answers]\noutputs = [\"peak_pressure_mpa\", \"peak_contact_area_mm2\"]\n"
+        )
+    };
+    let bench = bench(&study(10));
+    let run = |out: &str| bench.say(&["study", "study.toml", "--out", out]);
+    assert_eq!(run("out").code, Some(0));
+    fs::write(bench.path("study.toml"), study(13)).unwrap();
+    let said = run("out");
+    assert_eq!(said.code, Some(0), "{}", said.err);
+    assert_eq!(run("whole").code, Some(0));
+    let table = |out: &str| fs::read(bench.path(out).join("table.csv")).unwrap();
+    assert_eq!(table("out"), table("whole"));
+    let front = &answers(&bench)["front"];
+    assert_eq!(front["is_searched"], true);
+    assert!(
+        front["tests"].as_array().is_some_and(|all| all.len() > 2),
+        "{front}"
+    );
+    assert!(said.out.contains("| row "), "{}", said.out);
+}
+
+#[test]
 fn what_is_wrong_with_a_study_is_said_with_its_place() {
     let case = "case = \"case.toml\"\n";
     let vary = |key: &str, rest: &str| format!("{case}[[vary]]\nkey = \"{key}\"\n{rest}\n");

@@ -173,7 +173,7 @@ fn emulator(data: &Data<'_>, axes: &[Axis<'_>], values: &[f64]) -> Option<Emulat
     {
         return None;
     }
-    Emulator::fit(&points, &values)
+    Emulator::fit(&points, &values).map(Emulator::calibrated)
 }
 
 impl Emulated {
@@ -231,7 +231,7 @@ fn jackknife_error(without: &[f64]) -> f64 {
 
 /// Returns the probability that predictions at points of the inputs' distributions are beyond a bound.
 fn chance(data: &Data<'_>, axes: &[Axis<'_>], emulator: &Emulator, bound: &Bound) -> Chance {
-    let (underestimate, noise) = (emulator.underestimate(), emulator.noise());
+    let noise = emulator.noise();
     let [mut middle, mut low, mut high] = [0.0; 3];
     for row in 0..POINTS {
         let places = data
@@ -244,7 +244,7 @@ fn chance(data: &Data<'_>, axes: &[Axis<'_>], emulator: &Emulator, bound: &Bound
             _ => f64::NAN,
         });
         let found = emulator.predict(&point.collect::<Vec<f64>>());
-        let deviation = found.standard_deviation.hypot(noise) * underestimate;
+        let deviation = found.standard_deviation.hypot(noise);
         let deviation = deviation.max(f64::MIN_POSITIVE);
         let sides = [
             bound.least.map(|least| least - found.mean),
@@ -269,5 +269,62 @@ fn chance(data: &Data<'_>, axes: &[Axis<'_>], emulator: &Emulator, bound: &Bound
             wilson_interval(low, points)[0],
             wilson_interval(high, points)[1],
         ],
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use condyle_case::study::{UniformKeys, Variation};
+    use condyle_results::catalogue::MASS_LOSS_MG;
+
+    use crate::emulator::tests::{
+        exact_g_function, exact_ishigami, g_function, ishigami, points, values,
+    };
+
+    /// Returns the share of 95 % intervals that contain the exact indices, of emulators that answers are computed from.
+    fn coverage(of: fn(&[f64]) -> f64, exact: &[[f64; 2]], count: u64) -> f64 {
+        let keys = UniformKeys {
+            low: 0.0,
+            high: 1.0,
+        };
+        let input = Input::new("x", Variation::Uniform(keys));
+        let axis = || Axis {
+            input: &input,
+            low: 0.0,
+            high: 1.0,
+        };
+        let axes: Vec<Axis<'_>> = exact.iter().map(|_| axis()).collect();
+        let mut inside = Vec::new();
+        for seed in 1..=10 {
+            let tests = points(count, exact.len(), seed);
+            let emulator = Emulator::fit(&tests, &values(&tests, of)).unwrap();
+            let emulated = Emulated::new(&MASS_LOSS_MG, &axes, &emulator);
+            if emulated.q2 < MIN_Q2 {
+                continue;
+            }
+            for (found, exact) in of_output(&axes, &emulator, &emulated).iter().zip(exact) {
+                let intervals = [found.first_interval, found.total_interval];
+                let both = intervals.iter().zip(exact);
+                inside.extend(
+                    both.map(|([low, high], exact)| f64::from(low <= exact && exact <= high)),
+                );
+            }
+        }
+        mean(&inside)
+    }
+
+    #[test]
+    fn verify_intervals_of_indices_contain_the_exact_ones() {
+        for (of, exact, count) in [
+            (ishigami as fn(&[f64]) -> f64, exact_ishigami(), 96),
+            (ishigami, exact_ishigami(), 160),
+            (g_function, exact_g_function(), 60),
+            (g_function, exact_g_function(), 120),
+        ] {
+            let share = coverage(of, &exact, count);
+            println!("{count} tests: {share:.3}");
+            assert!(share >= 0.9, "{count} tests: {share}");
+        }
     }
 }

@@ -151,7 +151,9 @@ impl Answers {
     pub(crate) fn sentence(&self) -> Option<String> {
         let of_search = || self.best.as_ref().and_then(sentence_of_search);
         let of_designs = || self.ranking.as_ref().and_then(sentence_of_designs);
+        let of_front = || self.front.as_ref().and_then(sentence_of_front);
         of_search()
+            .or_else(of_front)
             .or_else(of_designs)
             .or_else(|| self.sentence_of_indices())
     }
@@ -194,6 +196,7 @@ impl Answers {
             ("Elementary effects of Morris", self.table_of_elementary()),
             ("Effects of inputs", self.table_of_effects()),
             ("Best", self.table_of_best()),
+            ("Pareto front", self.table_of_front()),
         ];
         let filled = tables.into_iter().filter(|(_, rows)| !rows.is_empty());
         filled.map(|(name, rows)| (name.to_owned(), rows)).collect()
@@ -324,7 +327,8 @@ impl Answers {
     /// Returns the table of effects, for designs without a specific table.
     fn table_of_effects(&self) -> Vec<Vec<String>> {
         let is_counted = self.design == "saltelli";
-        if is_counted || !self.elementary.is_empty() || self.best.is_some() {
+        let is_search = self.design == "optimise";
+        if is_counted || !self.elementary.is_empty() || is_search {
             return Vec::new();
         }
         let output = self.effects.first().map_or("", |one| one.output);
@@ -340,6 +344,23 @@ impl Answers {
                 correlation.unwrap_or_else(dash),
             ]
         })
+    }
+
+    /// Returns the table of the front of a search for it; other studies show it as a picture.
+    fn table_of_front(&self) -> Vec<Vec<String>> {
+        let Some(front) = self.front.as_ref().filter(|front| front.is_searched) else {
+            return Vec::new();
+        };
+        let [one, other] =
+            [0, 1].map(|place| format!("{}, {}", front.titles[place], front.units[place]));
+        table(
+            &["row", &one, &other, ""],
+            &front.tests,
+            |(row, one, other)| {
+                let note = if Some(*row) == front.knee { "knee" } else { "" };
+                vec![row.to_string(), shown(*one), shown(*other), note.to_owned()]
+            },
+        )
     }
 
     fn table_of_best(&self) -> Vec<Vec<String>> {
@@ -366,6 +387,16 @@ impl Answers {
             ]
         })
     }
+}
+
+fn sentence_of_front(front: &Front) -> Option<String> {
+    let knee = front.tests.iter().find(|test| Some(test.0) == front.knee);
+    let (row, one, other) = knee.filter(|_| front.is_searched)?;
+    let ([name, other_name], [unit, other_unit]) = (front.titles, front.units);
+    let (one, other, count) = (shown(*one), shown(*other), front.tests.len());
+    Some(format!(
+        "{count} tests are on the Pareto front; its knee, row {row}, has {name} {one} {unit} and {other_name} {other} {other_unit}."
+    ))
 }
 
 fn sentence_of_search(best: &Best) -> Option<String> {

@@ -1,6 +1,6 @@
 //! Comparison of designs, the optimum of a search, and the Pareto front.
 
-use condyle_case::study::{Bound, Design};
+use condyle_case::study::Bound;
 use condyle_results::catalogue::{self, Scalar};
 use serde::Serialize;
 
@@ -9,7 +9,7 @@ use crate::{
     error::StudyError,
     plan::designs,
     search::{Standing, standing},
-    statistics::{mean, standard_deviation, wilson_interval},
+    statistics::{extent, mean, standard_deviation, wilson_interval},
     store::Store,
 };
 
@@ -209,18 +209,18 @@ fn margins(bound: &Bound, value: f64) -> impl Iterator<Item = Margin> {
 }
 
 impl Best {
-    /// Returns the optimum; none for a study that is not a search.
+    /// Returns the optimum; none for a study that is not a search for one.
     pub fn read(data: &Data<'_>, store: &Store) -> Result<Option<Self>, StudyError> {
         let plan = data.plan;
-        let Design::Optimise(keys) = &plan.study().design else {
+        let objectives = plan.study().objectives();
+        let [minimised] = objectives[..] else {
             return Ok(None);
         };
-        let values = store.column(plan, &keys.minimise)?.values;
+        let values = store.column(plan, minimised.key)?.values;
         let (row, progress) = least(&values, &data.within);
-        let minimised = catalogue::output(&keys.minimise);
         let mut best = Self {
-            minimised: minimised.map_or("", |output| output.key),
-            unit: minimised.map_or("", Scalar::unit),
+            minimised: minimised.key,
+            unit: minimised.unit(),
             row: row.map(|row| row as u64),
             inputs: Vec::new(),
             outputs: Vec::new(),
@@ -266,6 +266,14 @@ pub(crate) struct Front {
     pub units: [&'static str; 2],
     /// Number and both outputs of each test, by the first output.
     pub tests: Vec<(u64, f64, f64)>,
+    /// The part of the rectangle between the best and the worst values within all limits that tests of the front beat;
+    /// none without two tests on it.
+    pub hypervolume: Option<f64>,
+    /// The row of the knee point: the test on the front farthest below the line that joins its ends, in units of their
+    /// distances (Das 1999); none if no test lies below.
+    pub knee: Option<u64>,
+    /// True if the study searched for the front.
+    pub is_searched: bool,
     /// Tests within the limits, for a picture; of many, some.
     #[serde(skip)]
     pub others: Vec<(f64, f64)>,
@@ -289,19 +297,27 @@ impl Front {
             .collect();
         let every = tests.len().div_ceil(MAX_POINTS).max(1);
         let shown = tests.iter().step_by(every);
+        let worst = [
+            extent(tests.iter().map(|test| test.1))[1],
+            extent(tests.iter().map(|test| test.2))[1],
+        ];
+        let front = undominated(tests.clone());
         Ok(Some(Self {
             outputs: outputs.map(|output| output.key),
             titles: outputs.map(|output| output.label),
             units: outputs.map(Scalar::unit),
             others: shown.map(|(_, one, other)| (*one, *other)).collect(),
-            tests: undominated(tests),
+            is_searched: data.plan.study().objectives().len() > 1,
+            hypervolume: hypervolume(&front, worst),
+            knee: knee(&front),
+            tests: front,
         }))
     }
 }
 
 /// Returns the front, by the first output. After sorting, a test belongs to it if its second output is below all
 /// before.
-fn undominated(mut tests: Vec<(u64, f64, f64)>) -> Vec<(u64, f64, f64)> {
+pub(crate) fn undominated(mut tests: Vec<(u64, f64, f64)>) -> Vec<(u64, f64, f64)> {
     tests.sort_by(|a, b| {
         a.1.total_cmp(&b.1)
             .then(a.2.total_cmp(&b.2))
@@ -316,9 +332,44 @@ fn undominated(mut tests: Vec<(u64, f64, f64)>) -> Vec<(u64, f64, f64)> {
     tests
 }
 
+/// Returns the part of the rectangle from the best values of a front to the `worst` ones that its tests beat; none without
+/// such a rectangle.
+pub(crate) fn hypervolume(front: &[(u64, f64, f64)], worst: [f64; 2]) -> Option<f64> {
+    let (first, last) = (front.first()?, front.last()?);
+    let whole = (worst[0] - first.1) * (worst[1] - last.2);
+    let ends = front.iter().skip(1).map(|test| test.1);
+    let strips = front.iter().zip(ends.chain([worst[0]]));
+    let beaten: f64 = strips
+        .map(|(test, end)| (end - test.1) * (worst[1] - test.2))
+        .sum();
+    (whole > 0.0).then(|| beaten / whole)
+}
+
+fn knee(front: &[(u64, f64, f64)]) -> Option<u64> {
+    let (first, last) = (front.first()?, front.last()?);
+    let [width, height] = [last.1 - first.1, first.2 - last.2];
+    let below =
+        |test: &(u64, f64, f64)| 1.0 - (test.1 - first.1) / width - (test.2 - last.2) / height;
+    let inner = front.iter().filter(|test| below(test) > 0.0);
+    let most = inner.max_by(|one, other| below(one).total_cmp(&below(other)));
+    most.map(|test| test.0)
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn verify_the_hypervolume_and_the_knee_of_a_front() {
+        let front = [(7, 0.0, 4.0), (3, 1.0, 1.0), (5, 4.0, 0.0)];
+        // Strips of (1 - 0) (5 - 4), (4 - 1) (5 - 1) and (5 - 4) (5 - 0), of 5 times 5.
+        let part = hypervolume(&front, [5.0, 5.0]).unwrap();
+        assert!((part - 18.0 / 25.0).abs() < 1e-15);
+        assert_eq!(knee(&front), Some(3));
+        let concave = [(7, 0.0, 4.0), (3, 3.0, 3.0), (5, 4.0, 0.0)];
+        assert_eq!((knee(&concave), knee(&front[..1])), (None, None));
+        assert_eq!(hypervolume(&front[..1], [0.0, 4.0]), None);
+    }
 
     #[test]
     fn verify_common_disturbances_separate_designs_that_scatter_alone_would_hide() {

@@ -1,0 +1,79 @@
+//! The tests of a search in the unit cube.
+
+use crate::{design::sobol::sobol_places, distribution::Place, statistics::extent};
+
+/// A search ends once another test is expected to improve the optimum by less than this part of the range of the
+/// minimised output within the limits.
+const MIN_IMPROVEMENT: f64 = 1e-4;
+
+/// Returns rows of scrambled Sobol points.
+pub(super) fn space_filling(
+    rows: impl Iterator<Item = usize>,
+    axes: usize,
+    seed: u64,
+) -> impl Iterator<Item = Vec<f64>> {
+    let share = |place| match place {
+        Place::Share(share) | Place::Along(share) => share,
+        Place::OfCase => 0.5,
+    };
+    rows.map(move |row| {
+        sobol_places(row as u64, axes, seed)
+            .into_iter()
+            .map(share)
+            .collect()
+    })
+}
+
+/// Tests in the unit cube.
+#[derive(Clone, Default)]
+pub(super) struct Observed {
+    pub points: Vec<Vec<f64>>,
+    /// The minimised output, or both outputs of a Pareto front; NaN for a test that failed.
+    pub minimised: Vec<Vec<f64>>,
+    /// For each limit, the amount by which a test exceeds it; negative within the limit.
+    pub excess: Vec<Vec<f64>>,
+}
+
+impl Observed {
+    pub fn is_done(&self, place: usize) -> bool {
+        self.minimised.iter().all(|all| all[place].is_finite())
+    }
+
+    /// Returns whether a test is done and within all limits.
+    pub fn is_within(&self, place: usize) -> bool {
+        self.is_done(place) && self.excess.iter().all(|excess| excess[place] <= 0.0)
+    }
+
+    /// Returns the tests within all limits that no other one beats: for one output that with the smallest, for two the
+    /// front, by the first output.
+    pub fn best(&self) -> Vec<usize> {
+        let within: Vec<usize> = (0..self.points.len())
+            .filter(|place| self.is_within(*place))
+            .collect();
+        let is_beaten = |own: usize, other: usize| {
+            let both = self.minimised.iter().map(|all| (all[own], all[other]));
+            let is_equal = both.clone().all(|(own, other)| own == other);
+            both.clone().all(|(own, other)| other <= own) && (!is_equal || other < own)
+        };
+        let mut best = within.clone();
+        best.retain(|&own| !within.iter().any(|&other| is_beaten(own, other)));
+        best.sort_by(|&one, &other| self.minimised[0][one].total_cmp(&self.minimised[0][other]));
+        best
+    }
+
+    /// Returns the least and the most of every minimised output in tests within all limits.
+    pub fn ranges(&self) -> Vec<[f64; 2]> {
+        let within = || (0..self.points.len()).filter(|place| self.is_within(*place));
+        let outputs = self.minimised.iter();
+        outputs
+            .map(|all| extent(within().map(|place| all[place])))
+            .collect()
+    }
+
+    /// Returns whether the logarithm of an expected improvement is too small for another test.
+    pub fn is_converged(&self, worth: f64) -> bool {
+        let ranges = self.ranges();
+        let whole: f64 = ranges.iter().map(|[low, high]| high - low).product();
+        worth < (MIN_IMPROVEMENT * whole).ln()
+    }
+}

@@ -1,0 +1,244 @@
+//! Emulators of a search, and the worth of a test by them.
+
+use std::f64::consts::PI;
+
+use nalgebra::DVector;
+
+use super::observed::{Observed, space_filling};
+use crate::{
+    descent::minimum,
+    distribution::{normal_quantile, normal_share},
+    emulator::Emulator,
+    random::Random,
+};
+
+/// Factor of all standard deviations where the optimum that the emulators predict is tested: it then lies within the
+/// predicted limits by about this part of them.
+pub(super) const SHARP: f64 = 0.1;
+/// Factor of all standard deviations where the search explores: with few tests, those of the emulators are too small
+/// far from all tests, and a search that trusts them ends too early.
+pub(super) const WIDE: f64 = 2.0;
+/// Points of which the most promising are starts, for each input, and around the best test.
+const CANDIDATES_PER_INPUT: usize = 64;
+const CANDIDATES_AROUND: usize = 64;
+const STARTS: usize = 6;
+/// Step of the differences that give the slope of the worth.
+const DIFFERENCE: f64 = 1e-6;
+
+/// Emulators of the minimised outputs and of the excess over each limit, and for tests that failed also of the failure.
+pub(super) struct Emulators {
+    pub minimised: Vec<Emulator>,
+    limits: Vec<Emulator>,
+    /// The minimised outputs of the best tests: of one, or of those on the front by the first output.
+    pub front: Vec<Vec<f64>>,
+    front_points: Vec<Vec<f64>>,
+    /// The worst values of the minimised outputs within the limits.
+    worst: Vec<f64>,
+}
+
+impl Emulators {
+    /// Fits the emulators; none while too few tests are done.
+    pub fn new(observed: &Observed) -> Option<Self> {
+        let (done, failed): (Vec<usize>, Vec<usize>) =
+            (0..observed.points.len()).partition(|place| observed.is_done(*place));
+        let points: Vec<Vec<f64>> = done
+            .iter()
+            .map(|&one| observed.points[one].clone())
+            .collect();
+        let fit = |values: &Vec<f64>| {
+            let values: Vec<f64> = done.iter().map(|&one| values[one]).collect();
+            Emulator::fit(&points, &values)
+        };
+        let mut limits: Vec<Emulator> = observed.excess.iter().map(fit).collect::<Option<_>>()?;
+        if !failed.is_empty() {
+            // Half way between a test that failed and one that was done lies the limit.
+            let mut failure = vec![-0.5; observed.points.len()];
+            failed.iter().for_each(|&one| failure[one] = 0.5);
+            limits.push(Emulator::fit(&observed.points, &failure)?);
+        }
+        let best = observed.best();
+        let of_best = |place: &usize| observed.minimised.iter().map(|all| all[*place]).collect();
+        Some(Self {
+            minimised: observed.minimised.iter().map(fit).collect::<Option<_>>()?,
+            limits,
+            front: best.iter().map(of_best).collect(),
+            front_points: best
+                .iter()
+                .map(|&one| observed.points[one].clone())
+                .collect(),
+            worst: observed.ranges().iter().map(|range| range[1]).collect(),
+        })
+    }
+
+    /// Returns the logarithm of the worth of a test: its expected improvement of the best test (Jones, Schonlau and Welch
+    /// 1998), or of the hypervolume of a front, times the probability that it keeps all limits (Schonlau, Welch and Jones
+    /// 1998); without a best test, the probability alone. `share` multiplies the standard deviations of all predictions.
+    fn worth(&self, point: &[f64], share: f64) -> f64 {
+        let found = |emulator: &Emulator| {
+            let found = emulator.predict(point);
+            let deviation = share * found.standard_deviation;
+            (found.mean, deviation.max(f64::MIN_POSITIVE))
+        };
+        let limits = self.limits.iter().map(|limit| {
+            let (mean, deviation) = found(limit);
+            log_share(-mean / deviation)
+        });
+        let limits: f64 = limits.sum();
+        match (&self.minimised[..], &self.front[..]) {
+            (_, []) => limits,
+            ([one], [best, ..]) => limits + log_expected_below(best[0], found(one)),
+            ([one, other, ..], _) => limits + self.log_hypervolume([found(one), found(other)]),
+            ([], _) => f64::NEG_INFINITY,
+        }
+    }
+
+    /// Returns the logarithm of the expected growth of the area that the front beats below the worst values, for means and
+    /// standard deviations of both outputs (Emmerich, Deutz and Klinkenberg 2011): the integral of the probability that
+    /// both are below a place, over all places that the front does not beat, strip by strip.
+    fn log_hypervolume(&self, [one, other]: [(f64, f64); 2]) -> f64 {
+        let ends = self.front.iter().map(|test| test[0]).chain([self.worst[0]]);
+        let tops = [self.worst[1]]
+            .into_iter()
+            .chain(self.front.iter().map(|test| test[1]));
+        let (mut before, mut area) = (0.0, 0.0);
+        for (end, top) in ends.zip(tops) {
+            let below = log_expected_below(end, one).exp();
+            area += (below - before) * log_expected_below(top, other).exp();
+            before = below;
+        }
+        area.ln()
+    }
+
+    /// Returns the point of the largest worth and the worth there: the best descent from the most promising of many
+    /// points; none if no point has a finite worth.
+    pub fn most_promising(
+        &self,
+        observed: &Observed,
+        share: f64,
+        seed: u64,
+    ) -> Option<(Vec<f64>, f64)> {
+        let candidates = self.candidates(observed, seed);
+        let axes = observed.points[0].len();
+        let mut starts: Vec<(f64, Vec<f64>)> = candidates
+            .into_iter()
+            .map(|point| (self.worth(&point, share), point))
+            .filter(|(worth, _)| worth.is_finite())
+            .collect();
+        starts.sort_by(|one, other| other.0.total_cmp(&one.0));
+        let worthless = |point: &DVector<f64>| {
+            let worthless = |point: &DVector<f64>| -self.worth(point.as_slice(), share);
+            Some((worthless(point), slope(&worthless, point)?))
+        };
+        let ends = [0.0, 1.0].map(|end| DVector::from_element(axes, end));
+        let ascents = starts.into_iter().take(STARTS).filter_map(|(_, point)| {
+            minimum(&worthless, DVector::from_vec(point), [&ends[0], &ends[1]])
+        });
+        let most = ascents.min_by(|one, other| one.1.total_cmp(&other.1))?;
+        Some((most.0.as_slice().to_vec(), -most.1))
+    }
+
+    /// Returns space-filling points and points around the best test, others after every test.
+    fn candidates(&self, observed: &Observed, seed: u64) -> Vec<Vec<f64>> {
+        let (axes, row) = (observed.points[0].len(), observed.points.len());
+        let count = CANDIDATES_PER_INPUT * axes;
+        let filling = space_filling(row * count..(row + 1) * count, axes, seed);
+        filling.chain(self.around_best(seed, row)).collect()
+    }
+
+    /// Returns points around the best test, at distances that decrease from a fifth of the ranges.
+    fn around_best(&self, seed: u64, row: usize) -> Vec<Vec<f64>> {
+        let mut numbers = Random::stream(seed, row as u64);
+        let mut around = |number: usize| {
+            let distance = 0.2 * 0.5_f64.powi((number % 8) as i32);
+            let mut moved =
+                |one: &f64| (one + distance * normal_quantile(numbers.share())).clamp(0.0, 1.0);
+            let best = &self.front_points[number % self.front_points.len()];
+            best.iter().map(&mut moved).collect::<Vec<f64>>()
+        };
+        let count = if self.front.is_empty() {
+            0
+        } else {
+            CANDIDATES_AROUND
+        };
+        (0..count).map(&mut around).collect()
+    }
+
+    /// Returns the emulators after a test with the results that they predict.
+    pub fn believing(&self, point: &[f64]) -> Option<Self> {
+        let believing = |one: &Emulator| one.with_test(point.to_vec(), one.predict(point).mean);
+        Some(Self {
+            minimised: self
+                .minimised
+                .iter()
+                .map(believing)
+                .collect::<Option<_>>()?,
+            limits: self.limits.iter().map(believing).collect::<Option<_>>()?,
+            front: self.front.clone(),
+            front_points: self.front_points.clone(),
+            worst: self.worst.clone(),
+        })
+    }
+}
+
+/// Returns the slope of a function, by central differences; none if it is not finite.
+fn slope(of: &dyn Fn(&DVector<f64>) -> f64, point: &DVector<f64>) -> Option<DVector<f64>> {
+    let slope = DVector::from_fn(point.len(), |axis, _| {
+        let moved = |by| of(&moved(point, axis, by));
+        (moved(DIFFERENCE) - moved(-DIFFERENCE)) / (2.0 * DIFFERENCE)
+    });
+    slope.iter().all(|one| one.is_finite()).then_some(slope)
+}
+
+fn moved(point: &DVector<f64>, axis: usize, by: f64) -> DVector<f64> {
+    let mut moved = point.clone();
+    moved[axis] += by;
+    moved
+}
+
+/// Below this, the tails of the normal distribution follow from their asymptotic series to seven digits.
+const TAIL: f64 = -20.0;
+
+/// Returns the logarithm of the standard normal density.
+fn log_density(z: f64) -> f64 {
+    -0.5 * (z * z + (2.0 * PI).ln())
+}
+
+/// Returns the logarithm of the share of the standard normal distribution below `z`.
+fn log_share(z: f64) -> f64 {
+    if z > TAIL {
+        return normal_share(z).ln();
+    }
+    let square = 1.0 / (z * z);
+    log_density(z) - (-z).ln() + (1.0 - square * (1.0 - square * (3.0 - 15.0 * square))).ln()
+}
+
+/// Returns the logarithm of the expectation of max(0, value - y) for a normal y with a mean and a standard deviation.
+fn log_expected_below(value: f64, (mean, deviation): (f64, f64)) -> f64 {
+    deviation.ln() + log_improvement((value - mean) / deviation)
+}
+
+/// Returns the logarithm of the expectation of max(0, z - t) for a standard normal t: of density(z) + z share(z), which
+/// underflows far from the best test (Ament et al. 2023).
+fn log_improvement(z: f64) -> f64 {
+    if z > TAIL {
+        return (log_density(z).exp() + z * normal_share(z)).ln();
+    }
+    let square = 1.0 / (z * z);
+    log_density(z) + square.ln() + (1.0 - square * (3.0 - square * (15.0 - 105.0 * square))).ln()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn verify_logarithms_in_the_tails() {
+        // Both formulas agree where they meet, and those of the centre with the definition.
+        for of in [log_share, log_improvement] {
+            let [below, above] = [TAIL - 1e-9, TAIL + 1e-9].map(of);
+            assert!((below - above).abs() < 1e-6, "{below} {above}");
+        }
+        assert!((log_share(0.0) - 0.5_f64.ln()).abs() < 1e-15);
+        assert!((log_improvement(0.0) + 0.5 * (2.0 * PI).ln()).abs() < 1e-14);
+    }
+}
