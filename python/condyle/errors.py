@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import unicodedata
 from collections.abc import Iterable
 from typing import NamedTuple, TypeAlias
 
@@ -34,6 +35,12 @@ def _problem(reason: str, texts: tuple[str | None, str | None, str | None], plac
     return Problem(reason, *texts, line, column)
 
 
+def _visible(character: str) -> str:
+    # Characters of a file name or a text that steer a terminal, or change the direction of text.
+    is_harmless = character in "\n\t" or unicodedata.category(character) not in ("Cc", "Cf")
+    return character if is_harmless else f"\\u{{{ord(character):x}}}"
+
+
 class CondyleError(Exception):
     """The base class of all errors of condyle; the message is that of the command."""
 
@@ -46,7 +53,7 @@ class _WithProblems(CondyleError):
         self.problems = tuple(_problem(*fields) for fields in problems)
 
     def __str__(self) -> str:
-        return self.args[0]
+        return "".join(map(_visible, self.args[0]))
 
 
 class BadInput(_WithProblems, ValueError):

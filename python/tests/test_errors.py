@@ -69,6 +69,13 @@ def test_folders_are_refused_as_the_command_does(small: condyle.Case, tmp_path: 
         condyle.open(tmp_path / "out")
 
 
+def test_characters_that_steer_a_terminal_are_shown_as_escapes() -> None:
+    for name in ["\x1b[31m.toml", "\u202e.toml"]:
+        with pytest.raises(condyle.BadInput) as raised:
+            condyle.Case.read(name)
+        assert name[0] not in str(raised.value) and f"\\u{{{ord(name[0]):x}}}" in str(raised.value)
+
+
 def test_an_extra_that_is_missing_is_named(result: condyle.Result, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setitem(__import__("sys").modules, "pandas", None)
     with pytest.raises(ImportError, match=r"condyle with \[pandas\]"):

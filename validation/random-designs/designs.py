@@ -20,6 +20,8 @@ REAL_IMPLANTS = {
         "start_mm": [-8.2, 0.0],
     },
 }
+# Designs from this number on vary the models too.
+FIRST_WITH_MODELS = 1000
 AXIAL_FORCE = [(0, 0.1), (3, 1.126), (7, 0.7), (13, 1.55), (25, 0.5), (45, 1.45), (60, 0.1), (80, 0.1), (97, 0.194)]
 FLEXION_DEG = [(0, 0), (15, 16), (40, 5), (70, 58)]
 AP_FORCE = [(0, 0), (5, -0.3), (15, 0.125), (50, -0.19), (60, 0)]
@@ -58,7 +60,34 @@ def design(number, data):
     _contact_and_material(draw, case)
     _machine(draw, case)
     _march(draw, case)
+    if number >= FIRST_WITH_MODELS:
+        _models(draw, case)
     return case
+
+
+def _models(draw, case):
+    """Another model of the insert, of creep, of wear and of the integration; deformable inserts are coarse, to be quick."""
+    model = draw.choice(["foundation", "foundation", "deformable", "plastic", "resting", "stick-slip"])
+    if model != "foundation":
+        del case["contact"]["law"]
+        case["contact"]["model"] = "deformable"
+        case["insert"].update(edge_mm=draw.between(2.0, 3.0), layers=draw.randint(1, 3))
+        case["march"] = {"cycles": 1_000_000, "updates": draw.randint(1, 5)}
+        case["time"]["increments"] = min(case["time"]["increments"], 80)
+        case["contact.deformable"] = {
+            "deformable": {},
+            "plastic": {"plasticity": "j2"},
+            "resting": {"backside": "resting"},
+            "stick-slip": {"friction_model": "stick-slip"},
+        }[model]
+    elif draw.random() < 0.3:
+        case["time"]["integrator"] = "explicit"
+        case["insert"]["edge_mm"] = draw.between(2.0, 3.0)
+        case["march"] = {"cycles": 1_000_000, "updates": draw.randint(1, 3)}
+    if draw.random() < 0.3:
+        case["creep"] = {"law": "lee-pienkowski"}
+    if draw.random() < 0.5:
+        case["wear"] = {"law": draw.choice(["power-law", "kang", "contact-area", "unified", "directional"])}
 
 
 def refined(case):

@@ -148,7 +148,8 @@ def _volume(mesh):
 
 
 def _volumes(summary, meshes):
-    lost = _volume(meshes[0]) - _volume(meshes[-1])
+    crept = summary.get("creep", {}).get("volume_mm3", 0.0)
+    lost = _volume(meshes[0]) - _volume(meshes[-1]) - crept
     if abs(lost - summary["volume_loss_mm3"]) > COUNTS_APART * summary["volume_loss_mm3"] + 0.01:
         yield Finding("the mesh lost a different volume from the worn one", ("counts_of_volume",))
 
@@ -161,6 +162,8 @@ def _thickness(mesh):
 
 
 def _pressure(summary, motion):
+    if "max_plastic_strain" in summary:
+        return  # The insert of the model yields.
     highest = max(summary["peak_pressure_mpa"], motion["peak_pressure_mpa"].max())
     if highest > YIELD_UNDER_A_BALL_MPA:
         yield Finding("pressed beyond yield", ("pressure_beyond_yield",))

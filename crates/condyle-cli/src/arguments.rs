@@ -64,6 +64,9 @@ pub enum Command {
     Man {
         /// The folder; it is created if it does not exist.
         folder: PathBuf,
+        /// Replace files of others in that folder.
+        #[arg(long)]
+        force: bool,
     },
 }
 
@@ -384,6 +387,9 @@ pub struct Compare {
     /// Folder for compare.json, the pictures and the table of depths [default: compare in the results folder].
     #[arg(short, long, value_name = "DIR")]
     pub out: Option<PathBuf>,
+    /// Replace files of others in that folder.
+    #[arg(long)]
+    pub force: bool,
     /// Print compare.json, and nothing else on standard output.
     #[arg(long)]
     pub json: bool,

@@ -18,7 +18,12 @@ pub fn compare(arguments: &Compare) -> Done {
     note_unfinished(results);
     let default = results.join(COMPARED.folder);
     let out = arguments.out.as_ref().unwrap_or(&default);
-    let mut written = comparison.write(out)?;
+    let mut written = Vec::new();
+    for (name, ending, text) in comparison.files() {
+        let path = out.join(format!("{name}.{ending}"));
+        output::write_into(&path, text.as_bytes(), arguments.force || *out == default)?;
+        written.push(path);
+    }
     if *out == default {
         // The report shows the comparison that it finds in this folder.
         written.push(condyle_report::write_readable_report(results)?.0);

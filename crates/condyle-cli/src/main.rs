@@ -64,6 +64,6 @@ fn run_command() -> Done {
         Command::Calibrate(arguments) => calibrate::calibrate(&arguments),
         Command::CalibrateWear(arguments) => calibrate::calibrate_wear(&arguments),
         Command::Completions { shell } => manual::completions(shell),
-        Command::Man { folder } => manual::man(&folder),
+        Command::Man { folder, force } => manual::man(&folder, force),
     }
 }

@@ -1,14 +1,13 @@
 //! Completions for shells and man pages, both from the declared arguments.
 
-use std::{fs, io, path::Path, process::ExitCode};
+use std::{path::Path, process::ExitCode};
 
 use clap::CommandFactory;
 use clap_complete::Shell;
 use clap_mangen::Man;
-use condyle_results::replace_file;
 
 use crate::arguments::Arguments;
-use crate::output::{self, Done, Failure};
+use crate::output::{self, Done, Unwritten};
 
 pub fn completions(shell: Shell) -> Done {
     let mut script = Vec::new();
@@ -16,23 +15,22 @@ pub fn completions(shell: Shell) -> Done {
     output::print(&String::from_utf8_lossy(&script))
 }
 
-pub fn man(folder: &Path) -> Done {
+pub fn man(folder: &Path, force: bool) -> Done {
     let mut command = Arguments::command();
     // Names every page by the whole command, such as `condyle-run`.
     command.build();
-    let written = fs::create_dir_all(folder).and_then(|()| write_pages(&command, folder));
-    written.map_err(|error| Failure::bad_input(format!("{}: {error}", folder.display())))?;
+    write_pages(&command, folder, force)?;
     Ok(ExitCode::SUCCESS)
 }
 
 /// Writes the page of a command and those of the commands below it.
-fn write_pages(command: &clap::Command, folder: &Path) -> io::Result<()> {
+fn write_pages(command: &clap::Command, folder: &Path, force: bool) -> Result<(), Unwritten> {
     let page = Man::new(command.clone());
     let mut text = Vec::new();
-    page.render(&mut text)?;
-    replace_file(&folder.join(page.get_filename()), &text)?;
+    page.render(&mut text).expect("a vector takes all bytes");
+    output::write_into(&folder.join(page.get_filename()), &text, force)?;
     let below = command.get_subcommands();
     below
         .filter(|below| below.get_name() != "help" && !below.is_hide_set())
-        .try_for_each(|below| write_pages(below, folder))
+        .try_for_each(|below| write_pages(below, folder, force))
 }

@@ -2,6 +2,7 @@
 
 use std::{
     fmt::Display,
+    fs,
     io::{self, ErrorKind, IsTerminal, Write},
     path::Path,
     process::ExitCode,
@@ -155,6 +156,15 @@ pub fn warn(warnings: impl IntoIterator<Item = impl Display>) {
 pub fn write_file(path: &Path, bytes: &[u8], force: bool) -> Result<(), Unwritten> {
     let write = if force { replace_file } else { create_file };
     write(path, bytes).map_err(|error| Unwritten::new(path, &error))
+}
+
+/// Writes a file into a folder, which is created if it does not exist. A file with the same bytes is no reason to refuse: a
+/// command that a full disk ended goes on when it is repeated.
+pub fn write_into(path: &Path, bytes: &[u8], force: bool) -> Result<(), Unwritten> {
+    let folder = path.parent().unwrap_or(Path::new("."));
+    fs::create_dir_all(folder).map_err(|error| Unwritten::new(folder, &error))?;
+    let is_own = fs::read(path).is_ok_and(|there| there == bytes);
+    write_file(path, bytes, force || is_own)
 }
 
 /// Prints `text` on standard output.

@@ -1,9 +1,6 @@
 //! `condyle report`, `condyle plot` and `condyle diff`.
 
-use std::{
-    fs,
-    path::{Path, PathBuf},
-};
+use std::path::{Path, PathBuf};
 
 use condyle_report::{
     Picture, Results, pictures,
@@ -13,7 +10,7 @@ use condyle_results::{PLOTTED, SettingDifference};
 
 use crate::{
     arguments::{Diff, PictureFormat, Plot, Report},
-    output::{self, Done, Failure, Lines, Unwritten, note},
+    output::{self, Done, Failure, Lines, note},
 };
 
 pub fn report(arguments: &Report) -> Done {
@@ -81,10 +78,7 @@ pub fn plot(arguments: &Plot) -> Done {
     let mut lines = Lines::default();
     for (path, bytes) in files(arguments, &pictures(&results)) {
         let path = folder.join(path);
-        fs::create_dir_all(folder).map_err(|error| Unwritten::new(folder, &error))?;
-        // A plot that a full disk ended goes on with the same command.
-        let is_own = *folder == default || fs::read(&path).is_ok_and(|there| there == bytes);
-        output::write_file(&path, &bytes, arguments.force || is_own)?;
+        output::write_into(&path, &bytes, arguments.force || *folder == default)?;
         lines.line(format!("wrote {}", path.display()));
     }
     if lines.text().is_empty() {

@@ -124,12 +124,17 @@ impl<'a> CurvedMesh<'a> {
         // At a sharp edge the vertex normals contain no information about the facet, and on a steep wall a sideways
         // lift has no height: there the surface stays flat.
         let is_smooth = normals.iter().all(is_smooth_at);
-        let height = if is_smooth && upward.abs() >= MIN_SLOPE_COSINE {
+        let is_lifted = is_smooth && upward.abs() >= MIN_SLOPE_COSINE;
+        let height = if is_lifted {
             flat.y + lift(&corners, normals, weights, &flat).dot(&normal) / normal.y
         } else {
             flat.y
         };
-        Some(Over { height, upward })
+        Some(Over {
+            height,
+            upward,
+            lift_mm: (height - flat.y) * upward,
+        })
     }
 
     /// Returns the place of the curved surface over the triangle that belongs to a point.
@@ -152,6 +157,8 @@ pub(crate) struct Over {
     pub(crate) height: f64,
     /// Cosine of the slope: the component along y of the unit normal, less than 0 where it points down.
     pub(crate) upward: f64,
+    /// Distance of the curved surface from the triangle along the normal, mm; positive outside.
+    pub(crate) lift_mm: f64,
 }
 
 /// A place on the curved surface over a triangle.

@@ -226,8 +226,11 @@ pub(crate) fn read_part<'a, T>(
     }
     // After a syntax error, keys may be in the wrong tables: their problems would mislead.
     let found = if errors.is_empty() {
-        report_steering(document.get_ref().values(), &mut log);
-        read(&mut document.into_inner(), &mut log)
+        let mut document = document.into_inner();
+        let found = read(&mut document, &mut log);
+        // Afterwards, since changes from the command line are put into the document.
+        report_steering(document.values(), &mut log);
+        found
     } else {
         None
     };

@@ -40,6 +40,23 @@ fn a_changed_case_is_checked_and_stays_as_it_is() {
 }
 
 #[test]
+fn characters_that_steer_a_terminal_are_refused_on_the_command_line_too() {
+    let bench = Bench::with_case(SMALL);
+    for title in ["title=a\u{1b}[31mb", "title=\"a\u{202e}b\""] {
+        let said = bench.say(&["check", "case.toml", "--set", title]);
+        said.assert_refused(2, &["this text holds the control character"]);
+    }
+}
+
+#[test]
+fn a_new_case_takes_the_other_model_of_contact() {
+    let bench = Bench::new();
+    assert_eq!(bench.say(&["new", "case.toml"]).code, Some(0));
+    let said = bench.say(&["check", "case.toml", "--set", "contact.model=deformable"]);
+    assert_eq!(said.code, Some(0), "{}", said.err);
+}
+
+#[test]
 fn another_law_takes_the_place_of_the_files_with_all_its_constants() {
     let archard = format!("{SMALL}[wear]\nwear_factor_mm3_per_nm = 3e-7\n");
     let bench = Bench::with_case(&archard);

@@ -1,9 +1,12 @@
-//! The triangles of a femur do not matter as long as they determine its surface; where they do not, the run is doubtful.
+//! The triangles of a body do not matter as long as they determine its surface; where they do not, the run is doubtful.
 
 use std::path::Path;
 
 use condyle::geometry::{GenericFemur, GenericFemurShape, TriangleMesh};
-use condyle_mesh::formats::write_stl;
+use condyle_mesh::{
+    coarser,
+    formats::{parse_surface, write_stl},
+};
 use condyle_results::catalogue::{MASS_LOSS_MG, PEAK_PRESSURE_MPA};
 
 use crate::bench::{Bench, SMALL, reproducer};
@@ -90,6 +93,45 @@ fn verify_a_femur_with_long_facets_wears_as_the_same_solid_remeshed() {
     for file in ["femur.stl", "femur_sub8mm.stl"] {
         let (mass, peak, _) = run(&folder.join("cad-femur").join(file));
         assert_same_or_doubtful((mass, peak, false), right, file);
+    }
+}
+
+/// The insert of the repository, decimated to some chord error and divided into shorter triangles.
+#[test]
+fn verify_any_triangles_of_an_insert_give_its_wear_or_a_doubt() {
+    let folder = Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/../../cases/cad-knee"));
+    let bench = Bench::new();
+    let file = |name: &str| format!("file = {:?}", folder.join(name));
+    bench.write(
+        "case.toml",
+        &format!(
+            "[femur]\nshape = \"mesh\"\n{}\naxes = [\"right\", \"anterior\", \"superior\"]\nstart_mm = [-6.2, 0.0]\n\
+             [insert]\nshape = \"mesh\"\n{}\naxes = [\"right\", \"anterior\", \"superior\"]\nedge_mm = 1.6\nlayers = 2\n\
+             [march]\nupdates = 2\n[time]\nincrements = 60\n[accuracy]\nestimate = false\n",
+            file("femur.stl"),
+            file("insert.stl")
+        ),
+    );
+    let right = outcome(&bench, "case.toml");
+    let stl = folder.join("insert.stl");
+    let insert = parse_surface(&stl, &std::fs::read(&stl).unwrap()).unwrap();
+    let case = std::fs::read_to_string(bench.path("case.toml")).unwrap();
+    bench.write(
+        "mesh.toml",
+        &case.replace(&file("insert.stl"), "file = \"decimated.stl\""),
+    );
+    for (chord_mm, side_mm) in [(0.002, 3.0), (0.01, 2.0), (0.1, 100.0), (0.5, 100.0)] {
+        let mesh = coarser(&insert, chord_mm).with_sides_up_to(side_mm, |a, b| (a + b) / 2.0);
+        let mut stl = Vec::new();
+        write_stl(&mut stl, &mesh).unwrap();
+        std::fs::write(bench.path("decimated.stl"), stl).unwrap();
+        let outcome = outcome(&bench, "mesh.toml");
+        let doubts = bench.summary("out").plausibility;
+        let is_named = doubts.iter().any(|doubt| doubt.check == "insert_mesh");
+        let small = chord_mm < 0.02;
+        assert!(!(small && is_named), "{chord_mm} mm is doubtful");
+        let name = format!("{chord_mm} mm, {} triangles", mesh.triangles.len());
+        assert_same_or_doubtful((outcome.0, outcome.1, is_named), right, &name);
     }
 }
 

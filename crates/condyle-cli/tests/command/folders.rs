@@ -335,7 +335,16 @@ fn foreign_files_are_replaced_with_force_only() {
     let bench = Bench::with_case(&deformable);
     bench.run_into("out");
     fs::create_dir(bench.path("there")).unwrap();
-    let commands: [(&[&str], &str); 5] = [
+    bench.write("measured.toml", "[gravimetric]\nfile = \"masses.csv\"\n");
+    bench.write(
+        "masses.csv",
+        "cycles,k1_mg\n0,20\n400000,18\n800000,15\n1000000,13\n",
+    );
+    let compare = ["compare", "out", "measured.toml", "--out", "compared"];
+    fs::create_dir(bench.path("compared")).unwrap();
+    let commands: [(&[&str], &str); 7] = [
+        (&compare, "compared/compare.json"),
+        (&["man", "there"], "there/condyle.1"),
         (&["new", "new.toml"], "new.toml"),
         (&["check", "case.toml", "--picture", "a.svg"], "a.svg"),
         (&["plot", "out", "--out", "there"], "there/wear.svg"),

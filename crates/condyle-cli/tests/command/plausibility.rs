@@ -286,6 +286,25 @@ fn with_another_law_the_prediction_is_named_as_that_of_the_calibrated_law() {
     );
 }
 
+#[test]
+fn check_and_run_agree_on_the_thinnest_place() {
+    let thin = ON_THE_RIM.replace("thickness_mm = 8.644", "thickness_mm = 5.0");
+    let bench = Bench::with_case(&thin);
+    let checked = bench.say(&["check", "case.toml", "--json"]);
+    let checked: serde_json::Value = serde_json::from_str(&checked.out).unwrap();
+    let least_mm = checked["insert"]["least_thickness_mm"].as_f64().unwrap();
+    bench.run_into("out");
+    let summary = bench.summary("out");
+    let mut notes = summary.notes.iter();
+    let thinnest = notes.find(|note| note.check == "thin_polyethylene");
+    let left_mm = thinnest.expect("the insert is thin").value;
+    let worn_mm = summary[&catalogue::MAX_DEPTH_MM];
+    assert!(
+        left_mm >= least_mm - worn_mm,
+        "{left_mm} left of {least_mm} mm"
+    );
+}
+
 /// Nothing of what the checks look at is lost with the process that computed it.
 #[test]
 fn a_run_resumed_before_its_summary_is_as_doubtful() {

@@ -1,6 +1,6 @@
 //! The reasons why a run and a measurement cannot be compared, or no constants of a wear law found from them.
 
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 use condyle_case::{case::ConstantError, config::Problems};
 use condyle_mesh::formats::MeshFileError;
@@ -28,14 +28,6 @@ pub enum CompareError {
     /// Results or measurements that lack what the comparison needs, with the remedy.
     #[error("{0}")]
     NotComparable(String),
-    /// A file that cannot be written.
-    #[error("{}: cannot be written: {source}; choose another folder with --out", path.display())]
-    Write {
-        /// The file or folder.
-        path: PathBuf,
-        /// The reason.
-        source: std::io::Error,
-    },
 }
 
 impl CompareError {

@@ -1,20 +1,13 @@
 //! A comparison as files: numbers as JSON and CSV, pictures as SVG.
 
-use std::{
-    fs,
-    path::{Path, PathBuf},
-};
-
 use condyle_report::{
     SurfaceFields,
     measured::{compared_kinematics_svg, compared_surface_svg, compared_wear_svg},
 };
-use condyle_results::{
-    COMPARED_KINEMATICS, COMPARED_NUMBERS, COMPARED_SURFACE, COMPARED_WEAR, replace_file,
-};
+use condyle_results::{COMPARED_KINEMATICS, COMPARED_NUMBERS, COMPARED_SURFACE, COMPARED_WEAR};
 
 use crate::measured::{
-    CompareError, Comparison, gravimetric::GravimetricComparison, kinematics::KinematicsComparison,
+    Comparison, gravimetric::GravimetricComparison, kinematics::KinematicsComparison,
     surface::SurfaceComparison,
 };
 
@@ -25,27 +18,8 @@ impl Comparison {
         text.expect("numbers and text always serialise") + "\n"
     }
 
-    /// Writes the files into `folder`, which is created if needed, and returns their paths.
-    ///
-    /// # Errors
-    /// The folder or a file cannot be written.
-    pub fn write(&self, folder: &Path) -> Result<Vec<PathBuf>, CompareError> {
-        let failed = |path: &Path| {
-            let path = path.to_path_buf();
-            |source| CompareError::Write { path, source }
-        };
-        fs::create_dir_all(folder).map_err(failed(folder))?;
-        let mut written = Vec::new();
-        for (name, ending, text) in self.files() {
-            let path = folder.join(format!("{name}.{ending}"));
-            replace_file(&path, text.as_bytes()).map_err(failed(&path))?;
-            written.push(path);
-        }
-        Ok(written)
-    }
-
-    /// Name, ending and text of each file.
-    fn files(&self) -> Vec<(&'static str, &'static str, String)> {
+    /// Returns name, ending and text of each file.
+    pub fn files(&self) -> Vec<(&'static str, &'static str, String)> {
         let mut files = vec![(COMPARED_NUMBERS, "json", self.json())];
         if let Some(kinematics) = &self.kinematics {
             files.push((COMPARED_KINEMATICS, "svg", kinematics.svg()));

@@ -185,6 +185,9 @@ pub(crate) fn thin_polyethylene(finished: &Finished<'_>) -> Option<PlausibilityW
 /// of an export for manufacturing. Beyond it the triangles no longer determine the surface.
 const MAX_DEVIATION_MM: f64 = 0.05;
 
+/// The same for an insert, mm, whose dishes are flatter; our choice: twice the chord error of a fine export.
+const MAX_INSERT_DEVIATION_MM: f64 = 0.02;
+
 /// Largest part of the contact, by overclosure, where the triangles of a femur do not determine its surface, %; our choice:
 /// in sound knees, up to 4 % lies at the sharp edges that the smooth surface rounds.
 const MAX_ROUGH_PERCENT: f64 = 10.0;
@@ -226,6 +229,29 @@ pub(crate) fn femur_mesh(finished: &Finished<'_>) -> Option<PlausibilityWarning>
                  without decimation, and smooth a scan.";
     let value = (percent, MAX_ROUGH_PERCENT, "%");
     (percent > MAX_ROUGH_PERCENT).then(|| warning("femur_mesh", value, message, advice))
+}
+
+/// Warns of an insert whose triangles are too coarse where the femur touches them.
+pub(crate) fn insert_mesh(finished: &Finished<'_>) -> Option<PlausibilityWarning> {
+    let pressed_mpa = finished.march.state().first_pressure_mpa.iter();
+    let force_n = pressed_mpa.zip(&finished.surface.shares);
+    let force_n = force_n.map(|(pressure_mpa, share)| pressure_mpa * share.area_mm2);
+    let (mut whole, mut doubtful, mut largest_mm): (f64, f64, f64) = (0.0, 0.0, 0.0);
+    for (force_n, deviation_mm) in force_n.zip(finished.march.insert().deviation_mm()) {
+        whole += force_n;
+        if force_n > 0.0 && *deviation_mm > MAX_INSERT_DEVIATION_MM {
+            doubtful += force_n;
+            largest_mm = largest_mm.max(*deviation_mm);
+        }
+    }
+    let percent = 100.0 * doubtful / whole.max(f64::MIN_POSITIVE);
+    let message = format!(
+        "{percent:.0} % of the contact is where the smooth surface of the insert is more than {MAX_INSERT_DEVIATION_MM} mm from \
+             the triangles of its mesh, up to {largest_mm:.3} mm; up to {MAX_ROUGH_PERCENT:.0} % is acceptable"
+    );
+    let advice = "The mesh is too coarse there: export the insert with a chord error of at most 0.01 mm, without decimation.";
+    let value = (percent, MAX_ROUGH_PERCENT, "%");
+    (percent > MAX_ROUGH_PERCENT).then(|| warning("insert_mesh", value, message, advice))
 }
 
 /// Largest part of a cycle during which a condyle may be beyond the rim, %; our choice.

@@ -22,10 +22,11 @@ use finished::{Finished, warning};
 /// A check of one number; none if the run is plausible.
 type Check = fn(&Finished<'_>) -> Option<PlausibilityWarning>;
 
-/// Place of the femur on the insert, its mesh, and impossible pressure.
-const PLACE: [Check; 3] = [
+/// Place of the femur on the insert, their meshes, and impossible pressure.
+const PLACE: [Check; 4] = [
     bodies::pressure_at_rim,
     bodies::femur_mesh,
+    bodies::insert_mesh,
     bodies::pressure_beyond_flow,
 ];
 

@@ -3,11 +3,7 @@
 use std::collections::BTreeMap;
 
 use super::grid::{ColumnGrid, Place};
-use crate::{
-    Vec3,
-    curved_mesh::{CurvedMesh, Over},
-    triangle_mesh::TriangleMesh,
-};
+use crate::{Vec3, curved_mesh::CurvedMesh, triangle_mesh::TriangleMesh};
 
 /// Edge of the bins that sort the triangles over the transverse plane, mm.
 const BIN_MM: f64 = 1.0;
@@ -32,6 +28,8 @@ pub(super) struct Through {
     pub(super) top: f64,
     /// Cosine of the slope at the highest.
     pub(super) upward: f64,
+    /// Distance of the curved surface from the triangle at the highest, mm.
+    pub(super) lift_mm: f64,
 }
 
 impl<'a> VerticalLines<'a> {
@@ -78,10 +76,11 @@ impl<'a> VerticalLines<'a> {
             self.curved.over(triangle, normals, place.into())
         };
         let bin = self.bins[i * self.counts[1] + k].iter();
-        let through = bin.filter_map(over).map(|Over { height, upward }| Through {
-            bottom: height,
-            top: height,
-            upward,
+        let through = bin.filter_map(over).map(|over| Through {
+            bottom: over.height,
+            top: over.height,
+            upward: over.upward,
+            lift_mm: over.lift_mm,
         });
         let through = through.reduce(|all, one| Through {
             bottom: all.bottom.min(one.bottom),
@@ -183,6 +182,7 @@ impl Bridges {
             bottom: height[0],
             top: height[1],
             upward: 1.0,
+            lift_mm: 0.0,
         })
     }
 }

@@ -99,6 +99,7 @@ impl Insert {
     ) -> Result<(Self, Vec<Hole>), InsertError> {
         let (columns, holes) = column_mesh(surface, is_closed, thickness_mm, meshing)?;
         let insert = Self::new(columns.mesh, &columns.articulating, &columns.backside)?;
+        let insert = insert.with_deviation_mm(columns.deviation_mm);
         Ok((insert.with_rim_along_walls(), holes))
     }
 
@@ -170,6 +171,12 @@ impl Insert {
         &self.thickness_mm
     }
 
+    /// Returns the distance between the smooth unworn surface and the triangles that it was made from at each surface node,
+    /// mm; empty for a shape without triangles.
+    pub fn deviation_mm(&self) -> &[f64] {
+        &self.unworn.deviation_mm
+    }
+
     /// Returns the articulating surface in its present shape.
     pub fn surface(&self) -> ArticulatingSurface {
         self.surface_at(&self.mesh.nodes)
@@ -191,6 +198,13 @@ impl Insert {
             rim_along_walls: true,
             ..self
         }
+    }
+
+    /// Sets the distance between smooth surface and triangles at every surface node, mm.
+    pub(super) fn with_deviation_mm(mut self, deviation_mm: Vec<f64>) -> Self {
+        let unworn = Arc::get_mut(&mut self.unworn).expect("a new insert shares nothing");
+        unworn.deviation_mm = deviation_mm;
+        self
     }
 
     /// Sets the thickness below every surface node, for a shape whose columns give it: at a rim, where the normal misses the

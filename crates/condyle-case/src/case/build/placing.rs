@@ -197,7 +197,7 @@ fn noise(mesh: &TriangleMesh) -> Option<String> {
     let scatter_mm = mesh.scatter_mm()?;
     (MAX_SCATTER_MM..MAX_NOISE_MM).contains(&scatter_mm).then(|| {
         format!(
-            "its vertices scatter by about {scatter_mm:.3} mm about a smooth surface, as by the noise of a scan, \
+            "its vertices scatter by about {scatter_mm:.3} mm about a smooth surface, as by the noise of a scan or by decimation, \
              and up to {MAX_SCATTER_MM} mm is acceptable; the highest pressure is not to be believed: smooth it, or take the \
              body from CAD"
         )
