@@ -135,13 +135,20 @@ impl ElasticSolid {
     pub(crate) fn displacements_by(&self, forces: &[Vec3]) -> Vec<Vec3> {
         let order = &self.factor.dissection.order;
         let mut x = Rhs::<1>::new(self.factor.freedoms());
+        let mut loaded = Vec::new();
         for (place, &node) in order.iter().enumerate() {
             let force = self.felt(node, forces[node as usize]);
+            if force != Vec3::zeros() {
+                loaded.push(place as u32);
+            }
             for (i, force) in force.iter().enumerate() {
                 *x.at_mut(3 * place + i, 0) = *force;
             }
         }
-        self.factor.solve(&mut x);
+        let loaded = self.factor.paths(loaded.into_iter());
+        let wanted = vec![true; loaded.len()];
+        self.factor
+            .solve_some(std::slice::from_mut(&mut x), &[loaded], &wanted);
         let mut displacements = vec![Vec3::zeros(); forces.len()];
         for (place, &node) in order.iter().enumerate() {
             displacements[node as usize] = Vec3::from_fn(|i, _| x.at(3 * place + i, 0));

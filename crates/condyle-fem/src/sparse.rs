@@ -185,17 +185,6 @@ impl<const W: usize> Rhs<W> {
 type Rows<const W: usize> = [[f64x4; W]; TILE];
 
 impl Factor {
-    /// Replaces forces by displacements.
-    pub(crate) fn solve<const W: usize>(&self, x: &mut Rhs<W>) {
-        let mut front = Vec::new();
-        for group in 0..self.fronts.len() {
-            self.forward(group, x, &mut front);
-        }
-        for group in (0..self.fronts.len()).rev() {
-            self.backward(group, x, &mut front);
-        }
-    }
-
     /// Replaces forces by displacements, for some right-hand sides, in the groups where these are needed.
     ///
     /// `loaded`: for every right-hand side, the groups with forces and all groups above those. `wanted`: groups whose

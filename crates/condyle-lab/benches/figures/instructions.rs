@@ -9,7 +9,7 @@ use std::{
 
 use crate::{
     budgets::{self, Counts, Verdict, verdict},
-    cases::{self, GENERIC, REAL},
+    cases::{self, GENERIC, REAL, SMALL},
     counted::COUNTED,
     readable,
 };
@@ -63,14 +63,17 @@ fn each(counts: &Counts) -> impl Iterator<Item = (&str, &str, u64)> {
     })
 }
 
-/// Of every case whose data are there; both at once.
+/// Of every case whose data are there; all at once.
 fn counts() -> Counts {
-    let names = [GENERIC, REAL].into_iter();
+    let small = SMALL.iter().map(|(name, _)| *name);
+    let names = [GENERIC, REAL].into_iter().chain(small);
     let names: Vec<&str> = names.filter(|name| cases::read(name).is_some()).collect();
+    let folder = tempfile::tempdir().expect("a folder for a copy of this program");
+    let program = &readable::copy(folder.path());
     std::thread::scope(|scope| {
         let spawned = names
             .iter()
-            .map(|&name| scope.spawn(move || (name.to_owned(), counts_of(name))));
+            .map(|&name| scope.spawn(move || (name.to_owned(), counts_of(name, program))));
         let running: Vec<_> = spawned.collect();
         let counted = running.into_iter().map(ScopedJoinHandle::join);
         counted
@@ -79,10 +82,10 @@ fn counts() -> Counts {
     })
 }
 
-fn counts_of(case: &str) -> BTreeMap<String, u64> {
+fn counts_of(case: &str, program: &Path) -> BTreeMap<String, u64> {
     let folder = tempfile::tempdir().expect("a folder for what callgrind writes");
     let profile = folder.path().join("callgrind.out");
-    let times = run_counted(&readable::copy(folder.path()), case, &profile);
+    let times = run_counted(program, case, &profile);
     let profile = std::fs::read_to_string(&profile).expect("callgrind has written");
     let count = |(work, times): (&str, u64)| {
         let (_, function) = COUNTED.iter().find(|(name, _)| *name == work)?;

@@ -229,7 +229,7 @@ fn finer(generic: &Case) -> Case {
     let condyle_case::case::InsertShape::Generic(insert) = &generic.insert.shape else {
         panic!("the generic case has a generic insert");
     };
-    cases::generic_with("insert.edge_mm", insert.edge_mm / 2.0)
+    cases::generic_with([&*format!("insert.edge_mm={}", insert.edge_mm / 2.0)])
 }
 
 fn run_command(condyle: &Path) {

@@ -69,7 +69,9 @@ impl Mixing {
     fn parts(&self, left: &DVector<f64>) -> Option<DVector<f64>> {
         let count = self.changes.len();
         let of = |i: usize| &self.changes[i].left;
-        let mut products = DMatrix::from_fn(count, count, |i, j| of(i).dot(of(j)));
+        // Cholesky's factor reads the lower triangle only.
+        let product = |i: usize, j: usize| if i < j { 0.0 } else { of(i).dot(of(j)) };
+        let mut products = DMatrix::from_fn(count, count, product);
         // Normal equations suffice: at most eight columns, and the diagonal is raised below.
         let mean = products.trace() / count as f64;
         for i in 0..count {

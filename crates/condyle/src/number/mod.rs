@@ -1,4 +1,5 @@
-//! Scalars and vectors of lanes behind one interface, and the fixed point of a map (`mixing`).
+//! Scalars and vectors of lanes behind one interface, symmetric matrices of them (`symmetric`), and the fixed point of a map
+//! (`mixing`).
 //!
 //! The formulas of the hot loop are written once, for any [`Number`]. With [`F64x4`] they work on
 //! four nodes at a time, which the compiler turns into vector instructions on any machine; every
@@ -6,6 +7,7 @@
 //! depend on how wide the machine's vectors are.
 
 mod mixing;
+mod symmetric;
 
 use std::{
     fmt::Debug,
@@ -18,6 +20,7 @@ use wide::{f32x8, f64x4};
 
 use crate::{Vec3, Vector};
 pub(crate) use mixing::{Mixing, Turns};
+pub(crate) use symmetric::Symmetric;
 
 /// A real number, or several side by side.
 pub trait Number:

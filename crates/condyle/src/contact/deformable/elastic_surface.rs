@@ -14,6 +14,7 @@ use nalgebra::DVector;
 
 use super::{
     backside::{Floor, Tray},
+    cholesky::product,
     compliance::{Compliance, SurfaceCompliance, UnitLoads, along_surface, tiles},
     history::NodeLoad,
     plastic::Influence,
@@ -149,12 +150,10 @@ impl ElasticSurface {
     pub fn forces_on_tray(&self, tray: &Tray, loads: &[NodeLoad]) -> DVector<f64> {
         let mut forces_n = DVector::zeros(tray.freedoms());
         for (tile, loads) in self.by_tile(loads) {
-            let rows = tray.of_tile(&self.loads, tile as usize);
-            let rows = rows.chunks_exact(tray.freedoms());
-            for (row, load_n) in rows.zip(loads).filter(|(_, load_n)| *load_n != 0.0) {
-                for (force_n, by) in forces_n.iter_mut().zip(row) {
-                    *force_n += load_n * by;
-                }
+            let rows = tray.of_tile(&self.loads, tile);
+            let rows = rows.chunks_exact(loads.len());
+            for (force_n, row) in forces_n.iter_mut().zip(rows) {
+                *force_n += product(row, &loads);
             }
         }
         forces_n
@@ -229,18 +228,24 @@ impl ElasticSurface {
         influence.by_surface(&self.solid, tile, &self.loads.forces_of(tile))
     }
 
-    /// Groups loads on nodes by tiles, in the order of the nodes of each.
-    pub fn by_tile(&self, loads: &[NodeLoad]) -> BTreeMap<u32, Vec<f64>> {
-        let load_of: BTreeMap<u32, f64> = loads.iter().copied().collect();
-        let mut by_tile = BTreeMap::new();
-        for (number, tile) in self.loads.tiles().iter().enumerate() {
-            let of = |node: &u32| load_of.get(node).copied();
-            if tile.iter().any(|node| of(node).is_some()) {
-                let loads = tile.iter().map(|node| of(node).unwrap_or(0.0));
-                by_tile.insert(number as u32, loads.collect());
-            }
+    /// Groups loads on nodes by tiles, ascending, in the order of the nodes of each.
+    pub fn by_tile(&self, loads: &[NodeLoad]) -> Vec<(usize, Vec<f64>)> {
+        let mut load_of = vec![0.0; self.nodes.len()];
+        for &(node, load_n) in loads {
+            load_of[node as usize] = load_n;
         }
-        by_tile
+        let tiles = loads.iter().map(|&(node, _)| self.normal.tile_of(node));
+        let mut tiles: Vec<u32> = tiles.collect();
+        tiles.sort_unstable();
+        tiles.dedup();
+        let of_tile = |tile| {
+            let nodes = self.nodes_of_tile(tile).iter();
+            (tile, nodes.map(|&node| load_of[node as usize]).collect())
+        };
+        tiles
+            .into_iter()
+            .map(|tile| of_tile(tile as usize))
+            .collect()
     }
 
     /// Returns the displacements of all mesh nodes by loads along the inward normals and eigenstrains of elements, mm.

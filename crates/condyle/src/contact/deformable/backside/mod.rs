@@ -107,10 +107,15 @@ impl RestingInsert {
         }
         let tile = self.surface.normal.tile_of(node) as usize;
         let rows = self.tray.of_tile(&self.surface.loads, tile);
-        let rows = rows.chunks_exact(self.tried_mm.len());
-        for (&node, row) in self.surface.nodes_of_tile(tile).iter().zip(rows) {
-            let products = row.iter().zip(&self.tried_mm).map(|(a, b)| a * b);
-            self.set_mm[node as usize] = Some(products.sum());
+        let nodes = self.surface.nodes_of_tile(tile);
+        let mut sums_mm = vec![0.0; nodes.len()];
+        for (row, tried) in rows.chunks_exact(nodes.len()).zip(&self.tried_mm) {
+            for (sum_mm, by) in sums_mm.iter_mut().zip(row) {
+                *sum_mm += by * tried;
+            }
+        }
+        for (&node, sum_mm) in nodes.iter().zip(sums_mm) {
+            self.set_mm[node as usize] = Some(sum_mm);
         }
         self.set_mm[node as usize].unwrap_or_default()
     }

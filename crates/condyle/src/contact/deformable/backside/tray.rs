@@ -12,7 +12,7 @@ use crate::{
         deformable::compliance::{UnitLoads, tiles},
         model::NotBorne,
     },
-    number::Mixing,
+    number::{Mixing, Symmetric},
 };
 
 /// Stiffness of the rim that locks the insert into its tray, against its mean slip, N/mm: a micrometre under a hundred
@@ -41,12 +41,12 @@ pub(crate) struct Tray {
     pub points: Vec<TrayPoint>,
     /// The stiffness of the search for every number of q, N/mm, and the inverse of S with those.
     pub stiffness_of_search: Vec<f64>,
-    inverse: DMatrix<f64>,
+    inverse: Symmetric,
     /// Mean slips, anterior and lateral, and mean turn times radius of gyration, by q.
     lock: [DVector<f64>; 3],
     gyration_mm: f64,
     solved: Vec<HalfSolved>,
-    /// B, a row for each node of a tile of the surface.
+    /// The transpose of B for each tile of the surface: a row for every number of q.
     by_tile: Vec<OnceLock<Vec<f64>>>,
 }
 
@@ -84,7 +84,7 @@ impl Tray {
         Self {
             points,
             stiffness_of_search: searched,
-            inverse: inverse.unwrap_or_else(|| DMatrix::zeros(size, size)),
+            inverse: Symmetric::from_lower(&inverse.unwrap_or_else(|| DMatrix::zeros(size, size))),
             lock,
             gyration_mm,
             solved: supports.solved,
@@ -101,26 +101,16 @@ impl Tray {
         let stiffness = self.stiffness_of_search.iter();
         let pull = stiffness.zip(to_mm.iter()).map(|(own, to)| own * to);
         let pulled = forces_n + DVector::from_iterator(to_mm.len(), pull);
-        &self.inverse * pulled
+        self.inverse.times(pulled.as_slice()).into()
     }
 
-    /// Returns the displacements of the nodes of a tile of the surface along their inward normals by each number of q: a row
-    /// for each node.
+    /// Returns the displacements of the nodes of a tile of the surface along their inward normals, a row for every number of
+    /// q: those of each node by that number.
     pub fn of_tile(&self, loads: &UnitLoads, tile: usize) -> &[f64] {
         self.by_tile[tile].get_or_init(|| {
             let own = loads.solved(tile);
-            let size = self.freedoms();
-            let mut rows = vec![0.0; own.forces() * size];
-            let mut first = 0;
-            for group in &self.solved {
-                let moved = own.moved_along(group);
-                let moved = moved.chunks_exact(group.forces());
-                for (row, moved) in rows.chunks_exact_mut(size).zip(moved) {
-                    row[first..first + moved.len()].copy_from_slice(moved);
-                }
-                first += group.forces();
-            }
-            rows
+            let groups = self.solved.iter();
+            groups.flat_map(|group| group.moved_along(&own)).collect()
         })
     }
 

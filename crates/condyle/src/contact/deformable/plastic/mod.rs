@@ -333,7 +333,7 @@ impl<M: Material> PlasticInsert<M> {
         let by_tile = surface.by_tile(loads);
         let tiles = by_tile.iter();
         let rows: Vec<(&[f32], &Vec<f64>)> = tiles
-            .map(|(&tile, loads)| (surface.moved_below(tile as usize), loads))
+            .map(|(tile, loads)| (surface.moved_below(*tile), loads))
             .collect();
         // Only for nodes of evaluated elements: a product over all nodes would be far larger.
         for node in (0..is_needed.len()).filter(|&node| is_needed[node]) {
