@@ -121,7 +121,7 @@ variants! {
 
     /// Support of the backside of a deformable insert.
     BacksideChoice by
-    /// Support of the backside on its tray: a bond, or the tray alone, from which it lifts and along which it slips with friction, which takes some ten times the time and the implicit integrator.
+    /// Support of the backside on its tray: a bond, or the tray alone, from which it lifts and along which it slips with friction, which takes some five times the time and the implicit integrator.
     backside = "bonded" {
         /// It neither lifts nor slips.
         Bonded = "bonded",
