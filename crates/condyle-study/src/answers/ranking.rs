@@ -29,7 +29,7 @@ pub(crate) struct RankedDesign {
     pub name: String,
     pub mean: f64,
     pub standard_deviation: f64,
-    /// Share of the disturbances under which the design is within every limit.
+    /// Share of the disturbances under which the design is within every limit; one that cannot be solved is not.
     pub within_limits: f64,
     pub within_limits_interval: [f64; 2],
     /// Share of the disturbances under which no other design is better.
@@ -44,7 +44,8 @@ pub(crate) struct RankedDesign {
 struct Outcomes {
     name: String,
     values: Vec<f64>,
-    within_limits: Vec<bool>,
+    /// Of each test of the design; none where the test could not be solved.
+    within_limits: Vec<Option<bool>>,
 }
 
 impl Ranking {
@@ -66,11 +67,14 @@ impl Ranking {
             .collect();
         let alternatives = study.alternatives.iter().enumerate();
         let outcomes = alternatives.map(|(place, design)| {
-            let tests = || common.iter().map(|row| row * count + place);
+            let common = common.iter().map(|row| row * count + place);
+            let kept = (place..values.len()).step_by(count);
+            let kept = kept.filter(|test| data.kept[*test]);
+            let within = kept.map(|test| values[test].is_finite().then_some(data.within[test]));
             Outcomes {
                 name: design.name.clone(),
-                values: tests().map(|test| values[test]).collect(),
-                within_limits: tests().map(|test| data.within[test]).collect(),
+                values: common.map(|test| values[test]).collect(),
+                within_limits: within.collect(),
             }
         });
         Ok(Some(Self {
@@ -87,13 +91,18 @@ impl Ranking {
 const MIN_WITHIN: f64 = 0.95;
 
 impl Outcomes {
-    fn within(&self) -> f64 {
-        let within = self.within_limits.iter().filter(|within| **within);
-        within.count() as f64
+    /// Returns the share of the tests within every limit and its interval: an unsolved test counts as beyond a limit in the
+    /// share, and both ways in the interval, since the implant may be one that the test overloads.
+    fn within(&self) -> (f64, [f64; 2]) {
+        let count = |of: Option<bool>| self.within_limits.iter().filter(|one| **one == of).count();
+        let tests = self.within_limits.len() as f64;
+        let (within, unsolved) = (count(Some(true)) as f64, count(None) as f64);
+        let [low, high] = [within, within + unsolved].map(|hits| wilson_interval(hits, tests));
+        (within / tests.max(1.0), [low[0], high[1]])
     }
 
     fn keeps_limits(&self) -> bool {
-        self.within() >= MIN_WITHIN * self.values.len() as f64
+        self.within().0 >= MIN_WITHIN
     }
 }
 
@@ -123,13 +132,13 @@ fn ranked(all: &[Outcomes]) -> Vec<RankedDesign> {
             .iter()
             .map(|(_, _, other)| wins(&own.values, &other.values));
         let wins: Vec<f64> = others.collect();
-        let within = own.within();
+        let (within_limits, within_limits_interval) = own.within();
         RankedDesign {
             name: own.name.clone(),
             mean,
             standard_deviation: standard_deviation(&own.values),
-            within_limits: within / tests.max(1.0),
-            within_limits_interval: wilson_interval(within, tests),
+            within_limits,
+            within_limits_interval,
             best,
             best_interval: wilson_interval(best * tests, tests),
             beats: wins.iter().map(|wins| wins / tests.max(1.0)).collect(),
@@ -378,7 +387,7 @@ mod tests {
         let outcomes = |name: &str, add: f64| Outcomes {
             name: name.to_owned(),
             values: base.iter().map(|value| value + add).collect(),
-            within_limits: vec![true; 50],
+            within_limits: vec![Some(true); 50],
         };
         let ranked = ranked(&[outcomes("worse", 1.0), outcomes("better", 0.0)]);
         assert_eq!(ranked[0].name, "better");
@@ -395,11 +404,27 @@ mod tests {
         let outcomes = |name: &str, value: f64, within: bool| Outcomes {
             name: name.to_owned(),
             values: vec![value; 20],
-            within_limits: vec![within; 20],
+            within_limits: vec![Some(within); 20],
         };
         let ranked = ranked(&[outcomes("flat", 1.0, false), outcomes("deep", 2.0, true)]);
         assert_eq!(ranked[0].name, "deep");
         assert!(ranked[0].within_limits_interval[0] > 0.8);
+    }
+
+    #[test]
+    fn verify_unsolved_tests_are_not_within_the_limits_and_may_be_in_the_interval() {
+        let outcomes = |name: &str, value: f64, unsolved: usize| Outcomes {
+            name: name.to_owned(),
+            values: vec![value; 20],
+            within_limits: [vec![Some(true); 20], vec![None; unsolved]].concat(),
+        };
+        let ranked = ranked(&[outcomes("fails", 1.0, 5), outcomes("holds", 2.0, 0)]);
+        assert_eq!((&*ranked[0].name, ranked[1].within_limits), ("holds", 0.8));
+        let interval = [
+            wilson_interval(20.0, 25.0)[0],
+            wilson_interval(25.0, 25.0)[1],
+        ];
+        assert_eq!(ranked[1].within_limits_interval, interval);
     }
 
     #[test]
