@@ -6,6 +6,7 @@ import hashlib
 import json
 import os
 from collections.abc import Mapping
+from html import escape
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -171,6 +172,9 @@ class Case:
 
     def __repr__(self) -> str:
         return f"<condyle.Case {self['title']!r}, {self._path}>"
+
+    def _repr_html_(self) -> str:
+        return f"<details><summary>{escape(repr(self))}</summary><pre>{escape(self.text)}</pre></details>"
 
     def __reduce__(self) -> tuple[Any, ...]:
         return Case, (self._path, self._text, self._base, self._files, self._changes)

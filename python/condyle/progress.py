@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import sys
-import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from typing import Any, NamedTuple, TypeVar
@@ -56,36 +54,28 @@ class StudyProgress(NamedTuple):
 
 
 class Bar:
-    """A progress bar on standard error with the remaining time; in a notebook, a line of text."""
-
-    WIDTH = 40
-    # Earlier, the remaining time cannot be estimated.
-    MIN_ELAPSED_S = 2.0
+    """A progress bar with the remaining time, by tqdm: on standard error, or a widget in a notebook."""
 
     def __init__(self) -> None:
         """Creates a bar that is drawn at the first call."""
-        self._began: tuple[float, float] | None = None
+        self._bar: Any = None
 
     def __call__(self, progress: Progress | StudyProgress) -> None:
         """Draws the bar."""
-        done = round(self.WIDTH * progress.part)
-        bar = "#" * done + "-" * (self.WIDTH - done)
-        text = progress.text + self._time_left(progress.part)
-        sys.stderr.write(f"\r{bar} {100 * progress.part:3.0f} %  {text:<40}")
-        sys.stderr.flush()
+        from tqdm.auto import tqdm  # type: ignore[import-untyped, unused-ignore]
 
-    def _time_left(self, part: float) -> str:
-        now_s = time.monotonic()
-        start_s, start = self._began = self._began or (now_s, part)
-        spent_s = now_s - start_s
-        if spent_s < self.MIN_ELAPSED_S or not start < part < 1.0:
-            return ""
-        return f", {spent_s * (1.0 - part) / (part - start):.0f} s left"
+        if self._bar is None:
+            layout = "{percentage:3.0f} % {bar} {desc}, {remaining} left"
+            # The time left counts from what was done before.
+            self._bar = tqdm(total=1.0, initial=progress.part, leave=False, bar_format=layout)
+        self._bar.set_description_str(progress.text, refresh=False)
+        self._bar.n = progress.part
+        self._bar.refresh()
 
     def close(self) -> None:
-        """Clears the line."""
-        sys.stderr.write("\r" + " " * (self.WIDTH + 50) + "\r")
-        sys.stderr.flush()
+        """Removes the bar."""
+        if self._bar is not None:
+            self._bar.close()
 
 
 @contextmanager

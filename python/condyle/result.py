@@ -6,6 +6,8 @@ import json
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal
 
+from . import _html
+from ._condyle import unit_of
 from ._raw import RawRun
 from ._summary import Summary
 from .case import Case
@@ -28,6 +30,7 @@ class Result(Summary):
     """The results of a run, whether it was run from Python or read from a folder of the command.
 
     The numbers of ``summary.json`` are attributes with their unit in the name; an unfinished run has none of them.
+    Attributes cannot be assigned, and arrays are read-only.
     Positions are in the insert frame of the knee of the case: x anterior, y superior, z to the right, mm.
 
     >>> import condyle
@@ -48,6 +51,9 @@ class Result(Summary):
         """All tables of the run, by the names of their files without the ending."""
         for name, text in run["tables"].items():
             self.tables[name] = Table.from_csv(text, f"{folder or 'the run'}: {name}.csv")
+        arrays: list[NDArray[Any]] = [run["points_mm"], run["hexes"], run["articulating"]]
+        for array in [*arrays, run["femur_points_mm"], run["femur_triangles"], *run["fields"].values()]:
+            array.flags.writeable = False
 
     if not TYPE_CHECKING:  # A type checker knows the attributes by their annotations, and no others.
 
@@ -57,6 +63,11 @@ class Result(Summary):
             is_known = name in Summary.__annotations__
             reason = f"; {'this run' if self.summary else 'a run that is not done'} does not have it" if is_known else ""
             raise AttributeError(f"a result has no {name}{reason}")
+
+        def __setattr__(self, name: str, value: object) -> None:
+            if name in self.__dict__ or name not in ("_run", "_folder", "summary", "tables"):
+                raise AttributeError(f"a result is read-only: {name} cannot be assigned")
+            object.__setattr__(self, name, value)
 
     @property
     def is_done(self) -> bool:
@@ -183,6 +194,19 @@ class Result(Summary):
             f"<condyle.Result: {self.mass_loss_mg:.2f} mg worn in {self.cycles:.0f} cycles, {self.max_depth_mm:.4f} mm deep, "
             f"{self.peak_pressure_mpa:.1f} MPa>"
         )
+
+    def _repr_html_(self) -> str:
+        names = [
+            "cycles",
+            "mass_loss_mg",
+            "volume_loss_mm3",
+            "max_depth_mm",
+            "peak_pressure_mpa",
+            "ap_range_mm",
+            "ie_range_deg",
+        ]
+        rows = [(name, self.summary[name], unit_of(name)) for name in names if name in self.summary]
+        return _html.table(repr(self), ("", "value", "unit"), rows)
 
     def __getstate__(self) -> dict[str, Any]:
         return {"_run": self._run, "_folder": self._folder}

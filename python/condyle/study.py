@@ -9,7 +9,7 @@ from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from . import _condyle
+from . import _condyle, _html
 from ._toml import document, value_text
 from ._workers import Cluster, Source, run_on
 from .case import Case
@@ -165,6 +165,9 @@ class Study:
 
     def __repr__(self) -> str:
         return f"<condyle.Study of {self.tests} tests, {self.design}: {', '.join(self.inputs)}>"
+
+    def _repr_html_(self) -> str:
+        return _html.table(f"Study of {self.tests} tests, {self.design}", ("input",), [[key] for key in self.inputs])
 
     def __reduce__(self) -> tuple[Any, ...]:
         return Study, (self._source.path, self._source.text, dict(self._source.files))

@@ -7,6 +7,7 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from . import _html
 from ._condyle import unit_of
 from ._extras import extra
 from .emulator import Emulator, read
@@ -50,6 +51,8 @@ class StudyResult:
         """
         if self._table is None:
             self._table = _read(self._folder)
+            for column in self._table.values():
+                column.flags.writeable = False
         return self._table
 
     def __getitem__(self, column: str) -> NDArray[np.float64]:
@@ -76,6 +79,15 @@ class StudyResult:
         """Writes the table as a Parquet file; needs pandas and pyarrow."""
         extra("pyarrow", "parquet")
         self.to_pandas().to_parquet(path)
+
+    def _repr_html_(self) -> str:
+        # 5 %, median and 95 % among the percentiles of the answers.
+        def row(spread: dict[str, Any]) -> list[object]:
+            name = " ".join(filter(None, [spread["title"], spread["design"]]))
+            return [name, spread["unit"], *(spread["percentiles"][place] for place in (1, 3, 5)), spread["tests"]]
+
+        head = ("output", "unit", "5 %", "median", "95 %", "tests")
+        return _html.table(repr(self), head, map(row, self._answers["spreads"]))
 
     def __repr__(self) -> str:
         return f"<condyle.StudyResult of {self._answers['kept']} tests in {self._folder}>"

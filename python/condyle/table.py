@@ -6,6 +6,7 @@ from collections.abc import Iterator, Mapping
 from io import StringIO
 from typing import TYPE_CHECKING
 
+from . import _html
 from ._condyle import unit_of
 from ._extras import extra
 from .errors import BadInput
@@ -21,14 +22,18 @@ __all__ = ["Table"]
 class Table(Mapping[str, "NDArray[np.float64]"]):
     """Columns of numbers by name, as in the CSV files of a run; each name ends with its unit.
 
-    A column is a view of :attr:`array`.
+    A column is a view of :attr:`array`, which is read-only.
     """
+
+    # Rows of a long table that a notebook shows at either end.
+    _SHOWN = 5
 
     __slots__ = ("_array", "_columns")
 
     def __init__(self, columns: list[str], array: NDArray[np.float64]) -> None:
         """``array`` has one row per row of the file and one column per name."""
-        self._columns, self._array = tuple(columns), array
+        self._columns, self._array = tuple(columns), array.view()
+        self._array.flags.writeable = False
 
     @classmethod
     def from_csv(cls, text: str, name: str) -> Table:
@@ -88,6 +93,12 @@ class Table(Mapping[str, "NDArray[np.float64]"]):
 
     def __repr__(self) -> str:
         return f"<condyle.Table of {len(self._array)} rows: {', '.join(self._columns)}>"
+
+    def _repr_html_(self) -> str:
+        rows = self._array.tolist()
+        if len(rows) > 2 * self._SHOWN:
+            rows[self._SHOWN : -self._SHOWN] = [["..."] * len(self)]
+        return _html.table(f"{len(self._array)} rows", self._columns, rows)
 
     def __reduce__(self) -> tuple[object, ...]:
         return Table, (list(self._columns), self._array)

@@ -32,7 +32,7 @@ def test_import_takes_less_than_a_tenth_of_a_second() -> None:
     assert min(seconds() for _ in range(5)) < 0.1
 
 
-def test_the_wheel_is_below_8_mb_and_asks_for_numpy_alone(tmp_path: Path) -> None:
+def test_the_wheel_is_below_8_mb_and_asks_for_numpy_and_a_progress_bar_alone(tmp_path: Path) -> None:
     compiled = Path(importlib.import_module("condyle._condyle").__file__ or "")
     folder = Path(condyle.__file__).parent
     assert ".abi3." in compiled.name or compiled.suffix == ".pyd"
@@ -44,7 +44,7 @@ def test_the_wheel_is_below_8_mb_and_asks_for_numpy_alone(tmp_path: Path) -> Non
                 packed.write(file, file.name)
     assert wheel.stat().st_size < 8e6
     needed = [line for line in metadata.requires("condyle") or [] if "extra" not in line]
-    assert [line.split(">")[0] for line in needed] == ["numpy"]
+    assert [line.split(">")[0] for line in needed] == ["numpy", "tqdm"]
     assert condyle.__version__ == metadata.version("condyle")
 
 

@@ -106,3 +106,28 @@ def test_a_left_knee_is_the_mirror_image(small: condyle.Case, result: condyle.Re
     left = condyle.run({**small.to_dict(), "side": "left"})
     assert left.mass_loss_mg == result.mass_loss_mg
     assert np.array_equal(left.points_mm * [1.0, 1.0, -1.0], result.points_mm)
+
+
+def test_a_result_is_read_only(result: condyle.Result) -> None:
+    for name in ("mass_loss_mg", "mass_los_mg", "summary", "tables"):
+        with pytest.raises(AttributeError, match=f"a result is read-only: {name} cannot be assigned"):
+            setattr(result, name, 1.0)
+    arrays = [result.points_mm, result.hexes, result.articulating, result.femur_points_mm, result.wear["cycles"]]
+    for again in (result, pickle.loads(pickle.dumps(result))):
+        assert not again.fields["wear_depth_mm"].flags.writeable
+    for array in arrays:
+        with pytest.raises(ValueError, match="read-only"):
+            array[0] = 0.0
+
+
+def test_a_table_leaves_the_array_that_it_is_made_of_writable() -> None:
+    array = np.zeros((2, 1))
+    assert not condyle.Table(["a"], array)["a"].flags.writeable and array.flags.writeable
+
+
+def test_notebooks_show_tables(result: condyle.Result, small: condyle.Case) -> None:
+    shown = result._repr_html_()
+    assert f"<td>mass_loss_mg</td><td>{result.mass_loss_mg:.5g}</td><td>mg</td>" in shown
+    long = condyle.Table(["a<b"], np.arange(30.0).reshape(-1, 1))._repr_html_()
+    assert "<th>a&lt;b</th>" in long and long.count("<tr>") == 12 and "<td>25</td>" in long
+    assert "increments = 60" in small._repr_html_()

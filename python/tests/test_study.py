@@ -344,3 +344,10 @@ def test_the_table_goes_to_parquet(done: condyle.StudyResult, tmp_path: Path) ->
 def test_answers_are_those_in_the_folder(done: condyle.StudyResult) -> None:
     assert json.loads((done.folder / "answers.json").read_text()) == done.answers
     assert (done.folder / "study.html").stat().st_size > 10_000
+
+
+def test_notebooks_show_studies_and_their_answers(study: condyle.Study, done: condyle.StudyResult) -> None:
+    assert all(f"<td>{key}</td>" in study._repr_html_() for key in study.inputs)
+    shown = done._repr_html_()
+    assert "<td>mass loss</td><td>mg</td>" in shown and shown.count("<tr>") == 1 + len(done.answers["spreads"])
+    assert not done["mass_loss_mg"].flags.writeable

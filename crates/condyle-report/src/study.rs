@@ -54,6 +54,8 @@ pub struct Bar {
     pub span: [f64; 2],
     /// An interval, drawn as a thin line over the bar.
     pub interval: Option<[f64; 2]>,
+    /// True for a bar that may be chance.
+    pub is_grey: bool,
 }
 
 /// Draws bars from the top as the text of an SVG file; `unit` may be empty, and `middle` is a vertical line for comparison.
@@ -82,8 +84,9 @@ pub fn bars_svg(title: &str, unit: &str, middle: Option<f64>, bars: &[Bar]) -> S
         let (x, end) = (to_x(low.min(high)), to_x(low.max(high)));
         let (width, top, base) = ((end - x).max(1.0), y - THICK / 2.0, y + 3.8);
         let (name, name_x) = (escape(&path_in_words(&bar.name)), LEFT - 10.0);
+        let class = if bar.is_grey { "bar grey" } else { "bar" };
         body += &format!(
-            r#"<text x="{name_x}" y="{base:.1}" text-anchor="end">{name}</text><rect class="bar" x="{x:.1}" y="{top:.1}" width="{width:.1}" height="{THICK}"/>"#
+            r#"<text x="{name_x}" y="{base:.1}" text-anchor="end">{name}</text><rect class="{class}" x="{x:.1}" y="{top:.1}" width="{width:.1}" height="{THICK}"/>"#
         );
         let mut label_at = end;
         if let Some(interval) = bar.interval {
@@ -198,10 +201,12 @@ mod tests {
             name: name.to_owned(),
             span: [1.0, high],
             interval: Some([high - 0.1, high + 0.1]),
+            is_grey: high < 2.5,
         };
         let bars = [bar("friction <a>", 3.0), bar("load", 2.0)];
         let svg = bars_svg("Mass & more", "mg", Some(1.0), &bars);
-        assert_eq!(svg.matches("<rect class=\"bar\"").count(), 2);
+        assert_eq!(svg.matches("<rect class=\"bar\"").count(), 1);
+        assert_eq!(svg.matches("<rect class=\"bar grey\"").count(), 1);
         assert!(svg.contains("friction &lt;a&gt;") && svg.contains("Mass &amp; more"));
         assert!(roxmltree::Document::parse(&svg).is_ok());
     }

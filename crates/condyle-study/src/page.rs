@@ -6,7 +6,7 @@ use condyle_report::{
     Plot, plots_svg,
     study::{Bar, Distribution, bars_svg, distributions_svg, write_study_page},
 };
-use condyle_results::{catalogue, split_unit};
+use condyle_results::split_unit;
 
 use serde::Serialize;
 
@@ -15,6 +15,7 @@ use crate::{
         Answers,
         data::Spread,
         effects::Effect,
+        label,
         ranking::{Best, Front, Ranking},
         shown,
     },
@@ -90,6 +91,7 @@ fn ranking(ranking: &Ranking) -> Picture {
         name: format!("{} (best in {:.0} %)", design.name, 100.0 * design.best),
         span: [0.0, design.mean],
         interval: Some([-1.96, 1.96].map(|by| design.mean + by * design.standard_deviation)),
+        is_grey: false,
     });
     let title = format!("Designs by {}", ranking.title);
     let caption = "Mean over the disturbances, with 1.96 standard deviations to either side. Every design met the same \
@@ -103,7 +105,7 @@ fn progress(best: &Best) -> Option<Picture> {
     if best.progress.is_empty() {
         return None;
     }
-    let label = catalogue::output(best.minimised).map_or(best.minimised, |output| output.label);
+    let label = label(best.minimised);
     let plot = Plot {
         title: format!("Best {label} so far within all limits"),
         unit: superscript(split_unit(best.minimised).1.unwrap_or_default()),
@@ -119,12 +121,13 @@ fn indices(answers: &Answers) -> Option<Picture> {
     let all = answers.largest_indices();
     let title = format!(
         "Total Sobol index: part of the variance of {}",
-        all.first()?.output
+        label(all.first()?.output)
     );
     let most = all.into_iter().take(MAX_INPUTS).map(|index| Bar {
         name: index.input.clone(),
         span: [0.0, index.total],
         interval: Some(index.total_interval),
+        is_grey: false,
     });
     let caption = "The part of the variance that would remain if all other inputs were known, with 95 % intervals.";
     let svg = bars_svg(&title, "", None, &most.collect::<Vec<_>>());
@@ -135,12 +138,13 @@ fn elementary(answers: &Answers) -> Option<Picture> {
     let all = answers.largest_elementary();
     let title = format!(
         "Elementary effects of Morris on {}: mu*",
-        all.first()?.output
+        label(all.first()?.output)
     );
     let most = all.into_iter().take(MAX_INPUTS).map(|one| Bar {
         name: one.input.clone(),
         span: [0.0, one.mu_star],
         interval: Some([-1.0, 1.0].map(|by| one.mu_star + by * one.mu_star_half_interval)),
+        is_grey: false,
     });
     let caption = "The change of the output as an input goes from its low end to its high end, with 95 % intervals.";
     let svg = bars_svg(&title, "", None, &most.collect::<Vec<_>>());
@@ -162,6 +166,9 @@ fn tornado(answers: &Answers) -> Option<Picture> {
             name: effect.name.clone(),
             span: [low, low + effect.span],
             interval: None,
+            is_grey: effect
+                .span_by_chance
+                .is_some_and(|most| effect.span <= most),
         }
     });
     let all: Vec<Bar> = all.collect();
@@ -175,7 +182,9 @@ fn tornado(answers: &Answers) -> Option<Picture> {
     let by_chance = effects.iter().filter_map(|effect| effect.span_by_chance);
     if let Some(most) = by_chance.reduce(f64::max) {
         let (most, unit) = (shown(most), superscript(spread.unit));
-        caption += &format!(" An inactive input would span up to {most} {unit} by chance.");
+        caption += &format!(
+            " An inactive input would span up to {most} {unit} by chance; bars within their chance are grey."
+        );
     }
     let own = answers.spreads.iter();
     let own = own.filter(|one| one.output == spread.output);

@@ -7,6 +7,7 @@ pub(crate) mod indices;
 pub(crate) mod ranking;
 
 use condyle_lab::aligned;
+use condyle_results::{catalogue, split_unit};
 use serde::Serialize;
 
 use crate::{
@@ -163,7 +164,7 @@ impl Answers {
         let [one, other, ..] = all.as_slice() else {
             return None;
         };
-        let (both, output) = (percent(one.first + other.first), one.output);
+        let (both, output) = (percent(one.first + other.first), label(one.output));
         let (one, other) = (&one.input, &other.input);
         Some(format!(
             "{one} and {other} explain {both} of the variance of {output}."
@@ -298,7 +299,10 @@ impl Answers {
     fn table_of_indices(&self) -> Vec<Vec<String>> {
         let range = |[low, high]: [f64; 2]| format!("{low:.3} to {high:.3}");
         let all = self.largest_indices();
-        let input = format!("input, by {}", all.first().map_or("", |one| one.output));
+        let input = format!(
+            "input, by {}",
+            all.first().map_or("", |one| label(one.output))
+        );
         table_of_most(&[&input, "first", "95 %", "total", "95 %"], &all, |index| {
             vec![
                 index.input.clone(),
@@ -312,7 +316,10 @@ impl Answers {
 
     fn table_of_elementary(&self) -> Vec<Vec<String>> {
         let all = self.largest_elementary();
-        let input = format!("input, by {}", all.first().map_or("", |one| one.output));
+        let input = format!(
+            "input, by {}",
+            all.first().map_or("", |one| label(one.output))
+        );
         table_of_most(&[&input, "mu*", "mu", "sigma"], &all, |effect| {
             let half = shown(effect.mu_star_half_interval);
             vec![
@@ -333,7 +340,9 @@ impl Answers {
         }
         let output = self.effects.first().map_or("", |one| one.output);
         let all = self.effects_on(output);
-        let (moves, dash) = (format!("moves {output} by"), || "-".to_owned());
+        let unit = split_unit(output).1.unwrap_or_default();
+        let moves = format!("moves {} by, {unit}", label(output));
+        let dash = || "-".to_owned();
         let head = ["input", &moves, "by chance up to", "rank correlation"];
         table_of_most(&head, &all, |effect| {
             let correlation = effect.rank_correlation.map(|one| format!("{one:+.2}"));
@@ -368,7 +377,7 @@ impl Answers {
             return Vec::new();
         };
         let head = match best.row {
-            Some(row) => format!("least {}: row {row}", best.minimised),
+            Some(row) => format!("least {}: row {row}", label(best.minimised)),
             None => "no test keeps every limit".to_owned(),
         };
         let inputs = best.inputs.iter().map(|one| (one, String::new()));
@@ -380,7 +389,7 @@ impl Answers {
         let head = [&head, "value", "first test", "margin to its limit"];
         table(&head, &values, |(one, margins)| {
             vec![
-                one.name.clone(),
+                labelled(&one.name),
                 shown(one.value),
                 shown(one.first),
                 margins.clone(),
@@ -402,7 +411,7 @@ fn sentence_of_front(front: &Front) -> Option<String> {
 fn sentence_of_search(best: &Best) -> Option<String> {
     let minimised = best.outputs.iter().find(|one| one.name == best.minimised)?;
     let [value, first] = [minimised.value, minimised.first].map(shown);
-    let (name, unit, row) = (best.minimised, best.unit, best.row?);
+    let (name, unit, row) = (label(best.minimised), best.unit, best.row?);
     Some(format!(
         "The least {name} within all limits is {value} {unit}, in row {row}; the first test has {first} {unit}."
     ))
@@ -439,8 +448,23 @@ fn end_of_search(best: &Best) -> Option<String> {
     Some(format!(
         "{end}: another test is expected to lower {} by {improvement} {unit} at most. Its emulator (Q2 {:.4}) predicts the best \
          test from the others within {error} {unit}.\n",
-        best.minimised, standing.q2
+        label(best.minimised),
+        standing.q2
     ))
+}
+
+/// Returns the label of an output in the catalogue; of an input, its key.
+pub(crate) fn label(key: &str) -> &str {
+    catalogue::output(key).map_or(key, |output| output.label)
+}
+
+/// Returns the label with the unit of an output; of an input, its key.
+fn labelled(key: &str) -> String {
+    match catalogue::output(key) {
+        Some(output) if output.unit().is_empty() => output.label.to_owned(),
+        Some(output) => format!("{}, {}", output.label, output.unit()),
+        None => key.to_owned(),
+    }
 }
 
 fn largest_first<'a, T>(own: impl Iterator<Item = &'a T>, size: impl Fn(&T) -> f64) -> Vec<&'a T> {
@@ -501,5 +525,63 @@ fn percents([low, high]: [f64; 2]) -> String {
     match low == high {
         true => percent(low),
         false => format!("{} to {}", percent(low), percent(high)),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn failures_that_differ_in_their_numbers_are_of_one_kind() {
+        let reasons = [
+            (
+                "no equilibrium at 12.5 % of the cycle, residual 3.1e-2 N",
+                2,
+            ),
+            ("the insert is 7.9 mm thick (at least 8).", 4),
+            ("no equilibrium at 98 % of the cycle, residual -1e3 N", 3),
+            ("no equilibrium of part2 at 98 % of the cycle", 1),
+        ];
+        let kinds = by_kind(
+            reasons
+                .map(|(reason, tests)| (reason.to_owned(), tests))
+                .to_vec(),
+        );
+        let kinds: Vec<(&str, u64)> = kinds
+            .iter()
+            .map(|kind| (kind.reason.as_str(), kind.tests))
+            .collect();
+        assert_eq!(
+            kinds,
+            [
+                ("no equilibrium at # % of the cycle, residual # N", 5),
+                ("the insert is # mm thick (at least #).", 4),
+                ("no equilibrium of part2 at # % of the cycle", 1),
+            ]
+        );
+    }
+
+    #[test]
+    fn a_first_index_above_the_total_one_is_noise() {
+        let index = |first, total| Indices {
+            output: "mass_loss_mg",
+            input: "contact.friction".to_owned(),
+            first,
+            first_interval: [0.0, 1.0],
+            total,
+            total_interval: [0.0, 1.0],
+            bases: 10,
+        };
+        assert_eq!(index(0.31, 0.3).first_in_words(), "0.310 (noise)");
+        assert_eq!(index(0.3, 0.3).first_in_words(), "0.300");
+    }
+
+    #[test]
+    fn outputs_have_the_labels_of_the_catalogue_and_inputs_their_keys() {
+        assert_eq!(label("mass_loss_mg"), "mass loss");
+        assert_eq!(labelled("mass_loss_mg"), "mass loss, mg");
+        assert_eq!(labelled("medial_load_share"), "medial share of the load");
+        assert_eq!(labelled("contact.friction"), "contact.friction");
     }
 }
