@@ -137,7 +137,10 @@ impl RunKeeper for Recorder {
     }
 
     fn updated(&mut self, march: &March) {
-        self.push_insert(march);
+        // The fields after the last update are those of the final cycle, which comes next.
+        if !march.is_worn() || march.is_done() {
+            self.push_insert(march);
+        }
         if !march.is_done() {
             return;
         }

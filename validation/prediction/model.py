@@ -10,7 +10,6 @@ import math
 from pathlib import Path
 
 import numpy as np
-from hips import Hip
 from scipy.interpolate import CubicSpline, RectBivariateSpline
 
 CIRCLE_FACTOR = 1.63e-6
@@ -19,6 +18,7 @@ DENSITY_MG_PER_MM3 = 0.93
 EXPONENTS = np.array([0.0, 0.2, 0.4, 0.6, 0.8, 1.0])
 SATURATIONS = np.array([0.002, 0.005, 0.0125, 0.03, 0.08, 0.2, 0.5])
 POWERS = np.array([0.0, 0.1, 0.2, 0.4, 0.8, 1.6])
+PINS = ["pins", "pins-newcastle"]
 KNEES = ["generic", "dm", "cams"]
 # Orders of the rotations of the hip simulator, from the cup to the head: the standard leaves them open.
 ISO_HIPS = {
@@ -68,22 +68,10 @@ class Surface:
 class Form:
     """A form of the effect of cross-shear: names and prior of its constants, and the predictions."""
 
-    def __init__(self, runs, hips_wear):
-        """`runs[test][m][k]`: mg a million cycles at the points of the grid, with the circle's factor.
-
-        Hips that wear are those of runs, whose contact grows over 5 million cycles; the others keep the unworn shape.
-        """
-        rates = runs
-        if not hips_wear:
-            rates = runs | {name: self.rates_of_hip(Hip(14, "iso", name[-3:])) for name in ISO_HIPS}
-            rates["orbital-28"] = self.rates_of_hip(Hip(14, "orbital"))
+    def __init__(self, rates):
+        """`rates[test][m][k]`: mg a million cycles at the points of the grid, with the circle's factor."""
         self.rates = {test: self.surfaces(each) for test, each in rates.items()}
         self.ball = CubicSpline(EXPONENTS, [math.log(ball_over_circle(exponent)) for exponent in EXPONENTS])
-
-    def rates_of_hip(self, hip):
-        per_factor = DENSITY_MG_PER_MM3 * CIRCLE_FACTOR * 1e6
-        effects = self.effects()
-        return np.array([[per_factor * hip.volume_mm3(effect, m) for effect in effects] for m in EXPONENTS])
 
     def log_predictions(self, log_factor, exponent, constants):
         """By test; every argument is an array of one value per sample."""
@@ -94,8 +82,9 @@ class Form:
 
         stable, unstable = ([f"{knee} {condition}" for knee in KNEES[:2]] for condition in ("stable", "unstable"))
         at_circle = {
-            "pins": np.zeros_like(exponent),
+            **dict.fromkeys(PINS, np.zeros_like(exponent)),
             "ball": self.ball(exponent),
+            "orbital-22": rate["orbital-22"],
             "orbital-28": rate["orbital-28"],
             "iso-hip-bovine": mean(ISO_HIPS),
             "iso-hip-calf": mean(ISO_HIPS),
@@ -105,8 +94,8 @@ class Form:
             "in-house": rate["cams stable"],
         }
         logs = {test: log_factor + value for test, value in at_circle.items()}
-        logs["pins"] += math.log(CIRCLE_FACTOR)
-        logs["ball"] += math.log(CIRCLE_FACTOR)
+        for test in [*PINS, "ball"]:
+            logs[test] = logs[test] + math.log(CIRCLE_FACTOR)
         low, high = (self.effect(cross_shear, constants) for cross_shear in DISC_CROSS_SHEAR)
         logs["disc"] = np.log(low) - np.log(high)
         return logs
@@ -124,15 +113,6 @@ class Saturating(Form):
         prior = -0.5 * ((log_saturation - math.log(0.03)) / 1.0) ** 2 - line / 0.05
         inside = (line >= 0) & (line < 0.3) & (log_saturation > math.log(0.002)) & (log_saturation < math.log(0.5))
         return np.where(inside, prior, -np.inf)
-
-    @staticmethod
-    def effects():
-        """On the grid of rates, without the part of the line; the last is the line's alone."""
-
-        def saturated(c):
-            return lambda cs: cs / (cs + c) * (0.5 + c) / 0.5
-
-        return [saturated(c) for c in SATURATIONS] + [np.ones_like]
 
     @staticmethod
     def surfaces(rates):
@@ -164,13 +144,6 @@ class Power(Form):
         return np.where((power >= 0) & (power < 1.6), -0.5 * ((power - 0.3) / 0.3) ** 2, -np.inf)
 
     @staticmethod
-    def effects():
-        def raised(power):
-            return lambda cs: (cs / 0.5) ** power
-
-        return [raised(power) for power in POWERS]
-
-    @staticmethod
     def surfaces(rates):
         return Surface(POWERS, rates)
 
@@ -195,9 +168,9 @@ class Fit:
         log_factor, exponent, log_tau, *constants = np.atleast_2d(samples).T
         inside = (exponent > 0) & (exponent < 1)
         clipped = np.clip(exponent, 0, 1)
-        # Literature: -0.84 and -0.65 (Barbour 1997, Vassiliou and Unsworth 2004, quoted from memory).
+        # The factor's prior is wide: that of the pins is among the tests. Literature on the exponent: -0.84 and -0.65 (Barbour 1997, Vassiliou and Unsworth 2004, quoted from memory).
         prior = (
-            -0.5 * ((exponent - 0.65) / 0.2) ** 2 - 0.5 * ((log_tau - math.log(0.4)) / 0.5) ** 2 - 0.5 * (log_factor / 0.5) ** 2
+            -0.5 * ((exponent - 0.65) / 0.2) ** 2 - 0.5 * ((log_tau - math.log(0.4)) / 0.5) ** 2 - 0.5 * (log_factor / 1.0) ** 2
         )
         prior = np.where(inside, prior + self.form.log_prior(*constants), -np.inf)
         with np.errstate(invalid="ignore", divide="ignore", over="ignore"):

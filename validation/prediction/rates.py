@@ -19,7 +19,8 @@ from knees import Runs
 
 TRANSLATIONS = ["lateral", "anterior", "penetration"]
 HIPS = {name: ("hip-iso", [f"machine.order={json.dumps([*TRANSLATIONS, *order])}"]) for name, order in ISO_HIPS.items()}
-HIPS["orbital-28"] = ("hip-orbital", [])
+HIPS["orbital-28"] = ("../validation/prediction/hip-orbital", [])
+HIPS["orbital-22"] = ("../validation/prediction/hip-orbital", ["femur.radius_mm=11", "insert.radius_mm=11.1"])
 # A saturation far above any cross-shear leaves a plain power.
 UNSATURATED = 1000.0
 

@@ -43,8 +43,8 @@ pub(super) fn rows() -> [Row; 3] {
         Row::relative(
             "peak pressure, twice as large",
             "MPa",
-            one.peak_pressure_mpa,
-            two.peak_pressure_mpa,
+            one.peaks.peak_pressure_mpa,
+            two.peaks.peak_pressure_mpa,
             TOLERANCE,
         ),
     ]

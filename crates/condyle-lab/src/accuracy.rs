@@ -308,7 +308,7 @@ impl<'a> Again<'a> {
             law_family: false,
             ..self.march.test().clone()
         })?;
-        while !march.is_done() {
+        while !march.is_worn() {
             march = self.solved(march)?;
         }
         let worn = |update: &UpdateRecord| [update.volume_loss_mm3, update.max_depth_mm];
@@ -391,7 +391,10 @@ fn errors<const N: usize>(factor: f64, now: [f64; N], reference: [f64; N]) -> [f
 }
 
 fn peaks_of(update: &UpdateRecord) -> Peaks {
-    [update.peak_pressure_mpa, update.peak_contact_area_mm2]
+    [
+        update.peaks.peak_pressure_mpa,
+        update.peaks.contact_area_mm2,
+    ]
 }
 
 fn first_peaks(state: &MarchState) -> Peaks {

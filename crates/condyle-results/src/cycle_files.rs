@@ -19,7 +19,7 @@ use super::side::{Side, face_on_side, point_on_side};
 pub enum KeptCycle {
     /// On the unworn insert.
     First,
-    /// On the insert as it was before the last update.
+    /// On the insert after the last update.
     Last,
 }
 
@@ -35,9 +35,10 @@ impl KeptCycle {
         }
     }
 
-    /// Returns the kept cycles that a march has just solved: after one update the first, after all of them the last.
+    /// Returns the kept cycles that a march has just solved: after one update the first, at the end
+    /// the last.
     pub fn solved_by(march: &March) -> impl Iterator<Item = Self> {
-        let is_first = march.state().updates.len() == 1;
+        let is_first = march.state().updates.len() == 1 && !march.is_done();
         let first = is_first.then_some(Self::First);
         first
             .into_iter()

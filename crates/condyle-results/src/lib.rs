@@ -53,7 +53,7 @@ pub use parts::{
     ActivitySummary, CreepSummary, LawWear, MotionColumn, NeutralPose, Penetration, ScanLine,
     joint_range, kinematics_file,
 };
-pub use prediction::{CALIBRATED_LAW, Interval, MAX_FACTOR, Prediction, Source};
+pub use prediction::{CALIBRATED_LAW, Interval, MAX_FACTOR_OF_RUN, Prediction, Source};
 pub use settings::{SettingDifference, setting_differences};
 pub use side::{Directions, Side};
 pub use summary::{PlausibilityWarning, Summary};

@@ -334,6 +334,8 @@ pub(super) fn rotation_rows(pose: &Pose) -> [[f64; 3]; 3] {
 
 #[cfg(test)]
 mod tests {
+    use condyle::evolve::CyclePeaks;
+
     use super::*;
 
     fn update(cycles: f64, penetration_mm: f64, wear_mm: f64, unloaded_mm: f64) -> UpdateRecord {
@@ -351,8 +353,10 @@ mod tests {
             volume_loss_mesh_mm3: 0.0,
             mass_loss_mg: 0.0,
             max_depth_mm: wear_mm,
-            peak_pressure_mpa: 0.0,
-            peak_contact_area_mm2: 0.0,
+            peaks: CyclePeaks {
+                peak_pressure_mpa: 0.0,
+                contact_area_mm2: 0.0,
+            },
             cycles_solved: 1.0,
             repeats: true,
             worst_quality: 1.0,

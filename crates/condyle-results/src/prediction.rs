@@ -26,8 +26,10 @@ const MEASURED_HIPS: &str = "hip simulators have weighed 22 and 27 mg/Mc";
 const DEVIATIONS_OF_90_PERCENT: f64 = 1.645;
 /// Pressure that the factors of the draws refer to, MPa.
 const REFERENCE_PRESSURE_MPA: f64 = 1.1;
-/// Factor either way beyond which an interval is too wide to decide anything.
-pub const MAX_FACTOR: f64 = 3.0;
+/// Factor either way beyond which the parts of an interval that depend on the run make it too wide to decide anything.
+pub const MAX_FACTOR_OF_RUN: f64 = 2.0;
+/// The [`Source`] that is the same for every run.
+const LABORATORY: &str = "laboratory";
 
 /// Comparisons take every fifth draw: a probability to 1 %, in a fifth of the lines of `summary.json`.
 const COMPARED: usize = 5;
@@ -130,7 +132,7 @@ impl Prediction {
         };
         let mut sources = vec![
             Source::new("law", half_width(&masses)),
-            Source::new("laboratory", half_width(&laboratories)),
+            Source::new(LABORATORY, half_width(&laboratories)),
             Source::new("inputs", DEVIATIONS_OF_90_PERCENT * INPUTS_LOG_SD),
         ];
         if error.is_some() {
@@ -189,9 +191,11 @@ impl Prediction {
             .then(|| below as f64 / count as f64)
     }
 
-    /// Returns the factor of the interval of the mass, the geometric mean of both ways.
-    pub fn factor(&self) -> f64 {
-        (self.mass_loss_mg.high / self.mass_loss_mg.low).sqrt()
+    /// Returns the factor within which the mass is known without the laboratory's part, which is the same for every run.
+    pub fn factor_of_run(&self) -> f64 {
+        let own = self.sources.iter().filter(|own| own.source != LABORATORY);
+        let square: f64 = own.map(|own| own.factor.ln().powi(2)).sum();
+        square.sqrt().exp()
     }
 }
 

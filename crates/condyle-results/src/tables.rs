@@ -54,9 +54,9 @@ described! {
     /// Deepest wear.
     max_depth_mm = Value::OfUpdate(|row| row.max_depth_mm);
     /// Highest pressure in the cycle that the update solved.
-    peak_pressure_mpa = Value::OfUpdate(|row| row.peak_pressure_mpa);
+    peak_pressure_mpa = Value::OfUpdate(|row| row.peaks.peak_pressure_mpa);
     /// Largest contact area in that cycle.
-    peak_contact_area_mm2 = Value::OfUpdate(|row| row.peak_contact_area_mm2);
+    peak_contact_area_mm2 = Value::OfUpdate(|row| row.peaks.contact_area_mm2);
     /// Volume of creep.
     creep_volume_mm3 = Value::OfCreep(|creep| creep.volume_mm3);
     /// Deepest creep.

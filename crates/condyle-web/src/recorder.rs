@@ -87,8 +87,11 @@ impl RunKeeper for Recorder {
     }
 
     fn updated(&mut self, march: &March) {
-        self.add_update(march);
         self.add_pressures(march);
+        // The fields after the last update are those of the final cycle, which comes next.
+        if !march.is_worn() || march.is_done() {
+            self.add_update(march);
+        }
         if march.is_done() {
             self.add_tables(march);
         }

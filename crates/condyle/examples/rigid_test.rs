@@ -5,7 +5,7 @@
 //!
 //! Run: `cargo run --release -p condyle --example rigid_test`
 
-use std::{error::Error, ops::ControlFlow, sync::Arc};
+use std::{error::Error, sync::Arc};
 
 use condyle::{contact::confined_modulus, machine::knee, prelude::*};
 
@@ -47,17 +47,16 @@ fn main() -> Result<(), Box<dyn Error>> {
         schedule: Schedule::fixed(2e6, 4),
     };
 
-    // 4. Lower the counterface until it rests, then update until all cycles are done. The closure is called after
-    //    every increment; returning `ControlFlow::Break` stops the march.
+    // 4. Lower the counterface until it rests, then march until all cycles are done. `March::update` takes one step,
+    //    and its closure can stop it after any increment.
     let mut march = March::start(test)?;
+    march.run()?;
     println!("cycles      mass (mg)  depth (mm)  peak pressure (MPa)");
-    while !march.is_done() {
-        if let ControlFlow::Continue(update) = march.update(&mut |_| ControlFlow::Continue(()))? {
-            println!(
-                "{:>9.0}  {:>9.3}  {:>10.4}  {:>19.2}",
-                update.cycles, update.mass_loss_mg, update.max_depth_mm, update.peak_pressure_mpa
-            );
-        }
+    for update in &march.state().updates {
+        println!(
+            "{:>9.0}  {:>9.3}  {:>10.4}  {:>19.2}",
+            update.cycles, update.mass_loss_mg, update.max_depth_mm, update.peaks.peak_pressure_mpa
+        );
     }
 
     // 5. Two estimates of the worn volume agree: depth times area, and the change of the mesh.

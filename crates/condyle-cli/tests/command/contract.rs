@@ -90,32 +90,39 @@ fn the_summary_states_the_discretisation_error_by_its_parts() {
 fn peaks_say_of_which_cycle_they_are() {
     let bench = done();
     let summary = bench.summary("out");
-    let table = text(&bench, "wear.csv");
-    let rows: Vec<Vec<f64>> = table
-        .lines()
-        .skip(1)
-        .map(|line| line.split(',').map(|cell| cell.parse().unwrap()).collect())
-        .collect();
-    let cycles_before = |row: usize| row.checked_sub(1).map_or(0.0, |row| rows[row][0]);
-    let row_of = |cycle| {
-        (0..rows.len())
-            .find(|&row| cycles_before(row) == cycle)
-            .unwrap()
+    let table = bench.table("out", "wear.csv");
+    // A row has the peaks of the cycle before its wear; the final cycle, on the worn surface, has none.
+    let before = [&[0.0], &table["cycles"][..]].concat();
+    let cycles_solved = |column: &str, last| {
+        let peaks = [&table[column][..], &[summary[last]]].concat();
+        before.iter().copied().zip(peaks).collect::<Vec<_>>()
     };
-    assert_eq!(
-        rows[row_of(summary[&catalogue::PEAK_PRESSURE_CYCLE])][4],
-        summary[&catalogue::PEAK_PRESSURE_MPA]
+    let pressures = cycles_solved(
+        "peak_pressure_mpa",
+        &catalogue::LAST_CYCLE_PEAK_PRESSURE_MPA,
     );
-    assert_eq!(
-        rows[row_of(summary[&catalogue::PEAK_CONTACT_AREA_CYCLE])][5],
-        summary[&catalogue::PEAK_CONTACT_AREA_MM2]
+    let areas = cycles_solved(
+        "peak_contact_area_mm2",
+        &catalogue::LAST_CYCLE_CONTACT_AREA_MM2,
     );
-    let (first, last) = (&rows[0], &rows[row_of(summary[&catalogue::LAST_CYCLE])]);
-    assert_eq!(last, rows.last().unwrap());
-    assert_eq!(first[4], summary[&catalogue::FIRST_CYCLE_PEAK_PRESSURE_MPA]);
-    assert_eq!(last[4], summary[&catalogue::LAST_CYCLE_PEAK_PRESSURE_MPA]);
-    assert_eq!(first[5], summary[&catalogue::FIRST_CYCLE_CONTACT_AREA_MM2]);
-    assert_eq!(last[5], summary[&catalogue::LAST_CYCLE_CONTACT_AREA_MM2]);
+    for (cycles, first, peak, cycle) in [
+        (
+            &pressures,
+            &catalogue::FIRST_CYCLE_PEAK_PRESSURE_MPA,
+            &catalogue::PEAK_PRESSURE_MPA,
+            &catalogue::PEAK_PRESSURE_CYCLE,
+        ),
+        (
+            &areas,
+            &catalogue::FIRST_CYCLE_CONTACT_AREA_MM2,
+            &catalogue::PEAK_CONTACT_AREA_MM2,
+            &catalogue::PEAK_CONTACT_AREA_CYCLE,
+        ),
+    ] {
+        assert_eq!(cycles[0].1, summary[first]);
+        assert!(cycles.contains(&(summary[cycle], summary[peak])));
+        assert!(cycles.iter().all(|(_, value)| *value <= summary[peak]));
+    }
     let said = bench.say(&["run", "case.toml", "--out", "again"]).out;
     let when = |cycle: f64| match cycle {
         0.0 => ", in the first cycle, ".to_owned(),
@@ -217,15 +224,6 @@ fn wear_has_a_row_an_update_and_ends_where_the_summary_does() {
         Some(&summary[&catalogue::MASS_LOSS_MG])
     );
     assert_eq!(table["cycles"].last(), Some(&5e6));
-    let highest = |name: &str| table[name].iter().copied().fold(0.0, f64::max);
-    assert_eq!(
-        highest("peak_pressure_mpa"),
-        summary[&catalogue::PEAK_PRESSURE_MPA]
-    );
-    assert_eq!(
-        highest("peak_contact_area_mm2"),
-        summary[&catalogue::PEAK_CONTACT_AREA_MM2]
-    );
 }
 
 #[test]
@@ -243,11 +241,7 @@ fn kinematics_have_a_row_an_increment_of_the_first_and_the_last_cycle() {
     assert_eq!(table["percent"][..50], table["percent"][50..]);
     assert_eq!((table["percent"][0], table["percent"][49]), (2.0, 100.0));
     assert!(table["cycles"][..50].iter().all(|cycles| *cycles == 0.0));
-    assert!(
-        table["cycles"][50..]
-            .iter()
-            .all(|cycles| (cycles - 2.0 / 3.0 * 5e6).abs() < 1e-3)
-    );
+    assert!(table["cycles"][50..].iter().all(|cycles| *cycles == 5e6));
     let sides = table["medial_force_n"]
         .iter()
         .zip(&table["lateral_force_n"]);

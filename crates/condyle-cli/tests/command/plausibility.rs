@@ -151,7 +151,8 @@ const HYPEREXTENDED: &str = "[machine.flexion]\nknots_deg = [[0, -13], [70, 58]]
 fn explicit_steps_that_need_much_more_inertia_are_told() {
     for (step_s, is_much) in [(5e-5, true), (1e-5, false)] {
         let bench = Bench::with_case(&format!(
-            "[contact]\nslip_tolerance_mm_per_s = 1.0\n{ONE_UPDATE}integrator = \"explicit\"\nexplicit_step_s = {step_s:?}\n\
+            "[contact]\nslip_tolerance_mm_per_s = 1.0\n[insert]\nedge_mm = 2.5\nlayers = 2\n[march]\ncycles = 1000\nupdates = 1\n\
+             [time]\nincrements = 50\nintegrator = \"explicit\"\nexplicit_step_s = {step_s:?}\n\
              [accuracy]\nestimate = false\n"
         ));
         bench.run_into("out");

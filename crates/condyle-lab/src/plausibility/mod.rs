@@ -10,7 +10,7 @@ pub(crate) mod loads;
 
 use condyle::evolve::{March, UpdateRecord};
 use condyle_results::{
-    MAX_FACTOR, PlausibilityWarning, Summary,
+    MAX_FACTOR_OF_RUN, PlausibilityWarning, Summary,
     catalogue::{
         ADDED_INERTIA, CYCLES_NOT_REPEATING, MASS_LOSS_MG, MAX_DEPTH_MM, Scalar,
         VOLUME_LOSS_MESH_MM3, VOLUME_LOSS_MM3, WORST_QUALITY,
@@ -162,15 +162,15 @@ pub(crate) fn error_incomplete(finished: &Finished<'_>) -> Option<PlausibilityWa
 /// Warns of a predicted interval that is too wide for decisions.
 pub(crate) fn interval_too_wide(finished: &Finished<'_>) -> Option<PlausibilityWarning> {
     let prediction = finished.summary.prediction.as_ref()?;
-    let factor = prediction.factor();
-    (prediction.is_of_run && factor > MAX_FACTOR).then(|| PlausibilityWarning {
+    let factor = prediction.factor_of_run();
+    (prediction.is_of_run && factor > MAX_FACTOR_OF_RUN).then(|| PlausibilityWarning {
         check: "interval_too_wide".to_owned(),
         value: factor,
-        limit: MAX_FACTOR,
+        limit: MAX_FACTOR_OF_RUN,
         unit: String::new(),
         message: format!(
-            "laboratories would find the mass within a factor of {factor:.1} either way only; up to {MAX_FACTOR:.0} would be \
-             useful"
+            "law, inputs and discretisation leave the mass uncertain by a factor of {factor:.1} either way; up to \
+             {MAX_FACTOR_OF_RUN:.0} would be useful"
         ),
         advice: "The largest of the sources of the interval says why: the law is far from the tests that it was fitted to, \
                  or the run is discretised too coarsely."

@@ -144,10 +144,14 @@ impl<'a> Run<'a> {
                 keep(self)?;
                 // Checked after storing, so that the results so far show the hole.
                 check_so_far(self.case, &self.march, &self.warnings)?;
-                flow = on_event(RunEvent::Updated(update));
+                flow = match self.march.is_done() {
+                    // The final cycle is no update.
+                    true => ControlFlow::Continue(()),
+                    false => on_event(RunEvent::Updated(update)),
+                };
             }
         }
-        // A stop after the last update has no effect.
+        // A stop after the final cycle has no effect.
         if self.march.is_done() {
             flow = ControlFlow::Continue(());
         }
@@ -287,7 +291,7 @@ pub trait RunKeeper {
     /// own mesh, or about [`FEMUR_TRIANGLES`].
     fn settled(&mut self, march: &March, femur: &TriangleMesh);
 
-    /// Called after every update.
+    /// Called after every update, and after the final cycle.
     fn updated(&mut self, march: &March);
 }
 

@@ -1,27 +1,26 @@
 //! Contact at the surface.
 
-use condyle::evolve::UpdateRecord;
 
 use super::finished::FinishedRun;
 use super::{Scalar, scalar::scalars};
 
 scalars! { "Contact";
     /// Highest contact pressure. Anywhere on the surface, between nodes too, at any instant of any cycle solved.
-    PEAK_PRESSURE_MPA = Scalar::new("peak_pressure_mpa", "peak pressure", 1, |run| peak_pressure(run).1.peak_pressure_mpa)
+    PEAK_PRESSURE_MPA = Scalar::new("peak_pressure_mpa", "peak pressure", 1, |run| peak_pressure(run).1)
         .headline()
         .estimated()
         .in_cycle("peak_pressure_cycle");
 
     /// Cycles done before the cycle with the peak pressure. 0 is the first cycle.
-    PEAK_PRESSURE_CYCLE = Scalar::new("peak_pressure_cycle", "cycles before the peak pressure", 0, |run| run.state().cycles_before(peak_pressure(run).0))
+    PEAK_PRESSURE_CYCLE = Scalar::new("peak_pressure_cycle", "cycles before the peak pressure", 0, |run| peak_pressure(run).0)
         .listed();
 
     /// Peak pressure of the first cycle. Of the unworn insert.
-    FIRST_CYCLE_PEAK_PRESSURE_MPA = Scalar::new("first_cycle_peak_pressure_mpa", "peak pressure in the first cycle", 1, |run| run.first.peak_pressure_mpa)
+    FIRST_CYCLE_PEAK_PRESSURE_MPA = Scalar::new("first_cycle_peak_pressure_mpa", "peak pressure in the first cycle", 1, |run| run.first.peaks.peak_pressure_mpa)
         .continued();
 
-    /// Peak pressure of the last cycle solved.
-    LAST_CYCLE_PEAK_PRESSURE_MPA = Scalar::new("last_cycle_peak_pressure_mpa", "peak pressure in the last cycle", 1, |run| run.last.peak_pressure_mpa)
+    /// Peak pressure of the last cycle. Of the worn insert.
+    LAST_CYCLE_PEAK_PRESSURE_MPA = Scalar::new("last_cycle_peak_pressure_mpa", "peak pressure in the last cycle", 1, |run| run.final_cycle.peak_pressure_mpa)
         .continued();
 
     /// Error of the peak pressure by the pressure law. Largest difference in stance from the deformable insert that the
@@ -30,35 +29,30 @@ scalars! { "Contact";
         .exact();
 
     /// Largest contact area. At any instant of any cycle solved, all regions together.
-    PEAK_CONTACT_AREA_MM2 = Scalar::new("peak_contact_area_mm2", "largest contact area", 0, |run| largest_area(run).1.peak_contact_area_mm2)
+    PEAK_CONTACT_AREA_MM2 = Scalar::new("peak_contact_area_mm2", "largest contact area", 0, |run| largest_area(run).1)
         .headline()
         .estimated()
         .in_cycle("peak_contact_area_cycle");
 
     /// Cycles done before the cycle with the largest contact area. 0 is the first cycle.
-    PEAK_CONTACT_AREA_CYCLE = Scalar::new("peak_contact_area_cycle", "cycles before the largest area", 0, |run| run.state().cycles_before(largest_area(run).0))
+    PEAK_CONTACT_AREA_CYCLE = Scalar::new("peak_contact_area_cycle", "cycles before the largest area", 0, |run| largest_area(run).0)
         .listed();
 
     /// Largest contact area of the first cycle. Of the unworn insert.
-    FIRST_CYCLE_CONTACT_AREA_MM2 = Scalar::new("first_cycle_contact_area_mm2", "largest contact area in the first cycle", 0, |run| run.first.peak_contact_area_mm2)
+    FIRST_CYCLE_CONTACT_AREA_MM2 = Scalar::new("first_cycle_contact_area_mm2", "largest contact area in the first cycle", 0, |run| run.first.peaks.contact_area_mm2)
         .printed()
         .continued();
 
-    /// Largest contact area of the last cycle solved.
-    LAST_CYCLE_CONTACT_AREA_MM2 = Scalar::new("last_cycle_contact_area_mm2", "largest contact area in the last cycle", 0, |run| run.last.peak_contact_area_mm2)
+    /// Largest contact area of the last cycle. Of the worn insert.
+    LAST_CYCLE_CONTACT_AREA_MM2 = Scalar::new("last_cycle_contact_area_mm2", "largest contact area in the last cycle", 0, |run| run.final_cycle.contact_area_mm2)
         .printed()
         .continued();
-
-    /// Cycles done before the last cycle solved. That cycle wears the last interval of the march.
-    LAST_CYCLE = Scalar::new("last_cycle", "cycles before the last one solved", 0, |run| run.state().cycles_before(run.state().updates.len() - 1))
-        .exact()
-        .listed();
 }
 
-fn peak_pressure<'a>(run: &FinishedRun<'a>) -> (usize, &'a UpdateRecord) {
-    run.largest(|update| update.peak_pressure_mpa)
+fn peak_pressure(run: &FinishedRun<'_>) -> (f64, f64) {
+    run.largest(|peaks| peaks.peak_pressure_mpa)
 }
 
-fn largest_area<'a>(run: &FinishedRun<'a>) -> (usize, &'a UpdateRecord) {
-    run.largest(|update| update.peak_contact_area_mm2)
+fn largest_area(run: &FinishedRun<'_>) -> (f64, f64) {
+    run.largest(|peaks| peaks.contact_area_mm2)
 }

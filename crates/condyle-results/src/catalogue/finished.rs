@@ -1,7 +1,7 @@
 //! The run that the numbers of the catalogue are computed from.
 
 use condyle::{
-    evolve::{March, MarchState, UpdateRecord},
+    evolve::{CyclePeaks, March, MarchState, UpdateRecord},
     machine::{CycleRow, TestedJoint, knee::KNEE},
 };
 
@@ -17,7 +17,7 @@ pub struct RunFacts {
     pub wall_s: f64,
 }
 
-/// A run with at least one update.
+/// A run that is done.
 #[derive(Clone, Copy)]
 pub struct FinishedRun<'a> {
     /// The march after its last update.
@@ -28,12 +28,14 @@ pub struct FinishedRun<'a> {
     pub first: &'a UpdateRecord,
     /// The last update.
     pub last: &'a UpdateRecord,
+    /// Extremes of the cycle on the worn surface.
+    pub final_cycle: CyclePeaks,
     /// Increments of the first cycle of the first activity.
     pub first_cycle: &'a [CycleRow],
 }
 
 impl<'a> FinishedRun<'a> {
-    /// The run of `march`; none before its first update.
+    /// The run of `march`; none before it is done.
     pub fn new(march: &'a March, facts: RunFacts) -> Option<Self> {
         let state = march.state();
         Some(Self {
@@ -41,6 +43,7 @@ impl<'a> FinishedRun<'a> {
             facts,
             first: state.updates.first()?,
             last: state.updates.last()?,
+            final_cycle: state.final_cycle?,
             first_cycle: &state.activities.first()?.first_and_last.as_ref()?.0.rows,
         })
     }
@@ -57,16 +60,18 @@ impl<'a> FinishedRun<'a> {
         self.march.state()
     }
 
-    /// The number and record of the first update with the largest `value`.
-    pub fn largest(&self, value: fn(&UpdateRecord) -> f64) -> (usize, &'a UpdateRecord) {
-        let updates = self.state().updates.iter().enumerate();
-        // Strictly larger, so that of equal updates the first counts; `max_by` would return the last.
-        updates.fold((0, self.first), |largest, update| {
-            if value(update.1) > value(largest.1) {
-                update
-            } else {
-                largest
-            }
-        })
+    /// The first cycle with the largest `value`: cycles done before it, and the value.
+    pub fn largest(&self, value: fn(&CyclePeaks) -> f64) -> (f64, f64) {
+        let state = self.state();
+        let updates = state.updates.iter().enumerate();
+        let solved = updates.map(|(number, update)| (state.cycles_before(number), &update.peaks));
+        let solved = solved.chain([(self.last.cycles, &self.final_cycle)]);
+        let mut values = solved.map(|(cycles, peaks)| (cycles, value(peaks)));
+        let first = values.next().expect("a run has an update");
+        // Strictly larger, so that of equal cycles the first counts; `max_by` would return the last.
+        values.fold(
+            first,
+            |largest, own| if own.1 > largest.1 { own } else { largest },
+        )
     }
 }

@@ -209,9 +209,14 @@ impl March {
         self.state.cycles()
     }
 
-    /// Returns whether all cycles are done.
-    pub fn is_done(&self) -> bool {
+    /// Returns whether all cycles are done; the final cycle may remain to be solved.
+    pub fn is_worn(&self) -> bool {
         self.cycles() >= self.test.schedule.cycles
+    }
+
+    /// Returns whether all cycles are done, and the final one is solved on the surface that they left.
+    pub fn is_done(&self) -> bool {
+        self.state.final_cycle.is_some()
     }
 
     /// Runs the test to its end.
@@ -225,10 +230,11 @@ impl March {
         Ok(())
     }
 
-    /// Solves a repeating cycle of every activity, and wears the insert by an interval of such cycles.
+    /// Takes the next step: solves a repeating cycle of every activity, and wears the insert by an interval of such
+    /// cycles. When all cycles are done, solves the final cycle, on the surface that they left, which wears nothing.
     ///
     /// `watch` is called after every increment and may stop the march; the result is then a break, the
-    /// update in progress is lost, and earlier updates are kept.
+    /// step in progress is lost, and earlier ones are kept.
     ///
     /// # Errors
     /// A cycle that cannot be solved, an insert worn through, or inverted elements.
@@ -236,15 +242,25 @@ impl March {
         &mut self,
         watch: &mut dyn FnMut(Progress) -> ControlFlow<()>,
     ) -> Result<ControlFlow<(), &UpdateRecord>, MarchError> {
-        let update = self.state.updates.len();
+        let flow = if self.is_worn() {
+            self.solve_final_cycle(watch)?
+        } else {
+            self.wear(watch)?
+        };
+        Ok(match (flow, self.state.updates.last()) {
+            (ControlFlow::Continue(()), Some(last)) => ControlFlow::Continue(last),
+            _ => ControlFlow::Break(()),
+        })
+    }
+
+    /// Solves a repeating cycle of every activity, and wears the insert by an interval of such cycles.
+    fn wear(
+        &mut self,
+        watch: &mut dyn FnMut(Progress) -> ControlFlow<()>,
+    ) -> Result<ControlFlow<()>, MarchError> {
         let ControlFlow::Continue(solved) = self.solve(watch)? else {
             return Ok(ControlFlow::Break(()));
         };
-        if !solved.touch() {
-            let (end, added_inertia) = (&solved.cycles[0].end, solved.counters.added_inertia);
-            let lost = MarchError::lost_contact(update + 1, &self.test, end, added_inertia);
-            return Err(lost);
-        }
 
         // The wear of one cycle, and the interval over which it can be extrapolated.
         let shared = solved.with_shares(&self.test.activities);
@@ -289,10 +305,45 @@ impl March {
         self.state.updates.push(record);
         self.sum_up(&solved_step);
         self.remember(solved, step, rates, before);
-        Ok(ControlFlow::Continue(&self.state.updates[update]))
+        Ok(ControlFlow::Continue(()))
+    }
+
+    /// Solves a cycle on the surface after the last update, so that motions, pressures and areas of the last cycle are
+    /// those of the worn insert. Nothing wears, and the history of the contact stays that of the last update.
+    fn solve_final_cycle(
+        &mut self,
+        watch: &mut dyn FnMut(Progress) -> ControlFlow<()>,
+    ) -> Result<ControlFlow<()>, MarchError> {
+        let ControlFlow::Continue(solved) = self.solve(watch)? else {
+            return Ok(ControlFlow::Break(()));
+        };
+        let shared = solved.with_shares(&self.test.activities);
+        let mean = mean_cycles(&shared, &solved.surface);
+        let worn = worn(self.test.wear.as_ref(), &mean);
+        let rates = Rates::new(
+            self.test.contact.as_ref(),
+            &self.insert,
+            &solved.surface,
+            &mean,
+            &worn,
+        );
+        let surface = &solved.surface;
+        let fields = NodeFields::new(&mean, surface, &rates, &self.insert, &self.state.depths);
+        self.state.fields = Some(fields);
+        self.state.final_cycle = Some(solved.peaks());
+        let cycles = self.cycles();
+        for (activity, cycle) in self.state.activities.iter_mut().zip(&solved.cycles) {
+            activity.keep(cycles, cycle);
+        }
+        self.state.counters = solved.counters;
+        self.last = Some(solved);
+        Ok(ControlFlow::Continue(()))
     }
 
     /// Solves one repeating cycle of every activity on the present surface.
+    ///
+    /// # Errors
+    /// A cycle that cannot be solved, or in which the bodies lose contact.
     fn solve(
         &mut self,
         watch: &mut dyn FnMut(Progress) -> ControlFlow<()>,
@@ -311,12 +362,18 @@ impl March {
             return Ok(ControlFlow::Break(()));
         };
         let memory = contact.into_memory();
-        Ok(ControlFlow::Continue(SolvedCycles {
+        let solved = SolvedCycles {
             surface,
             cycles,
             counters,
             memory,
-        }))
+        };
+        if !solved.touch() {
+            let (end, added_inertia) = (&solved.cycles[0].end, counters.added_inertia);
+            let update = state.update_in_progress(test.schedule.cycles - state.cycles());
+            return Err(MarchError::lost_contact(update, test, end, added_inertia));
+        }
+        Ok(ControlFlow::Continue(solved))
     }
 
     /// Returns the state of the test at the start of a step that wears at `rates`.
@@ -426,8 +483,7 @@ impl March {
                 - creep_mm3,
             mass_loss_mg: volume_loss_mm3 * self.test.density_mg_per_mm3,
             max_depth_mm: wear_mm.copied().fold(0.0, f64::max),
-            peak_pressure_mpa: solved.max(|row| row.peak_pressure_mpa),
-            peak_contact_area_mm2: solved.max(|row| row.contact_area_mm2),
+            peaks: solved.peaks(),
             cycles_solved: increments as f64 / self.test.time.increments as f64,
             repeats: cycles.clone().all(|cycle| cycle.repeats),
             worst_quality,
@@ -467,7 +523,13 @@ impl March {
         for (activity, worn) in state.activities.iter_mut().zip(worn) {
             activity.wear = activity.wear.and(worn);
         }
-        let fields = NodeFields::new(step, &self.insert, &state.depths);
+        let SolvedStep {
+            mean,
+            surface,
+            rates,
+            ..
+        } = step;
+        let fields = NodeFields::new(mean, surface, rates, &self.insert, &state.depths);
         if state.fields.is_none() {
             let pressures_mpa = &fields.peak_pressure_mpa;
             state.first_pressure_mpa.clone_from(pressures_mpa);

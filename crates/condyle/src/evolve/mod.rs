@@ -36,7 +36,8 @@ pub use law_family::FamilyWear;
 pub use march::March;
 pub use rates::{StepRecord, mean_over_volume, weight_of_depth};
 pub use records::{
-    CreepRecord, CycleRecord, NodeFields, PlasticRecord, Progress, UnderSurfaceRecord, UpdateRecord,
+    CreepRecord, CyclePeaks, CycleRecord, NodeFields, PlasticRecord, Progress, UnderSurfaceRecord,
+    UpdateRecord,
 };
 pub use solved_cycles::SolvedCycle;
 pub use state::{ActivityState, MarchState, SNAPSHOT_PARTS, Snapshot};

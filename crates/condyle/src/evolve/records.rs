@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::{DepthFields, rates::SolvedStep};
+use super::{DepthFields, rates::Rates};
 use crate::{
     Vec3,
     contact::{BacksideAtRest, PlasticUnderSurface, Regime, UnderSurface},
@@ -35,10 +35,8 @@ pub struct UpdateRecord {
     pub mass_loss_mg: f64,
     /// Maximum depth of wear so far, mm.
     pub max_depth_mm: f64,
-    /// Highest pressure of its cycles, also between nodes, MPa.
-    pub peak_pressure_mpa: f64,
-    /// Largest contact area of its cycles, mm2.
-    pub peak_contact_area_mm2: f64,
+    /// Extremes of its cycles.
+    pub peaks: CyclePeaks,
     /// Cycles solved until every activity repeated itself.
     pub cycles_solved: f64,
     /// True if every activity repeated itself.
@@ -49,6 +47,15 @@ pub struct UpdateRecord {
     pub creep: Option<CreepRecord>,
     /// Stress below the surface at the highest pressure, if the insert is a solid.
     pub under_surface: Option<UnderSurfaceRecord>,
+}
+
+/// Extremes of one solved cycle of every activity.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct CyclePeaks {
+    /// Highest pressure, also between nodes, MPa.
+    pub peak_pressure_mpa: f64,
+    /// Largest contact area, mm2.
+    pub contact_area_mm2: f64,
 }
 
 /// The motions and loads of one solved cycle.
@@ -97,13 +104,18 @@ impl NodeFields {
         }
     }
 
-    pub(super) fn new(interval: &SolvedStep<'_>, insert: &Insert, depths: &DepthFields) -> Self {
-        let (cycles, surface) = (interval.mean, interval.surface);
+    pub(super) fn new(
+        cycles: &[MeanCycle<'_>],
+        surface: &ArticulatingSurface,
+        rates: &Rates,
+        insert: &Insert,
+        depths: &DepthFields,
+    ) -> Self {
         let each = |value: fn(&MeanCycle<'_>) -> f64| cycles.iter().map(value).collect();
         let direction = |(node, cycle)| principal_direction(surface, node, cycle);
         Self {
             wear_depth_mm: depths.wear_mm().to_vec(),
-            depth_per_cycle_mm: interval.rates.depth_per_cycle_mm.clone(),
+            depth_per_cycle_mm: rates.depth_per_cycle_mm.clone(),
             peak_pressure_mpa: each(|cycle| cycle.peak_pressure_mpa),
             sliding_distance_mm: each(|cycle| cycle.pressed_distance_mm),
             cross_shear: each(|cycle| cycle.slip_work.cross_shear()),

@@ -3,7 +3,7 @@
 use std::ops::ControlFlow;
 
 use super::{
-    Activity, MarchError, MarchState, Progress, Updates, WearTest,
+    Activity, CyclePeaks, MarchError, MarchState, Progress, Updates, WearTest,
     next_step::{equal_interval, fixed_interval},
 };
 use crate::{
@@ -17,12 +17,10 @@ use crate::{
 /// Factor on the tolerances of the repetition for the first and the last cycle, whose motions are results. The
 /// others matter by their wear alone, whose error is a hundred times smaller than that of the motions.
 const REPORTED: f64 = 0.1;
-/// An update that will reach this part of the cycles is the last: the sum of the intervals is rounded.
-const LAST: f64 = 1.0 - 1e-9;
 
 /// The last solved cycle of an activity, and the surface that it loaded.
 ///
-/// The wear of an update is computed from it: the surface is the one before that wear.
+/// The wear of an update is computed from it, on the surface before that wear; the final cycle wears nothing.
 #[derive(Clone, Copy)]
 #[non_exhaustive]
 pub struct SolvedCycle<'a> {
@@ -79,9 +77,12 @@ pub(super) fn solve(
     watch: &mut dyn FnMut(Progress) -> ControlFlow<()>,
 ) -> Result<ControlFlow<(), (Vec<Cycle>, SolverCounters)>, MarchError> {
     let activities = &test.activities;
-    let (update, done) = (state.updates.len() + 1, state.cycles());
-    let interval = likely_interval(test, state);
-    let is_reported = update == 1 || done + interval >= LAST * test.schedule.cycles;
+    let done = state.cycles();
+    let left = test.schedule.cycles - done;
+    let update = state.update_in_progress(left);
+    let interval = likely_interval(test, state).min(left);
+    // The final cycle is solved when none is left.
+    let is_reported = state.updates.is_empty() || left <= 0.0;
     let mut time = test.time;
     if is_reported {
         time.repeat_tolerance_mm *= REPORTED;
@@ -152,10 +153,16 @@ impl SolvedCycles {
         shares.zip(histories).collect()
     }
 
-    /// Returns the largest value of any row; 0 if all are negative.
-    pub fn max(&self, value: fn(&CycleRow) -> f64) -> f64 {
-        let each = self.cycles.iter().map(|cycle| cycle.max(value));
-        each.fold(0.0, f64::max)
+    /// Returns the extremes of all rows.
+    pub fn peaks(&self) -> CyclePeaks {
+        let largest = |value: fn(&CycleRow) -> f64| {
+            let each = self.cycles.iter().map(|cycle| cycle.max(value));
+            each.fold(0.0, f64::max)
+        };
+        CyclePeaks {
+            peak_pressure_mpa: largest(|row| row.peak_pressure_mpa),
+            contact_area_mm2: largest(|row| row.contact_area_mm2),
+        }
     }
 
     /// Returns the activity and the row with the highest pressure; the first of several.

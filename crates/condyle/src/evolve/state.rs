@@ -3,7 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 use super::{
-    AccumulatedError, ActivityWear, ComparisonLaw, CreepState, CycleRecord, DepthField,
+    AccumulatedError, ActivityWear, ComparisonLaw, CreepState, CyclePeaks, CycleRecord, DepthField,
     DepthFields, FamilyWear, NodeFields, StepRecord, UpdateRecord,
 };
 use crate::{
@@ -99,7 +99,9 @@ impl ActivityState {
 pub struct MarchState {
     /// Results of the updates done.
     pub updates: Vec<UpdateRecord>,
-    /// Results of the last of them at every surface node; none before the first.
+    /// Extremes of the cycle on the worn surface; none until all cycles are done.
+    pub final_cycle: Option<CyclePeaks>,
+    /// Results of the last solved cycle at every surface node; none before the first.
     pub fields: Option<NodeFields>,
     /// Highest pressure of the first cycle at every surface node, MPa; empty before the first update.
     pub first_pressure_mpa: Vec<f64>,
@@ -162,6 +164,11 @@ impl MarchState {
 
     pub(super) fn cycles(&self) -> f64 {
         self.updates.last().map_or(0.0, |last| last.cycles)
+    }
+
+    /// Returns the number of the update in progress, from 1, with `left` cycles to do: the final cycle, with none left, belongs to the last.
+    pub(super) fn update_in_progress(&self, left: f64) -> usize {
+        self.updates.len() + usize::from(left > 0.0)
     }
 
     /// Returns the cycles done before an update, numbered from 0.
