@@ -29,7 +29,7 @@ class Summary:
     first_cycle_peak_pressure_mpa: float
     """Peak pressure of the first cycle. In MPa."""
     last_cycle_peak_pressure_mpa: float
-    """Peak pressure of the last cycle solved. In MPa."""
+    """Peak pressure of the last cycle. In MPa."""
     pressure_law_peak_error_percent: float
     """Error of the peak pressure by the pressure law. In %."""
     peak_contact_area_mm2: float
@@ -39,9 +39,7 @@ class Summary:
     first_cycle_contact_area_mm2: float
     """Largest contact area of the first cycle. In mm2."""
     last_cycle_contact_area_mm2: float
-    """Largest contact area of the last cycle solved. In mm2."""
-    last_cycle: float
-    """Cycles done before the last cycle solved."""
+    """Largest contact area of the last cycle. In mm2."""
     peak_von_mises_mpa: float
     """Largest von Mises stress. In MPa."""
     peak_von_mises_depth_mm: float

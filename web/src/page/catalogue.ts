@@ -16,7 +16,6 @@ export interface Numbers {
   peak_contact_area_cycle: number;
   first_cycle_contact_area_mm2: number;
   last_cycle_contact_area_mm2: number;
-  last_cycle: number;
   peak_von_mises_mpa?: number;
   peak_von_mises_depth_mm?: number;
   peak_max_shear_mpa?: number;

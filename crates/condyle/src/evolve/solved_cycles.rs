@@ -14,9 +14,11 @@ use crate::{
     wear::SharedCycle,
 };
 
-/// Factor on the tolerances of the repetition for the first and the last cycle, whose motions are results. The
-/// others matter by their wear alone, whose error is a hundred times smaller than that of the motions.
+/// Factor on the tolerances of the repetition for the first cycle, that of the last update and the final one, whose motions
+/// or sums are results. The others matter by their wear alone, whose error is a hundred times smaller than that of the motions.
 const REPORTED: f64 = 0.1;
+/// An update that will reach this part of the cycles is the last: the sum of the intervals is rounded.
+const LAST: f64 = 1.0 - 1e-9;
 
 /// The last solved cycle of an activity, and the surface that it loaded.
 ///
@@ -81,8 +83,7 @@ pub(super) fn solve(
     let left = test.schedule.cycles - done;
     let update = state.update_in_progress(left);
     let interval = likely_interval(test, state).min(left);
-    // The final cycle is solved when none is left.
-    let is_reported = state.updates.is_empty() || left <= 0.0;
+    let is_reported = state.updates.is_empty() || done + interval >= LAST * test.schedule.cycles;
     let mut time = test.time;
     if is_reported {
         time.repeat_tolerance_mm *= REPORTED;
