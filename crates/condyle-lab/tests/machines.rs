@@ -180,3 +180,27 @@ fn verify_a_cylinder_in_a_trough() {
     assert!((peak - 1.0).abs() < 0.005, "{peak}");
     assert!((area - 1.0).abs() < 0.01, "{area}");
 }
+
+#[test]
+fn verify_activities_of_a_machine_wear_by_their_shares() {
+    let machine = |path: &str, load_n: f64| {
+        format!(
+            "tests = \"specimen\"\n[[{path}.joints]]\nname = \"x\"\nkind = \"translation\"\naxis = [1, 0, 0]\n\
+             drive = \"prescribed\"\nzeroed = false\nsettling = \"held\"\n[{path}.joints.motion]\n\
+             knots_mm = [[0, 5], [50, -5]]\n[[{path}.joints]]\nname = \"press\"\nkind = \"translation\"\n\
+             axis = [0, -1, 0]\ndrive = \"loaded\"\n[{path}.joints.load]\nknots_n = [[0, {load_n}]]\n"
+        )
+    };
+    let text = format!(
+        "[femur]\nshape = \"plane\"\n[insert]\nshape = \"pin\"\nedge_mm = 0.8\nlayers = 2\n[wear]\nlaw = \"archard\"\n\
+         {ONE_UPDATE}[machine]\n{}[[activity]]\nname = \"light\"\nshare = 0.75\n[[activity]]\nname = \"heavy\"\nshare = 0.25\n{}",
+        machine("machine", 70.0),
+        machine("activity", 210.0)
+    );
+    let (case, march) = finished(&text);
+    let factor = case.wear.constant("wear_factor_mm3_per_nm").unwrap();
+    // A line of 10 mm there and back; the mean load is 0.75 x 70 N + 0.25 x 210 N.
+    let work_nm = 105.0 * 20.0 / 1000.0;
+    let found = march.state().updates[0].volume_loss_mm3 / (factor * work_nm);
+    assert!((found - 1.0).abs() < 1e-3, "{found}");
+}

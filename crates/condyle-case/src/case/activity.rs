@@ -2,7 +2,8 @@
 
 use condyle::machine::{Waveform, knee};
 
-use super::machine::{Freedoms, Machine, Waveforms};
+use super::machine::{Freedoms, Machine, Waveforms, report_keys_of_knee};
+use super::rig::Rig;
 use super::waveform::waveform_items;
 use crate::config::*;
 
@@ -18,6 +19,8 @@ settings! {
         share: Option<f64> = None, in within(1e-6, 1.0);
         /// Instead of `share`: its cycles in a sequence that repeats, such as 17 of walking and 3 of stairs.
         cycles_in_sequence: Option<u64> = None, in within(1.0, 1e9);
+        /// Machine file of the activity on a machine by joints, relative to the case file: the joints of `[machine]` with other drives, waveforms and springs; `[machine]` itself if not given. Its joints may also stand here.
+        file: Option<DataFile> = None;
         /// Cycles a second; that of `[machine]` if not given.
         frequency_hz: Option<f64> = None, in within(0.001, 100.0);
         /// Added to the flexion waveform; that of `[machine]` if not given.
@@ -36,6 +39,8 @@ pub struct Activity {
     pub keys: ActivityKeys,
     /// The waveforms that drive it.
     pub waveforms: Waveforms,
+    /// Its machine, if the case has a machine by joints.
+    pub rig: Option<Rig>,
 }
 
 /// The activities of a case in the order of the file; empty if `[machine]` has the inputs of the only activity.
@@ -47,7 +52,7 @@ pub struct Activities {
 const ACTIVITIES: &str = "
 One table for each thing that the machine does, each with every waveform that its freedoms need as \
 `[activity.axial_force]`, `[activity.flexion]` and so on, with the keys of the waveforms above; `[machine]` then has \
-none. [Activities and creep](activities-and-creep.md) shows how.
+none. On a machine by joints, an activity has a [machine file](machines.md#activities) instead. [Activities and creep](activities-and-creep.md) shows how.
 ";
 
 impl Activities {
@@ -71,7 +76,17 @@ impl Activities {
 
 impl Settings for Activities {
     fn items() -> Vec<Item> {
-        [ActivityKeys::items(), waveform_items(false)].concat()
+        let mut items = [ActivityKeys::items(), waveform_items(false)].concat();
+        let of_rig = Rig::items_beside(&items);
+        items.extend(of_rig.map(|item| match item {
+            // The page describes the joints of a machine once.
+            Item::Table(table) => Item::Table(TableItem {
+                page: Some(String::new()),
+                ..table
+            }),
+            other => other,
+        }));
+        items
     }
 
     fn item(name: &'static str, about: &str) -> Item {
@@ -91,8 +106,13 @@ impl Settings for Activities {
     fn read_in(root: &Section<'_>, name: &'static str, log: &mut Log<'_>) -> Option<Self> {
         let sections = root.list(name, log)?;
         // Problems of the machine are reported where the machine is read.
+        let mut discarded = Log::new(&log.source, log.base);
+        let rig = Machine::rig_in(&root.part("machine"), &mut discarded).flatten();
         let freedoms = Machine::freedoms_in(root, log);
-        let read = |section| Activity::read(section, freedoms.as_ref(), log);
+        let read = |section| match &rig {
+            Some(rig) => Activity::read_on(rig, section, log),
+            None => Activity::read(section, freedoms.as_ref(), log),
+        };
         let all: Vec<Option<Activity>> = sections.iter().map(read).collect();
         let all: Vec<Activity> = all.into_iter().collect::<Option<_>>()?;
         check_names(&sections, &all, log);
@@ -102,17 +122,13 @@ impl Settings for Activities {
 
     fn write(&self, out: &mut Writer) {
         for activity in &self.all {
-            activity.keys.write(out);
-            activity.waveforms.write(out);
+            activity.write(out);
         }
     }
 
     fn write_in(&self, name: &str, out: &mut Writer) {
         for activity in &self.all {
-            out.table_of_list(name, |out| {
-                activity.keys.write(out);
-                activity.waveforms.write(out);
-            });
+            out.table_of_list(name, |out| activity.write(out));
         }
     }
 }
@@ -162,7 +178,47 @@ impl Activity {
             log.problem(section.key_span(knee::AXIAL_FORCE.name), fault);
             return None;
         }
-        Some(Self { keys, waveforms })
+        Some(Self {
+            keys,
+            waveforms,
+            rig: None,
+        })
+    }
+
+    /// Reads an activity on a machine by joints: its own drives of the same joints, or those of the machine.
+    fn read_on(machine: &Rig, section: &Section<'_>, log: &mut Log<'_>) -> Option<Self> {
+        let mut keys = ActivityKeys::read(section, log)?;
+        let file = keys.file.take();
+        let own = Rig::read_from(section, None, file.as_ref(), log)?;
+        let mut rig = own.unwrap_or_else(|| machine.clone());
+        if let Some(frequency_hz) = keys.frequency_hz.take() {
+            rig.keys.frequency_hz = frequency_hz;
+        }
+        if let Some(difference) = rig.difference_from(machine) {
+            let key = if file.is_some() { "file" } else { "joints" };
+            let name = &keys.name;
+            let message = format!(
+                "the machine of the activity \"{name}\" is not that of [machine]: {difference}"
+            );
+            let advice = "give both the same joints in the same order; drives, waveforms and springs may differ";
+            log.problem(section.key_span(key), Fault::new(message, advice));
+            return None;
+        }
+        let of_knee = ["flexion_offset_deg", "ap_force_sign", "ie_torque_sign"];
+        report_keys_of_knee(section, &of_knee, log);
+        Some(Self {
+            keys,
+            waveforms: Waveforms::default(),
+            rig: Some(rig),
+        })
+    }
+
+    fn write(&self, out: &mut Writer) {
+        self.keys.write(out);
+        self.waveforms.write(out);
+        if let Some(rig) = &self.rig {
+            rig.write(out);
+        }
     }
 }
 

@@ -404,7 +404,7 @@ impl Machine {
     }
 
     /// Returns the machine by joints that `section` describes, if it describes one; the outer `None` if it has problems.
-    fn rig_in(section: &Section<'_>, log: &mut Log<'_>) -> Option<Option<Rig>> {
+    pub(super) fn rig_in(section: &Section<'_>, log: &mut Log<'_>) -> Option<Option<Rig>> {
         let mut discarded = Log::new(&log.source, log.base);
         let settings = MachineSettings::read(section, &mut discarded);
         let (preset, file) = settings.map_or((None, None), |settings| {
@@ -414,19 +414,22 @@ impl Machine {
         if rig.is_some() {
             let own = MachineSettings::keys();
             let shared = ["preset", "file", "frequency_hz"];
-            let own = own
-                .iter()
-                .map(|key| key.name)
-                .filter(|key| !shared.contains(key));
-            let channels = KNEE.channels.iter().map(|channel| channel.name);
-            for key in own.chain(["springs", "freedoms"]).chain(channels) {
-                if section.value(key).is_some() {
-                    let needs = "a knee simulator, such as preset = \"stanmore-force\"";
-                    log.problem(section.key_span(key), idle(key, needs));
-                }
-            }
+            let own = own.iter().map(|key| key.name);
+            let own = own.filter(|key| !shared.contains(key));
+            let of_knee: Vec<&str> = own.chain(["springs", "freedoms"]).collect();
+            report_keys_of_knee(section, &of_knee, log);
         }
         Some(rig)
+    }
+}
+
+/// Reports the waveforms of the knee simulator, and those of `keys`, that `section` of a machine by joints gives.
+pub(super) fn report_keys_of_knee(section: &Section<'_>, keys: &[&'static str], log: &mut Log<'_>) {
+    let channels = KNEE.channels.iter().map(|channel| channel.name);
+    let given = keys.iter().copied().chain(channels);
+    for key in given.filter(|key| section.value(key).is_some()) {
+        let needs = "a knee simulator, such as preset = \"stanmore-force\"";
+        log.problem(section.key_span(key), idle(key, needs));
     }
 }
 
@@ -439,12 +442,8 @@ impl Settings for Machine {
         ));
         items.push(Freedoms::item());
         items.extend(waveform_items(true));
-        let known: Vec<&str> = items.iter().filter_map(Item::name).collect();
-        let of_rig = Rig::items().into_iter();
-        // Those that both have, such as the frequency, are described once; a case needs none of the others.
-        let of_rig = of_rig.filter(|item| !item.name().is_some_and(|name| known.contains(&name)));
-        let optional: Vec<Item> = of_rig.map(Item::optional).collect();
-        items.extend(optional);
+        let of_rig = Rig::items_beside(&items);
+        items.extend(of_rig);
         items
     }
 
@@ -456,13 +455,6 @@ impl Settings for Machine {
     fn read_in(root: &Section<'_>, name: &'static str, log: &mut Log<'_>) -> Option<Self> {
         let section = root.table(name, log);
         if let Some(rig) = Self::rig_in(&section, log)? {
-            if root.value("activity").is_some() {
-                let fault = Fault::new(
-                    "a machine by joints has its waveforms in its joints, and no activities",
-                    "remove [[activity]]",
-                );
-                log.problem(root.key_span("activity"), fault);
-            }
             // Without keys the simulator of knees has its defaults, and no problems.
             let (none, mut discarded) = (DeTable::new(), Log::new(&log.source, log.base));
             let unused = Self::read(&Section::root(&none), &mut discarded)?;

@@ -299,6 +299,31 @@ impl RigJoint {
         }
     }
 
+    /// Returns the properties that the same joint has in every activity: all but its drive and what acts along it.
+    fn place(
+        &self,
+    ) -> (
+        &str,
+        JointKind,
+        [f64; 3],
+        MovedBody,
+        Option<[f64; 3]>,
+        Settling,
+        bool,
+    ) {
+        let keys = &self.keys;
+        let (body, point) = (keys.moves, keys.point_mm);
+        (
+            &keys.name,
+            keys.kind,
+            keys.axis,
+            body,
+            point,
+            keys.settling,
+            self.is_zeroed(),
+        )
+    }
+
     fn is_zeroed(&self) -> bool {
         let is_free =
             self.keys.kind == JointKind::Translation && self.keys.drive == DriveWord::Loaded;
@@ -546,6 +571,27 @@ impl Rig {
         found.map(|(one, other)| (one.keys.name.as_str(), other.keys.name.as_str()))
     }
 
+    /// Returns the first difference of the motions that this machine and another permit; none if activities of one test
+    /// may run on both.
+    pub(super) fn difference_from(&self, other: &Self) -> Option<String> {
+        if self.joints.len() != other.joints.len() {
+            let (own, others) = (self.joints.len(), other.joints.len());
+            return Some(format!("it has {own} joints in place of {others}"));
+        }
+        let pairs = self.joints.iter().zip(&other.joints);
+        let mut differ = pairs.filter_map(|(own, other)| {
+            let (own_place, other_place) = (own.place(), other.place());
+            (own_place != other_place).then(|| {
+                let (own, other) = (&own.keys.name, &other.keys.name);
+                match own == other {
+                    true => format!("the joint \"{own}\" has another axis, body or zero"),
+                    false => format!("it has the joint \"{own}\" in place of \"{other}\""),
+                }
+            })
+        });
+        differ.next()
+    }
+
     /// Returns the machine in mm, N, s and rad.
     pub(super) fn build(&self, side: Side) -> Machine {
         let mut machine = Machine::new(self.mechanism());
@@ -618,7 +664,15 @@ impl Rig {
         Ligament::write_list(&self.ligaments, out);
     }
 
-    pub(super) fn items() -> Vec<Item> {
+    /// Returns the entries that a table may have besides `items`: none is required, and those of the same name count once.
+    pub(super) fn items_beside(items: &[Item]) -> Vec<Item> {
+        let known: Vec<&str> = items.iter().filter_map(Item::name).collect();
+        let own = Self::items().into_iter();
+        let other = own.filter(|item| !item.name().is_some_and(|name| known.contains(&name)));
+        other.map(Item::optional).collect()
+    }
+
+    fn items() -> Vec<Item> {
         let mut joint = RigJointKeys::items();
         for channels in [[&FORCE, &TORQUE], [&TRANSLATION, &ROTATION]] {
             joint.push(Item::Table(waveform::table(&channels)));

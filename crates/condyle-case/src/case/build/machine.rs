@@ -105,14 +105,12 @@ pub(super) fn start_flexion_rad(machine: &Machine) -> f64 {
 impl Case {
     pub(super) fn built_activities(&self, low_point_mm: Vec3) -> Vec<Activity> {
         let side = self.heading.side;
-        if let Some(rig) = &self.machine.rig {
-            return vec![Activity::only("gait", rig.build(side))];
-        }
         if self.activities.is_empty() {
-            return vec![Activity::only(
-                "gait",
-                self.machine.build(low_point_mm, side),
-            )];
+            let machine = match &self.machine.rig {
+                Some(rig) => rig.build(side),
+                None => self.machine.build(low_point_mm, side),
+            };
+            return vec![Activity::only("gait", machine)];
         }
         let activities = self.activities.iter().zip(self.activities.shares());
         let built = activities.map(|(activity, share)| {
@@ -125,7 +123,10 @@ impl Case {
             own.ie_torque_sign = keys.ie_torque_sign.unwrap_or(own.ie_torque_sign);
             Activity {
                 name: keys.name.clone(),
-                machine: machine.build(low_point_mm, side),
+                machine: match &activity.rig {
+                    Some(rig) => rig.build(side),
+                    None => machine.build(low_point_mm, side),
+                },
                 share,
             }
         });

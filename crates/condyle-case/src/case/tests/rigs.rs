@@ -216,3 +216,61 @@ fn a_ligament_too_short_for_its_attachments_is_refused_at_its_place() {
         first.key()
     );
 }
+
+/// Another activity on the machine of [`HIP`]: its machine file with one change.
+fn with_activities(change: &str, to: &str) -> String {
+    let joints = HIP.split_once("[machine]\n").expect("it has one").1;
+    let own = joints.replace("machine.joints", "activity.joints");
+    assert!(own.contains(change), "{change}");
+    let own = own.replacen(change, to, 1);
+    format!(
+        "{HIP}[[activity]]\nname = \"walking\"\nshare = 0.75\n[[activity]]\nname = \"stairs\"\nshare = 0.25\n{own}"
+    )
+}
+
+#[test]
+fn activities_of_a_machine_by_joints_have_their_own_drives() {
+    let text = with_activities("[[0, 3000]]", "[[0, 3500]]");
+    let case = Case::parse(&text, "case.toml", Path::new("")).unwrap();
+    let again = Case::parse(&case.to_toml(), "case.toml", Path::new("")).unwrap();
+    assert_eq!(case, again);
+    let activities = case.built_activities(condyle::Vec3::zeros());
+    let load_n = |number: usize| match &activities[number].machine.joints()[0].drive {
+        condyle::machine::Drive::Loaded(load) => load.at(0.3).0,
+        other => panic!("{other:?}"),
+    };
+    assert_eq!((load_n(0), load_n(1)), (3000.0, 3500.0));
+    assert_eq!((activities[0].share, activities[1].share), (0.75, 0.25));
+}
+
+#[test]
+fn activities_on_other_joints_are_refused_at_their_place() {
+    for (change, to, message) in [
+        (
+            "name = \"flexion\"",
+            "name = \"bending\"",
+            "it has the joint \"bending\" in place of \"flexion\"",
+        ),
+        (
+            "axis = [0, 0, 1]",
+            "axis = [1, 0, 0]",
+            "the joint \"flexion\" has another axis",
+        ),
+    ] {
+        let (key, said) = refusal(&with_activities(change, to));
+        assert!(said.contains(message), "{said}");
+        assert!(key.ends_with("joints"), "{key}");
+    }
+    let knee = format!(
+        "{}ap_force_sign = -1\n",
+        with_activities("[[0, 3000]]", "[[0, 3500]]")
+            .split("tests = \"hip\"\n[[activity.joints]]")
+            .next()
+            .expect("it has a beginning")
+    );
+    let (key, said) = refusal(&knee);
+    assert!(
+        key.ends_with("ap_force_sign") && said.contains("knee simulator"),
+        "{key}: {said}"
+    );
+}
