@@ -77,7 +77,7 @@ impl Activities {
 impl Settings for Activities {
     fn items() -> Vec<Item> {
         let mut items = [ActivityKeys::items(), waveform_items(false)].concat();
-        let of_rig = Rig::items_beside(&items);
+        let of_rig = Rig::items_beside(&items).into_iter();
         items.extend(of_rig.map(|item| match item {
             // The page describes the joints of a machine once.
             Item::Table(table) => Item::Table(TableItem {

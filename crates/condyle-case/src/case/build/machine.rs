@@ -103,7 +103,7 @@ pub(super) fn start_flexion_rad(machine: &Machine) -> f64 {
 }
 
 impl Case {
-    pub(super) fn built_activities(&self, low_point_mm: Vec3) -> Vec<Activity> {
+    pub(in crate::case) fn built_activities(&self, low_point_mm: Vec3) -> Vec<Activity> {
         let side = self.heading.side;
         if self.activities.is_empty() {
             let machine = match &self.machine.rig {

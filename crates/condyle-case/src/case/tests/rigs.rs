@@ -235,7 +235,11 @@ fn activities_of_a_machine_by_joints_have_their_own_drives() {
     let again = Case::parse(&case.to_toml(), "case.toml", Path::new("")).unwrap();
     assert_eq!(case, again);
     let activities = case.built_activities(condyle::Vec3::zeros());
-    let load_n = |number: usize| match &activities[number].machine.joints()[0].drive {
+    let load_n = |number: usize| match &activities[number]
+        .machine
+        .joint(condyle::machine::JointIndex::ALL[0])
+        .drive
+    {
         condyle::machine::Drive::Loaded(load) => load.at(0.3).0,
         other => panic!("{other:?}"),
     };
