@@ -27,7 +27,7 @@ const DEVIATIONS_OF_90_PERCENT: f64 = 1.645;
 /// Pressure that the factors of the draws refer to, MPa.
 const REFERENCE_PRESSURE_MPA: f64 = 1.1;
 /// Factor either way beyond which the parts of an interval that depend on the run make it too wide to decide anything.
-pub const MAX_FACTOR_OF_RUN: f64 = 2.0;
+pub const MAX_FACTOR_OF_RUN: f64 = 2.5;
 /// The [`Source`] that is the same for every run.
 const LABORATORY: &str = "laboratory";
 

@@ -170,7 +170,7 @@ pub(crate) fn interval_too_wide(finished: &Finished<'_>) -> Option<PlausibilityW
         unit: String::new(),
         message: format!(
             "law, inputs and discretisation leave the mass uncertain by a factor of {factor:.1} either way; up to \
-             {MAX_FACTOR_OF_RUN:.0} would be useful"
+             {MAX_FACTOR_OF_RUN} would be useful"
         ),
         advice: "The largest of the sources of the interval says why: the law is far from the tests that it was fitted to, \
                  or the run is discretised too coarsely."
