@@ -90,27 +90,38 @@ pub fn add_activities(activities: &[ActivitySummary], lines: &mut Lines) {
     if activities.is_empty() {
         return;
     }
-    lines.line(
-        "   by activity          cycles %   wear mg    peak MPa     mm2       N   AP mm  IE deg",
-    );
+    let is_knee = activities.iter().all(|activity| activity.knee.is_some());
+    let (of_knee, motions) = match is_knee {
+        true => ("   AP mm  IE deg", "AP, IE and N are"),
+        false => ("", "N is"),
+    };
+    lines.line(format_args!(
+        "   by activity          cycles %   wear mg    peak MPa     mm2       N{of_knee}"
+    ));
     for activity in activities {
+        let knee = activity.knee.as_ref();
+        let of_knee =
+            knee.map(|knee| format!(" {:>7.2} {:>7.2}", knee.ap_range_mm, knee.ie_range_deg));
         lines.line(format_args!(
-            "   {:<20} {:>8.2} {:>9.2} {:>11.1} {:>7.0} {:>7.0} {:>7.2} {:>7.2}",
+            "   {:<20} {:>8.2} {:>9.2} {:>11.1} {:>7.0} {:>7.0}{}",
             activity.name,
             100.0 * activity.share_of_cycles,
             activity.mass_loss_mg,
             activity.peak_pressure_mpa,
             activity.peak_contact_area_mm2,
             activity.peak_axial_force_n,
-            activity.ap_range_mm,
-            activity.ie_range_deg
+            of_knee.unwrap_or_default()
         ));
     }
-    lines.line("   wear is shared out by pressure times sliding at each place; AP, IE and N are of first cycles");
+    lines.line(format_args!(
+        "   wear is shared out by pressure times sliding at each place; {motions} of first cycles"
+    ));
 }
 
 #[cfg(test)]
 mod tests {
+    use condyle_results::KneeActivity;
+
     use super::*;
 
     fn law(law: &str, moved_the_surface: bool) -> LawWear {
@@ -166,9 +177,11 @@ mod tests {
             peak_pressure_mpa: 21.5,
             peak_contact_area_mm2: 310.4,
             peak_axial_force_n: 3391.2,
-            ap_range_mm: 7.25,
-            ie_range_deg: 8.5,
-            medial_load_share: 0.6,
+            knee: Some(KneeActivity {
+                ap_range_mm: 7.25,
+                ie_range_deg: 8.5,
+                medial_load_share: 0.6,
+            }),
         };
         let mut lines = Lines::default();
         add_activities(&[stairs], &mut lines);

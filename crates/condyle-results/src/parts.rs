@@ -34,11 +34,19 @@ pub struct ActivitySummary {
     pub peak_contact_area_mm2: f64,
     /// Highest axial force of its first cycle, N.
     pub peak_axial_force_n: f64,
-    /// Range of AP in its first cycle, mm.
+    /// Results that only a knee simulator has.
+    #[serde(flatten)]
+    pub knee: Option<KneeActivity>,
+}
+
+/// Motion and load of an activity of a knee simulator, in its first cycle.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct KneeActivity {
+    /// Range of AP, mm.
     pub ap_range_mm: f64,
-    /// Range of IE in its first cycle, degrees.
+    /// Range of IE, degrees.
     pub ie_range_deg: f64,
-    /// Medial part of the axial force in its first cycle.
+    /// Medial part of the axial force.
     pub medial_load_share: f64,
 }
 
@@ -63,9 +71,11 @@ impl ActivitySummary {
                 peak_pressure_mpa: wear.peak_pressure_mpa,
                 peak_contact_area_mm2: wear.peak_contact_area_mm2,
                 peak_axial_force_n: rows.iter().map(|row| row.axial_force_n).fold(0.0, f64::max),
-                ap_range_mm: joint_range(rows, AP),
-                ie_range_deg: joint_range(rows, IE),
-                medial_load_share: medial_load_share(rows),
+                knee: (*activity.machine.mechanism == KNEE).then(|| KneeActivity {
+                    ap_range_mm: joint_range(rows, AP),
+                    ie_range_deg: joint_range(rows, IE),
+                    medial_load_share: medial_load_share(rows),
+                }),
             })
         });
         summaries.collect()
