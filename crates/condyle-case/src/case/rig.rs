@@ -299,29 +299,15 @@ impl RigJoint {
         }
     }
 
-    /// Returns the properties that the same joint has in every activity: all but its drive and what acts along it.
-    fn place(
-        &self,
-    ) -> (
-        &str,
-        JointKind,
-        [f64; 3],
-        MovedBody,
-        Option<[f64; 3]>,
-        Settling,
-        bool,
-    ) {
-        let keys = &self.keys;
-        let (body, point) = (keys.moves, keys.point_mm);
-        (
-            &keys.name,
-            keys.kind,
-            keys.axis,
-            body,
-            point,
-            keys.settling,
-            self.is_zeroed(),
-        )
+    /// Returns whether the joint moves as another, whatever drives both.
+    fn moves_as(&self, other: &Self) -> bool {
+        let (own, others) = (&self.keys, &other.keys);
+        own.kind == others.kind
+            && own.axis == others.axis
+            && own.moves == others.moves
+            && own.point_mm == others.point_mm
+            && own.settling == others.settling
+            && self.is_zeroed() == other.is_zeroed()
     }
 
     fn is_zeroed(&self) -> bool {
@@ -579,15 +565,15 @@ impl Rig {
             return Some(format!("it has {own} joints in place of {others}"));
         }
         let pairs = self.joints.iter().zip(&other.joints);
-        let mut differ = pairs.filter_map(|(own, other)| {
-            let (own_place, other_place) = (own.place(), other.place());
-            (own_place != other_place).then(|| {
-                let (own, other) = (&own.keys.name, &other.keys.name);
-                match own == other {
-                    true => format!("the joint \"{own}\" has another axis, body or zero"),
-                    false => format!("it has the joint \"{own}\" in place of \"{other}\""),
-                }
-            })
+        let mut differ = pairs.filter_map(|(joint, other)| {
+            let (name, other_name) = (&joint.keys.name, &other.keys.name);
+            if name != other_name {
+                return Some(format!(
+                    "it has the joint \"{name}\" in place of \"{other_name}\""
+                ));
+            }
+            let message = || format!("the joint \"{name}\" has another axis, body or zero");
+            (!joint.moves_as(other)).then(message)
         });
         differ.next()
     }
