@@ -8,7 +8,8 @@
 //! Errors of ranges of motion, and of a peak in the first cycle, come from the first cycle, solved again with each
 //! change. Errors of a peak in a later cycle come from the later of the two cycles during the march, which is also
 //! solved again on a coarser mesh worn to the same depth, and with the surface lowered by the error of the march's
-//! steps.
+//! steps; the part of the peak by which it differs from that of the first cycle is due to wear, and has the error of the
+//! wear as well.
 
 mod worn_surface;
 
@@ -31,8 +32,9 @@ use condyle_case::case::Case;
 use condyle_results::{
     ErrorEstimate, Part, QuantityErrors, Summary,
     catalogue::{
-        AP_RANGE_MM, IE_RANGE_DEG, MASS_LOSS_MG, MAX_DEPTH_MM, PEAK_CONTACT_AREA_CYCLE,
-        PEAK_CONTACT_AREA_MM2, PEAK_PRESSURE_CYCLE, PEAK_PRESSURE_MPA, Scalar,
+        AP_RANGE_MM, FIRST_CYCLE_CONTACT_AREA_MM2, FIRST_CYCLE_PEAK_PRESSURE_MPA, IE_RANGE_DEG,
+        MASS_LOSS_MG, MAX_DEPTH_MM, PEAK_CONTACT_AREA_CYCLE, PEAK_CONTACT_AREA_MM2,
+        PEAK_PRESSURE_CYCLE, PEAK_PRESSURE_MPA, Scalar,
     },
     joint_range,
 };
@@ -82,12 +84,33 @@ impl PartEstimate {
     }
 
     fn errors(self, summary: &Summary) -> QuantityErrors {
+        let worn = self
+            .wear
+            .as_ref()
+            .map_or(0.0, |[mass, depth]| mass.abs().max(depth.abs()));
         let [mass, depth] = each(self.wear);
         let [later_pressure, later_area] = each(self.later);
         let [pressure, area, ap, ie] = each(self.first);
-        let of_peak = |cycle: f64, first, later| if cycle > 0.0 { later } else { first };
-        let pressure = of_peak(summary[&PEAK_PRESSURE_CYCLE], pressure, later_pressure);
-        let area = of_peak(summary[&PEAK_CONTACT_AREA_CYCLE], area, later_area);
+        // A later cycle was solved again on a surface of the same depth; its own part knows the wear no better than that.
+        let of_peak = |[peak, first_peak, cycle]: [&Scalar; 3], first, later: Found<f64>| {
+            if summary[cycle] == 0.0 {
+                return first;
+            }
+            let by_wear = 1.0 - summary[first_peak] / summary[peak];
+            later.map(|own| own.hypot(by_wear * worn).copysign(own))
+        };
+        let of_pressure = [
+            &PEAK_PRESSURE_MPA,
+            &FIRST_CYCLE_PEAK_PRESSURE_MPA,
+            &PEAK_PRESSURE_CYCLE,
+        ];
+        let pressure = of_peak(of_pressure, pressure, later_pressure);
+        let of_area = [
+            &PEAK_CONTACT_AREA_MM2,
+            &FIRST_CYCLE_CONTACT_AREA_MM2,
+            &PEAK_CONTACT_AREA_CYCLE,
+        ];
+        let area = of_peak(of_area, area, later_area);
         let errors: QuantityErrors = vec![
             (&MASS_LOSS_MG, mass),
             (&MAX_DEPTH_MM, depth),

@@ -370,3 +370,27 @@ fn what_cannot_be_estimated_says_why() {
             .is_some()
     );
 }
+
+#[test]
+fn a_finer_run_is_within_three_times_the_stated_error_of_the_area() {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR"))
+        .join("../../../shared/reproducers/second/contact-area-error");
+    if !folder.exists() {
+        println!("skipped: {} is not there", folder.display());
+        return;
+    }
+    for number in [78, 110, 120] {
+        let [own, finer] = ["case", "finer"].map(|word| {
+            let file = folder.join(format!("{word}-{number}.toml"));
+            run(&Case::read(&file).unwrap_or_else(|error| panic!("{error}")))
+        });
+        let area = |summary: &Summary| summary[&catalogue::PEAK_CONTACT_AREA_MM2];
+        let seen = 100.0 * (area(&finer) / area(&own) - 1.0).abs();
+        let error = own.error.as_ref().expect("is asked for");
+        let stated = error.of(&catalogue::PEAK_CONTACT_AREA_MM2).percent.total;
+        assert!(
+            seen < 3.0 * stated,
+            "{number}: {stated} % stated, {seen} % seen"
+        );
+    }
+}
