@@ -43,8 +43,10 @@ def predictive(fit, samples, row, log_sd, rng):
 
 
 def left_out(form, rows, geometry_log_sd):
-    """By test: quantiles of what another laboratory would measure, and whether what was measured is inside the intervals; then
-    the factor on the laboratories' scatter with which 90 % intervals are honest."""
+    """By test: quantiles of what another laboratory would measure, and whether what was measured is inside the intervals.
+
+    Also the factor on the laboratories' scatter with which 90 % intervals are honest.
+    """
     rng, found, logs_of = np.random.default_rng(SEED), {}, {}
     for laboratory in dict.fromkeys(row["laboratory"] for row in rows):
         own = [row for row in rows if row["laboratory"] == laboratory]
@@ -194,7 +196,15 @@ def main():
             page += (
                 table_of_constants(fit, samples) + "\n" + table_of_tests(rows, found) + "\n" + table_of_coverage(rows, found)
             )
-    names = ["form", "factor, exponent", "log predictive density", "fixed, stable knee", "hips", "widened by", "inside 50 %, 90 %"]
+    names = [
+        "form",
+        "factor, exponent",
+        "log predictive density",
+        "fixed, stable knee",
+        "hips",
+        "widened by",
+        "inside 50 %, 90 %",
+    ]
     page += "\n" + head(names) + "".join(line(each) for each in evidence)
     page_path.write_text(page, encoding="utf-8")
 
