@@ -1,6 +1,11 @@
 # Functions that the parts of the tests share. Sourced by them, from the root of the repository.
 # shellcheck shell=bash
 
+# The crates that have tests in Rust. They share their build with the command: the Python package, which has none, turns on
+# features of dependencies that the command does without, and all crates would be built for both.
+# shellcheck disable=SC2034 # used by the parts
+tested=(--workspace --exclude condyle-python)
+
 # Ends a part that this machine cannot run, with the reason.
 skip() {
     printf 'skipped: %s: %s\n' "$(basename "$0")" "$1" >&2
@@ -87,7 +92,7 @@ need_results() {
 need_figures() {
     local profile=$1
     need_command python3 python3
-    figures=$(cargo bench --profile "$profile" --locked --quiet -p condyle-lab --bench figures --no-run --message-format=json |
+    figures=$(cargo bench --profile "$profile" --locked --quiet "${tested[@]}" --bench figures --no-run --message-format=json |
         python3 -c 'import json, sys
 for line in map(json.loads, sys.stdin):
     if line.get("target", {}).get("name") == "figures": print(line["executable"])')

@@ -54,6 +54,8 @@ struct Collapses<'a> {
     /// The triangles of the body around each vertex.
     originals: Vec<Vec<u32>>,
     triangles: Vec<[u32; 3]>,
+    /// The normals of the present triangles, twice their areas long, and those lengths.
+    planes: Vec<(Vec3, f64)>,
     /// The unit normals of the original triangles.
     normals: Vec<Vec3>,
     /// The present triangles around each vertex; none around a removed one.
@@ -69,15 +71,17 @@ struct Collapses<'a> {
 
 impl<'a> Collapses<'a> {
     fn new(body: &'a TriangleMesh, deviation_mm: f64) -> Self {
-        let normal = |triangle| {
-            let normal = normal(&body.corners(triangle));
-            normal.try_normalize(0.0).unwrap_or_default()
-        };
+        let triangles = 0..body.triangles.len();
+        let planes: Vec<_> = triangles
+            .map(|triangle| plane(&body.corners(triangle)))
+            .collect();
+        let unit = |(normal, _): &(Vec3, f64)| normal.try_normalize(0.0).unwrap_or_default();
         let mut collapses = Self {
             body,
             originals: body.triangles_around(),
             triangles: body.triangles.clone(),
-            normals: (0..body.triangles.len()).map(normal).collect(),
+            normals: planes.iter().map(unit).collect(),
+            planes,
             around: body.triangles_around(),
             is_fixed: border(body),
             removed: vec![Vec::new(); body.triangles.len()],
@@ -94,7 +98,7 @@ impl<'a> Collapses<'a> {
     /// Puts a vertex into the queue, with the cost of its cheapest collapse, unless it is fixed.
     fn offer(&mut self, vertex: u32) {
         if !self.is_fixed[vertex as usize]
-            && let Some(&(cost, _)) = self.targets(vertex).first()
+            && let Some(cost) = self.least_cost(vertex)
         {
             let candidate = Reverse(Candidate { cost, vertex });
             self.queue.push((candidate, self.stamps[vertex as usize]));
@@ -109,6 +113,12 @@ impl<'a> Collapses<'a> {
                 return Some(next.vertex);
             }
         }
+    }
+
+    fn least_cost(&self, vertex: u32) -> Option<f64> {
+        let neighbours = self.neighbours(vertex).into_iter();
+        let costs = neighbours.map(|to| self.cost(vertex, to));
+        costs.min_by(f64::total_cmp)
     }
 
     /// Returns the vertices that `vertex` may move to, each after its cost, the cheapest first.
@@ -130,21 +140,22 @@ impl<'a> Collapses<'a> {
     }
 
     fn off_plane(&self, triangle: u32, edge: &Vec3) -> f64 {
-        let normal = normal(&self.corners(triangle));
-        normal.dot(edge).powi(2) / normal.norm().max(f64::MIN_POSITIVE)
+        let (normal, length) = self.planes[triangle as usize];
+        normal.dot(edge).powi(2) / length.max(f64::MIN_POSITIVE)
     }
 
     fn neighbours(&self, vertex: u32) -> Vec<u32> {
-        let around = self.around[vertex as usize].iter();
-        let corners = around.flat_map(|&triangle| self.triangles[triangle as usize]);
-        let mut neighbours: Vec<u32> = corners.filter(|&corner| corner != vertex).collect();
+        let around = &self.around[vertex as usize];
+        let mut neighbours = Vec::with_capacity(2 * around.len());
+        for &triangle in around {
+            for corner in self.triangles[triangle as usize] {
+                if corner != vertex && !neighbours.contains(&corner) {
+                    neighbours.push(corner);
+                }
+            }
+        }
         neighbours.sort_unstable();
-        neighbours.dedup();
         neighbours
-    }
-
-    fn corners(&self, triangle: u32) -> [Vec3; 3] {
-        self.places(self.triangles[triangle as usize])
     }
 
     fn places(&self, corners: [u32; 3]) -> [Vec3; 3] {
@@ -189,8 +200,7 @@ impl<'a> Collapses<'a> {
 
     fn keeps_normals(&self, moved: &[(u32, [u32; 3])]) -> bool {
         moved.iter().all(|&(triangle, corners)| {
-            let normal = normal(&self.places(corners));
-            let size = normal.norm();
+            let (normal, size) = plane(&self.places(corners));
             size > 0.0 && self.normals[triangle as usize].dot(&normal) >= LEAST_COSINE * size
         })
     }
@@ -263,6 +273,7 @@ impl<'a> Collapses<'a> {
         }
         for &(triangle, corners) in moved {
             self.triangles[triangle as usize] = corners;
+            self.planes[triangle as usize] = plane(&self.places(corners));
             for corner in corners {
                 self.around[corner as usize].push(triangle);
             }
@@ -296,9 +307,10 @@ impl<'a> Collapses<'a> {
     }
 }
 
-/// Returns the normal of a triangle, twice its area long.
-fn normal([a, b, c]: &[Vec3; 3]) -> Vec3 {
-    (b - a).cross(&(c - a))
+/// Returns the normal of a triangle, twice its area long, and its length.
+fn plane([a, b, c]: &[Vec3; 3]) -> (Vec3, f64) {
+    let normal = (b - a).cross(&(c - a));
+    (normal, normal.norm())
 }
 
 /// Returns true for each vertex on an edge that has other than two triangles.
@@ -365,7 +377,7 @@ mod tests {
 
     fn area(body: &TriangleMesh) -> f64 {
         let areas =
-            (0..body.triangles.len()).map(|triangle| normal(&body.corners(triangle)).norm() / 2.0);
+            (0..body.triangles.len()).map(|triangle| plane(&body.corners(triangle)).1 / 2.0);
         areas.sum()
     }
 
@@ -441,7 +453,7 @@ mod tests {
         assert!(coarse.triangles.len() < folded.triangles.len() / 5);
         let vector = |body: &TriangleMesh| -> Vec3 {
             (0..body.triangles.len())
-                .map(|triangle| normal(&body.corners(triangle)))
+                .map(|triangle| plane(&body.corners(triangle)).0)
                 .sum()
         };
         // Both sides are covered, and no triangle crosses the edge between them.

@@ -1,6 +1,8 @@
 //! The first and the last cycle for ParaView: at every increment the insert with its pressure, and the
 //! femur in its pose.
 
+use std::fmt::Write;
+
 use condyle::{
     Vec3,
     evolve::{March, SolvedCycle},
@@ -123,11 +125,11 @@ pub fn cycle_pressure_csv(march: &March) -> Option<String> {
     let nodes = march.insert().surface_nodes();
     let mut text = String::from("percent,node,pressure_mpa\n");
     for (increment, row) in cycle.rows.iter().enumerate() {
-        let pressures = cycle.pressures_mpa(increment);
+        let (percent, pressures) = (row.percent.to_string(), cycle.pressures_mpa(increment));
         let pressed = nodes.iter().zip(pressures).filter(|(_, mpa)| *mpa > 0.0);
         for (node, mpa) in pressed {
             // Single precision halves a file whose values need few digits.
-            text += &format!("{},{node},{}\n", row.percent, mpa as f32);
+            writeln!(text, "{percent},{node},{}", mpa as f32).expect("a string takes all");
         }
     }
     Some(text)

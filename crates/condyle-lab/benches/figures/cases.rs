@@ -28,6 +28,10 @@ pub const SMALL: [(&str, &[&str]); 4] = [
             "contact.model=deformable",
             "contact.deformable.plasticity=j2",
             "contact.deformable.yield_stress_mpa=9",
+            // The most expensive model: smaller than the others.
+            "insert.edge_mm=4",
+            "insert.layers=3",
+            "march.updates=1",
         ],
     ),
     (

@@ -17,13 +17,14 @@ impl Table {
     /// # Errors
     /// A row does not fit the header, or a cell is not a number.
     pub fn parse(text: &str, path: &Path) -> Result<Self, ReportError> {
-        let lines = csv::ReaderBuilder::new()
+        let mut lines = csv::ReaderBuilder::new()
             .has_headers(false)
             .flexible(true)
-            .trim(csv::Trim::All)
             .from_reader(text.trim_start_matches('\u{feff}').as_bytes());
         let mut table = Self::default();
-        for row in lines.into_records().filter_map(Result::ok) {
+        let mut row = csv::StringRecord::new();
+        // The text is valid, so that no row is an error.
+        while lines.read_record(&mut row).unwrap_or_default() {
             table.push(&row, path)?;
         }
         Ok(table)
@@ -47,7 +48,7 @@ impl Table {
 
     fn push(&mut self, row: &csv::StringRecord, path: &Path) -> Result<(), ReportError> {
         if self.names.is_empty() {
-            self.names = row.iter().map(str::to_owned).collect();
+            self.names = row.iter().map(|name| name.trim().to_owned()).collect();
             self.columns = vec![Vec::new(); row.len()];
             return Ok(());
         }
@@ -66,7 +67,8 @@ impl Table {
                 "has {found} values; its header names {expected} columns"
             ));
         }
-        for ((cell, name), column) in row.iter().zip(&self.names).zip(&mut self.columns) {
+        let cells = row.iter().map(str::trim);
+        for ((cell, name), column) in cells.zip(&self.names).zip(&mut self.columns) {
             let value = if cell.is_empty() {
                 Ok(f64::NAN)
             } else {
