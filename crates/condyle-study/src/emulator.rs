@@ -1,10 +1,14 @@
 //! A Gaussian process as an emulator of an output: fitted to tests, it predicts others with a standard deviation.
 
+use std::ops::Range;
+
 use nalgebra::{Cholesky, DMatrix, DVector, Dyn};
 use serde::Serialize;
 
 use crate::{
     descent::minimum,
+    distribution::normal_quantile,
+    random::Random,
     statistics::{mean, standard_deviation},
 };
 
@@ -22,6 +26,9 @@ const MIN_VARIANCE: f64 = 1e-20;
 /// Largest number of tests that determine lengths and nugget: the time of a fit grows with the cube of it, and more
 /// tests change them little.
 const MAX_FITTED: usize = 128;
+
+/// Smallest nugget of joint draws, which rounding of the covariance of several hundred close points needs.
+const DRAWN_NUGGET: f64 = 1e-7;
 
 /// Groups of tests, each of which is predicted by an emulator fitted to the others.
 const FOLDS: usize = 5;
@@ -218,22 +225,96 @@ impl Emulator {
     /// Predicts the output at a point, with the standard deviation of the process there, which includes that of its mean
     /// and excludes the nugget.
     pub fn predict(&self, point: &[f64]) -> Prediction {
-        let process = &self.process;
+        self.predict_average(&self.with_tests(0..point.len(), point), 1.0)
+    }
+
+    /// Returns the correlation of a place along some axes with every test.
+    pub fn with_tests(&self, axes: Range<usize>, place: &[f64]) -> DVector<f64> {
+        let lengths = &self.lengths[axes.clone()];
         let with = self.points.iter();
-        let with = with.map(|own| correlation(&self.lengths, own, point));
-        let with = DVector::from_iterator(self.points.len(), with);
-        let mean = process.mean + with.dot(&process.weights);
-        let of_mean = 1.0 - with.dot(&process.ones);
-        let mut solved = with;
-        process
-            .correlation
-            .l_dirty()
-            .solve_lower_triangular_mut(&mut solved);
-        let variance = 1.0 - solved.norm_squared() + of_mean * of_mean / process.ones.sum();
+        let with = with.map(|own| correlation(lengths, &own[axes.clone()], place));
+        DVector::from_iterator(self.points.len(), with)
+    }
+
+    /// Returns the correlation of two places along some axes.
+    pub fn correlation(&self, axes: Range<usize>, one: &[f64], other: &[f64]) -> f64 {
+        correlation(&self.lengths[axes], one, other)
+    }
+
+    /// Returns the contribution of every test to a mean: w_i c_i.
+    pub fn contributions(&self, with: &DVector<f64>) -> DVector<f64> {
+        with.component_mul(&self.process.weights)
+    }
+
+    /// Predicts a weighted mean of outputs, whose weights sum to 1, from their mean correlations `with` the tests and
+    /// `among` each other.
+    pub fn predict_average(&self, with: &DVector<f64>, among: f64) -> Prediction {
+        let mean = self.process.mean + with.dot(&self.process.weights);
+        let whitened = self.whitened(with);
+        let variance = self.covariance([&whitened, &whitened], among).max(0.0);
         Prediction {
             mean: self.centre + self.scale * mean,
-            standard_deviation: self.scale * (process.variance * variance.max(0.0)).sqrt(),
+            standard_deviation: self.scale * (self.process.variance * variance).sqrt(),
         }
+    }
+
+    /// Returns L^-1 c, where R = L L^T, and below it (1 - 1^T R^-1 c) / sqrt(1^T R^-1 1), for the covariance of means of
+    /// outputs whose correlations with the tests are c.
+    pub fn whitened(&self, with: &DVector<f64>) -> DVector<f64> {
+        let process = &self.process;
+        let of_mean = (1.0 - with.dot(&process.ones)) / process.ones.sum().sqrt();
+        let mut solved = with.clone();
+        let lower = process.correlation.l_dirty();
+        lower.solve_lower_triangular_mut(&mut solved);
+        solved.push(of_mean)
+    }
+
+    /// Returns the covariance of two means of outputs, relative to the variance of the process, from their
+    /// [`whitened`](Self::whitened) correlations and their correlation `among` each other.
+    pub fn covariance(&self, [one, other]: [&DVector<f64>; 2], among: f64) -> f64 {
+        let last = self.points.len();
+        among - one.rows(0, last).dot(&other.rows(0, last)) + one[last] * other[last]
+    }
+
+    /// Returns random outputs at `points`, `count` times: joint draws from the process with its nugget; none if rounding
+    /// makes their covariance indefinite.
+    pub fn draws(
+        &self,
+        points: &[Vec<f64>],
+        count: usize,
+        numbers: &mut Random,
+    ) -> Option<Vec<DVector<f64>>> {
+        let axes = || 0..self.lengths.len();
+        let with: Vec<DVector<f64>> = points
+            .iter()
+            .map(|one| self.with_tests(axes(), one))
+            .collect();
+        let mean = |with: &DVector<f64>| self.predict_average(with, 1.0).mean;
+        let means = DVector::from_iterator(points.len(), with.iter().map(mean));
+        let whitened: Vec<DVector<f64>> = with.iter().map(|with| self.whitened(with)).collect();
+        // The smallest nugget keeps the covariance of close points positive definite.
+        let nugget = self.nugget().max(DRAWN_NUGGET);
+        let covariance = DMatrix::from_fn(points.len(), points.len(), |row, column| {
+            let among = self.correlation(axes(), &points[row], &points[column]);
+            let own = if row == column { nugget } else { 0.0 };
+            self.covariance([&whitened[row], &whitened[column]], among) + own
+        });
+        let lower = covariance.cholesky()?.unpack();
+        let scale = self.scale * self.process.variance.sqrt();
+        let mut draw = || {
+            let normal = DVector::from_fn(points.len(), |_, _| normal_quantile(numbers.share()));
+            &means + &lower * normal * scale
+        };
+        Some((0..count).map(|_| draw()).collect())
+    }
+
+    pub fn axes(&self) -> usize {
+        self.lengths.len()
+    }
+
+    /// Returns the nugget, relative to the variance of the process.
+    pub fn nugget(&self) -> f64 {
+        parameters(&self.logarithms).1
     }
 
     /// Returns, for each test, its value less the prediction from the other tests, and the standard deviation of this
@@ -250,15 +331,14 @@ impl Emulator {
 
     /// Returns the standard deviation by which a test scatters around the process, from the nugget.
     pub fn noise(&self) -> f64 {
-        let (_, nugget) = parameters(&self.logarithms);
-        self.scale * (self.process.variance * nugget).sqrt()
+        self.scale * (self.process.variance * self.nugget()).sqrt()
     }
 
     pub fn model(&self) -> Model {
         let process = &self.process;
         Model {
             lengths: self.lengths.clone(),
-            nugget: parameters(&self.logarithms).1,
+            nugget: self.nugget(),
             mean: self.centre + self.scale * process.mean,
             standard_deviation: self.scale * process.variance.sqrt(),
             points: self.points.clone(),

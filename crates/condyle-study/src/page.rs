@@ -15,13 +15,13 @@ use crate::{
         Answers,
         data::Spread,
         effects::Effect,
-        label,
         ranking::{Best, Front, Ranking},
-        shown,
+        robust::Robust,
+        words::{label, shown},
     },
     error::StudyError,
     plan::Plan,
-    statistics::{extent, mean},
+    statistics::{extent, mean, quantile},
     store::Store,
 };
 
@@ -70,6 +70,7 @@ fn pictures(answers: &Answers) -> Vec<Picture> {
     let all = [
         answers.ranking.as_ref().map(ranking),
         answers.best.as_ref().and_then(progress),
+        answers.robust.as_ref().map(robust),
         indices(answers),
         elementary(answers),
         tornado(answers),
@@ -115,6 +116,25 @@ fn progress(best: &Best) -> Option<Picture> {
     };
     let svg = plots_svg("Search", &[plot], 1, ["", "", "best so far"]);
     Some(("search.svg", "The progress of the search.".to_owned(), svg))
+}
+
+fn robust(robust: &Robust) -> Picture {
+    let both = [
+        ("robust optimum", &robust.comparison.optimum),
+        ("first design", &robust.comparison.first),
+    ];
+    let bars = both.map(|(name, design)| Bar {
+        name: name.to_owned(),
+        span: [0.0, design.statistic.value],
+        interval: Some([0.05, 0.95].map(|share| quantile(&design.outputs, share))),
+        is_grey: false,
+    });
+    let caption = format!(
+        "The {} under the disturbances; the lines go from the 5th to the 95th percentile of the predicted output.",
+        robust.statistic
+    );
+    let svg = bars_svg(&robust.statistic, &superscript(robust.unit), None, &bars);
+    ("robust.svg", caption, svg)
 }
 
 fn indices(answers: &Answers) -> Option<Picture> {

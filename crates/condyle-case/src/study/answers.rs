@@ -27,6 +27,8 @@ pub struct Bound {
     pub least: Option<f64>,
     /// The largest value allowed.
     pub most: Option<f64>,
+    /// The probability under the disturbances with which a robust search keeps it.
+    pub probability: f64,
 }
 
 impl Answers {
@@ -80,6 +82,7 @@ impl Bound {
             output,
             least,
             most,
+            probability: keys.probability,
         })
     }
 

@@ -109,6 +109,12 @@ impl Study {
         )
     }
 
+    /// Returns the number of inputs that a search chooses; the others, which follow them, are disturbances.
+    pub fn chosen(&self) -> usize {
+        let chosen = self.inputs.iter().filter(|input| !input.is_disturbance);
+        chosen.count()
+    }
+
     /// Returns the changes of the case in one test: those of the design, then the inputs'. An input without a value
     /// sets nothing.
     pub fn assignments(&self, alternative: usize, values: &[Option<Level>]) -> Vec<Assignment> {
@@ -206,6 +212,11 @@ impl Study {
                 let bounds = self.answers.bounds.iter();
                 let bound = bounds.map(|bound| (bound.output.key, bound.least, bound.most));
                 out.line(&format!("{:?}", bound.collect::<Vec<_>>()), "");
+                if self.chosen() < self.inputs.len() {
+                    let kept = self.answers.bounds.iter().map(|bound| bound.probability);
+                    let kept: Vec<f64> = kept.collect();
+                    out.line(&format!("chosen {}, {kept:?}", self.chosen()), "");
+                }
             }
             design => design.write(&mut out),
         }

@@ -20,6 +20,8 @@ settings! {
         key: String;
         /// Its name in tables and pictures; its key if not given.
         name: String = String::new();
+        /// Whether it scatters in a search for a robust optimum, instead of being chosen.
+        disturbance: bool = false;
     }
 
     /// Uniform.
@@ -138,6 +140,8 @@ settings! {
     OptimiseKeys {
         /// The output to be minimised within the limits; "pareto" for both outputs of the key pareto of the answers.
         minimise: String = "mass_loss_mg".to_owned();
+        /// Percentile of the output under the disturbances that a robust search minimises; its mean if not given.
+        percentile: Option<f64> = None, in within(50.0, 99.0);
         /// Largest number of tests.
         size: u64 = 100, in within(10.0, 500.0);
         /// Seed of the random numbers: the same seed gives the same tests.
@@ -168,6 +172,8 @@ settings! {
         least: Option<f64> = None;
         /// The largest value allowed.
         most: Option<f64> = None;
+        /// Probability under the disturbances with which a robust search keeps the limit.
+        probability: f64 = 0.95, in within(0.5, 0.99);
     }
 
     /// The questions.

@@ -31,6 +31,8 @@ pub struct Input {
     pub name: String,
     /// The distribution of its values.
     pub variation: Variation,
+    /// True if it scatters in a search for a robust optimum.
+    pub is_disturbance: bool,
     /// True if its values are whole numbers.
     pub is_whole: bool,
     /// The keys that a value counts standard deviations of, perhaps none of a case; `None` where it is the value of
@@ -57,6 +59,7 @@ impl Input {
             key: key.to_owned(),
             name: key.to_owned(),
             variation,
+            is_disturbance: false,
             is_whole: false,
             scaled: None,
             span: 0..0,
@@ -70,7 +73,7 @@ impl Input {
         let is_levels =
             section.value("levels").is_some() && section.value("distribution").is_none();
         let variation = if is_levels {
-            section.check_keys(&["key", "name", "levels"], log);
+            section.check_keys(&["key", "name", "disturbance", "levels"], log);
             Variation::read_as("levels", section, log)
         } else {
             let items = [InputKeys::items(), Variation::items()].concat();
@@ -87,6 +90,7 @@ impl Input {
             } else {
                 keys.name
             },
+            is_disturbance: keys.disturbance,
             is_whole: case.is_whole_number(&key),
             span,
             ..Self::new(&key, variation)

@@ -5,7 +5,9 @@ use std::sync::Arc;
 
 use super::answers::{Answers, output};
 use super::contents::{Alternative, Correlation, PARETO, Study};
-use super::declared::{AlternativeKeys, CorrelationKeys, Design, HeadingKeys, Variation};
+use super::declared::{
+    AlternativeKeys, CorrelationKeys, Design, HeadingKeys, OptimiseKeys, Variation,
+};
 use super::input::{Input, check_count, read_rows};
 use crate::case::{Assignment, Case, CaseReader, ChangeError};
 use crate::config::*;
@@ -131,6 +133,10 @@ fn inputs(
     }
     check_count("inputs", count, root.key_span("vary"), log)?;
     let inputs = listed(root, "vary", log, |one, log| Input::read(one, case, log));
+    let inputs = inputs.map(|mut inputs| {
+        inputs.sort_by_key(|input| input.is_disturbance);
+        inputs
+    });
     if count == 0 && root.value("alternative").is_none() {
         let advice = "add `[[vary]]` with `key = \"contact.friction\"`, `low` and `high`";
         log.problem(0..0, Fault::new("the study has no varied inputs", advice));
@@ -290,27 +296,7 @@ impl Study {
             log.problem(span, fault);
         }
         match &self.design {
-            Design::Optimise(keys) => {
-                if keys.minimise != PARETO {
-                    output(&keys.minimise, "minimise", section, log);
-                } else if self.answers.pareto.is_none() {
-                    let fault = Fault::new(
-                        "a search for a Pareto front needs two outputs",
-                        "give `pareto = [\"mass_loss_mg\", \"peak_pressure_mpa\"]` in `[answers]`",
-                    );
-                    log.problem(section.value_span("minimise"), fault);
-                }
-                let is_range = |input: &&Input| {
-                    matches!(input.variation, Variation::Uniform(_)) && !input.is_whole
-                };
-                if let Some(input) = self.inputs.iter().find(|input| !is_range(input)) {
-                    let fault = Fault::new(
-                        format!("a search needs a range, and `{}` has none", input.key),
-                        "give `low` and `high` of a number that does not count",
-                    );
-                    log.problem(input.span.clone(), fault);
-                }
-            }
+            Design::Optimise(keys) => self.check_search(keys, section, log),
             Design::Morris(keys) if keys.levels % 2 == 1 => {
                 let message = format!(
                     "a Morris design needs an even number of levels; {} is odd",
@@ -322,6 +308,62 @@ impl Study {
                 );
             }
             _ => {}
+        }
+    }
+
+    /// Reports outputs that a search cannot minimise, and inputs that it cannot choose.
+    fn check_search(&self, keys: &OptimiseKeys, section: &Section<'_>, log: &mut Log<'_>) {
+        if keys.minimise != PARETO {
+            output(&keys.minimise, "minimise", section, log);
+        } else if self.answers.pareto.is_none() {
+            let fault = Fault::new(
+                "a search for a Pareto front needs two outputs",
+                "give `pareto = [\"mass_loss_mg\", \"peak_pressure_mpa\"]` in `[answers]`",
+            );
+            log.problem(section.value_span("minimise"), fault);
+        }
+        for input in &self.inputs {
+            if let Some((problem, advice)) = unsearchable(input) {
+                log.problem(input.span.clone(), Fault::new(problem, advice));
+            }
+        }
+        let chosen = self.chosen();
+        if chosen == 0 {
+            let advice = "remove `disturbance = true` from an input with `low` and `high`";
+            let fault = Fault::new("a search needs an input that is no disturbance", advice);
+            log.problem(section.span(), fault);
+        }
+        if keys.minimise == PARETO && chosen < self.inputs.len() {
+            let advice =
+                "minimise one of the outputs and limit the other, or remove `disturbance = true`";
+            let fault = Fault::new("a robust search minimises one output", advice);
+            log.problem(section.value_span("minimise"), fault);
+        }
+        if keys.percentile.is_some() && chosen == self.inputs.len() {
+            let advice = "add `[[vary]]` with a distribution and `disturbance = true`, or leave the percentile out";
+            let fault = Fault::new("a percentile needs disturbances", advice);
+            log.problem(section.value_span("percentile"), fault);
+        }
+    }
+}
+
+/// Returns the reason why a search can neither choose an input nor let it scatter, and the remedy.
+fn unsearchable(input: &Input) -> Option<(String, &'static str)> {
+    let key = &input.key;
+    match &input.variation {
+        Variation::Levels(_) if input.is_disturbance => {
+            let problem = format!("a disturbance needs a distribution, and `{key}` has levels");
+            Some((
+                problem,
+                "use `distribution = \"empirical\"` with `values`, or compare words as `[[alternative]]` designs",
+            ))
+        }
+        _ if input.is_disturbance => None,
+        Variation::Uniform(_) if !input.is_whole => None,
+        _ => {
+            let problem = format!("a search needs a range, and `{key}` has none");
+            let advice = "give `low` and `high` of a number that does not count, or `disturbance = true` for an input that scatters";
+            Some((problem, advice))
         }
     }
 }

@@ -349,6 +349,44 @@ fn a_search_for_a_front_grows_to_the_tests_of_a_larger_one() {
 }
 
 #[test]
+fn a_robust_search_states_its_probabilities_and_grows() {
+    let study = |size: u32| {
+        format!(
+            "case = \"case.toml\"\n[design]\nkind = \"optimise\"\npercentile = 90\nsize = {size}\n\
+             [[vary]]\nkey = \"contact.friction\"\ndistribution = \"truncated-normal\"\nstandard_deviation = 0.014\n\
+             low = 0.03\nhigh = 0.11\ndisturbance = true\n\
+             [[vary]]\nkey = \"insert.sagittal_radius_mm\"\nlow = 45.0\nhigh = 70.0\n\
+             [[limit]]\noutput = \"peak_pressure_mpa\"\nmost = 60\n"
+        )
+    };
+    let bench = bench(&study(12));
+    let run = |out: &str| bench.say(&["study", "study.toml", "--out", out]);
+    assert_eq!(run("out").code, Some(0));
+    fs::write(bench.path("study.toml"), study(16)).unwrap();
+    let said = run("out");
+    assert_eq!(said.code, Some(0), "{}", said.err);
+    assert_eq!(run("whole").code, Some(0));
+    for file in ["table.csv", "answers.json"] {
+        let bytes = |out: &str| fs::read(bench.path(out).join(file)).unwrap();
+        assert_eq!(bytes("out"), bytes("whole"), "{file}");
+    }
+    let robust = &answers(&bench)["robust"];
+    assert_eq!(robust["inputs"][0]["name"], "insert.sagittal_radius_mm");
+    assert_eq!(robust["statistic"], "90 % quantile of mass loss");
+    assert_eq!(robust["limits"][1], "all of these", "{robust}");
+    let [low, high] = [0, 1].map(|end| robust["beats"]["interval"][end].as_f64().unwrap());
+    assert!(0.0 <= low && low <= high && high <= 1.0, "{robust}");
+    assert!(
+        said.out
+            .contains("| probability: better than the first design"),
+        "{}",
+        said.out
+    );
+    let page = fs::read_to_string(bench.path("out").join("study.html")).unwrap();
+    assert!(page.contains("The robust optimum, row"), "{page}");
+}
+
+#[test]
 fn what_is_wrong_with_a_study_is_said_with_its_place() {
     let case = "case = \"case.toml\"\n";
     let vary = |key: &str, rest: &str| format!("{case}[[vary]]\nkey = \"{key}\"\n{rest}\n");
@@ -381,6 +419,30 @@ fn what_is_wrong_with_a_study_is_said_with_its_place() {
         (
             vary("contact.friction", "levels = [0.1]\nlow = 0.2"),
             vec!["low"],
+        ),
+        (
+            vary(
+                "contact.friction",
+                "low = 0.01\nhigh = 0.1\ndisturbance = true\n[design]\nkind = \"optimise\"",
+            ),
+            vec![
+                "an input that is no disturbance",
+                "remove `disturbance = true`",
+            ],
+        ),
+        (
+            vary(
+                "contact.friction",
+                "low = 0.01\nhigh = 0.1\n[design]\nkind = \"optimise\"\npercentile = 90",
+            ),
+            vec!["a percentile needs disturbances", "`disturbance = true`"],
+        ),
+        (
+            vary(
+                "contact.friction",
+                "levels = [0.05, 0.1]\ndisturbance = true\n[design]\nkind = \"optimise\"",
+            ),
+            vec!["a disturbance needs a distribution", "empirical"],
         ),
         (
             vary("contact.friction", "distribution = \"nomal\""),

@@ -5,9 +5,11 @@ pub(crate) mod effects;
 pub(crate) mod emulated;
 pub(crate) mod indices;
 pub(crate) mod ranking;
+pub(crate) mod robust;
+pub(crate) mod words;
 
 use condyle_lab::aligned;
-use condyle_results::{catalogue, split_unit};
+use condyle_results::split_unit;
 use serde::Serialize;
 
 use crate::{
@@ -17,9 +19,12 @@ use crate::{
         emulated::{Emulated, MIN_Q2, emulated},
         indices::Indices,
         ranking::{Best, Front, Ranking},
+        robust::Robust,
+        words::{chance, label, labelled, percent, percents, shown, with_interval},
     },
     error::StudyError,
     plan::Plan,
+    search::Standing,
     store::Store,
 };
 
@@ -41,6 +46,7 @@ pub struct Answers {
     pub(crate) ranking: Option<Ranking>,
     pub(crate) front: Option<Front>,
     pub(crate) best: Option<Best>,
+    pub(crate) robust: Option<Robust>,
 }
 
 #[derive(Clone, Debug, Serialize)]
@@ -109,6 +115,7 @@ impl Answers {
             ranking: Ranking::read(&data, store)?,
             front: Front::read(&data, store)?,
             best: Best::read(&data, store)?,
+            robust: Robust::read(&data, store)?,
         })
     }
 
@@ -154,6 +161,7 @@ impl Answers {
         let of_designs = || self.ranking.as_ref().and_then(sentence_of_designs);
         let of_front = || self.front.as_ref().and_then(sentence_of_front);
         of_search()
+            .or_else(|| self.robust.as_ref().map(Robust::sentence))
             .or_else(of_front)
             .or_else(of_designs)
             .or_else(|| self.sentence_of_indices())
@@ -171,6 +179,18 @@ impl Answers {
         ))
     }
 
+    /// Returns how a search for an optimum ended, in a sentence; none for other studies.
+    fn end_of_search(&self) -> Option<String> {
+        let best = self
+            .best
+            .as_ref()
+            .map(|best| (best.standing, best.minimised, best.unit));
+        let robust = self.robust.as_ref();
+        let robust = robust.map(|robust| (robust.standing, &*robust.statistic, robust.unit));
+        let (standing, minimised, unit) = best.or(robust)?;
+        Some(end_of_search(&standing?, label(minimised), unit))
+    }
+
     /// Tables in Markdown, short enough for a terminal.
     pub fn markdown(&self) -> String {
         let tables = self.tables();
@@ -183,7 +203,7 @@ impl Answers {
             parts.insert(1, failed);
         }
         parts.extend(self.doubts());
-        parts.extend(self.best.as_ref().and_then(end_of_search));
+        parts.extend(self.end_of_search());
         parts.join("\n")
     }
 
@@ -197,6 +217,10 @@ impl Answers {
             ("Elementary effects of Morris", self.table_of_elementary()),
             ("Effects of inputs", self.table_of_effects()),
             ("Best", self.table_of_best()),
+            (
+                "Robust optimum",
+                self.robust.as_ref().map(Robust::table).unwrap_or_default(),
+            ),
             ("Pareto front", self.table_of_front()),
         ];
         let filled = tables.into_iter().filter(|(_, rows)| !rows.is_empty());
@@ -434,37 +458,20 @@ fn margins(best: &Best, output: &str) -> String {
     own.collect::<Vec<_>>().join(", ")
 }
 
-/// Returns how a search ended, in a sentence; none while no test is within the limits.
-fn end_of_search(best: &Best) -> Option<String> {
-    let standing = best.standing?;
-    let unit = best.unit;
+/// Returns how a search ended, in a sentence.
+fn end_of_search(standing: &Standing, minimised: &str, unit: &str) -> String {
     let [improvement, error] =
         [standing.expected_improvement, standing.left_out_error.abs()].map(shown);
     let end = if standing.is_converged {
-        "The search has converged"
+        "The search has converged, and space-filling tests at its end promise nothing better"
     } else {
         "The optimum may be a local one, allow more tests"
     };
-    Some(format!(
-        "{end}: another test is expected to lower {} by {improvement} {unit} at most. Its emulator (Q2 {:.4}) predicts the best \
-         test from the others within {error} {unit}.\n",
-        label(best.minimised),
+    format!(
+        "{end}: another test is expected to lower {minimised} by {improvement} {unit} at most. Its emulator (Q2 {:.4}) predicts the \
+         best test from the others within {error} {unit}.\n",
         standing.q2
-    ))
-}
-
-/// Returns the label of an output in the catalogue; of an input, its key.
-pub(crate) fn label(key: &str) -> &str {
-    catalogue::output(key).map_or(key, |output| output.label)
-}
-
-/// Returns the label with the unit of an output; of an input, its key.
-fn labelled(key: &str) -> String {
-    match catalogue::output(key) {
-        Some(output) if output.unit().is_empty() => output.label.to_owned(),
-        Some(output) => format!("{}, {}", output.label, output.unit()),
-        None => key.to_owned(),
-    }
+    )
 }
 
 fn largest_first<'a, T>(own: impl Iterator<Item = &'a T>, size: impl Fn(&T) -> f64) -> Vec<&'a T> {
@@ -495,37 +502,6 @@ fn table_of_most<T>(
         return Vec::new();
     }
     table(head, &all[..all.len().min(MAX_ROWS)], |one| row(one))
-}
-
-/// Returns a number with four significant digits.
-pub(crate) fn shown(value: f64) -> String {
-    if value == 0.0 || !value.is_finite() {
-        return format!("{value:.0}");
-    }
-    let decimals = (3 - value.abs().log10().floor() as i32).max(0) as usize;
-    format!("{value:.decimals$}")
-}
-
-fn with_interval(share: f64, interval: [f64; 2]) -> String {
-    let [low, high] = interval.map(percent);
-    format!("{} ({low} to {high})", percent(share))
-}
-
-/// Returns a probability in percent, to a ten thousandth.
-fn chance(probability: f64) -> String {
-    format!("{:.2} %", 100.0 * probability)
-}
-
-fn percent(share: f64) -> String {
-    format!("{:.1} %", 100.0 * share)
-}
-
-/// Returns the share between two ends, or one if they are equal.
-fn percents([low, high]: [f64; 2]) -> String {
-    match low == high {
-        true => percent(low),
-        false => format!("{} to {}", percent(low), percent(high)),
-    }
 }
 
 #[cfg(test)]
@@ -573,13 +549,5 @@ mod tests {
         };
         assert_eq!(index(0.31, 0.3).first_in_words(), "0.310 (noise)");
         assert_eq!(index(0.3, 0.3).first_in_words(), "0.300");
-    }
-
-    #[test]
-    fn outputs_have_the_labels_of_the_catalogue_and_inputs_their_keys() {
-        assert_eq!(label("mass_loss_mg"), "mass loss");
-        assert_eq!(labelled("mass_loss_mg"), "mass loss, mg");
-        assert_eq!(labelled("medial_load_share"), "medial load share");
-        assert_eq!(labelled("contact.friction"), "contact.friction");
     }
 }

@@ -188,7 +188,7 @@ pub(crate) struct Valued {
 }
 
 impl Valued {
-    fn new(name: &str, values: &[f64], row: usize) -> Self {
+    pub fn new(name: &str, values: &[f64], row: usize) -> Self {
         Self {
             name: name.to_owned(),
             value: values[row],
@@ -218,13 +218,16 @@ fn margins(bound: &Bound, value: f64) -> impl Iterator<Item = Margin> {
 }
 
 impl Best {
-    /// Returns the optimum; none for a study that is not a search for one.
+    /// Returns the optimum; none for a study that is not a search for one, and for a robust search.
     pub fn read(data: &Data<'_>, store: &Store) -> Result<Option<Self>, StudyError> {
         let plan = data.plan;
         let objectives = plan.study().objectives();
         let [minimised] = objectives[..] else {
             return Ok(None);
         };
+        if plan.study().chosen() < plan.study().inputs.len() {
+            return Ok(None);
+        }
         let values = store.column(plan, minimised.key)?.values;
         let (row, progress) = least(&values, &data.within);
         let mut best = Self {

@@ -1,21 +1,25 @@
 //! A search for the optimum within limits: emulators of the outputs propose the tests.
 
 mod observed;
+mod outlook;
+mod robust;
+
 mod worth;
 
 use condyle_case::{
     config::Level,
-    study::{Bound, Design, Input, Study, Variation},
+    study::{Bound, Design, Input, Study},
 };
 use condyle_results::catalogue::Scalar;
 use serde::Serialize;
 
+pub(crate) use self::robust::{Comparison, Estimate, comparison};
 use self::{
     observed::{Observed, space_filling},
     worth::{Emulators, SHARP, WIDE},
 };
 use crate::{
-    distribution::Place,
+    distribution::{Place, level_along, level_at_share},
     plan::{Plan, Test, TestResult, output_value},
 };
 
@@ -23,6 +27,9 @@ use crate::{
 const BATCH: usize = 2;
 /// The first tests, a space-filling design, for each input.
 const FIRST_TESTS_PER_INPUT: usize = 3;
+
+/// Disturbances under which a robust search judges a design.
+const JUDGED: usize = 128;
 
 /// A stored test.
 type Known = (Test, TestResult);
@@ -40,7 +47,8 @@ pub(crate) fn next_tests(plan: &Plan, known: &[Known]) -> Option<Vec<Test>> {
     let first = first_tests(axes);
     if known.len() < first {
         let points = space_filling(0..first.min(size), axes, keys.seed);
-        let mut places: Vec<Vec<Place>> = points.map(|point| along_all(&point)).collect();
+        let chosen = plan.study().chosen();
+        let mut places: Vec<Vec<Place>> = points.map(|point| filling(&point, chosen)).collect();
         if is_case_inside(plan.study()) {
             places[0] = vec![Place::OfCase; axes];
         }
@@ -59,6 +67,13 @@ fn first_tests(axes: usize) -> usize {
     (FIRST_TESTS_PER_INPUT * axes).max(6)
 }
 
+/// Returns the places of a space-filling point: along the ranges of chosen inputs, by the distributions of disturbances.
+fn filling(point: &[f64], chosen: usize) -> Vec<Place> {
+    let (design, disturbance) = point.split_at(chosen);
+    let shares = disturbance.iter().copied().map(Place::Share);
+    along_all(design).into_iter().chain(shares).collect()
+}
+
 fn along_all(point: &[f64]) -> Vec<Place> {
     point.iter().copied().map(Place::Along).collect()
 }
@@ -73,11 +88,12 @@ fn tests_at(plan: &Plan, first: usize, places: Vec<Vec<Place>>) -> Vec<Test> {
     (first as u64..).zip(places).map(test).collect()
 }
 
-/// Returns the place of a value in the range of its input, 0 to 1.
+/// Returns the place of a value in the range of its input, 0 to 1; beyond for rare values of an unbounded distribution.
 fn along(input: &Input, value: Option<&Level>) -> Option<f64> {
-    match (&input.variation, value?) {
-        (Variation::Uniform(keys), Level::Number(value)) => {
-            Some((value - keys.low) / (keys.high - keys.low))
+    let ends = [0.0, 1.0].map(|end| level_along(input, end));
+    match (ends, value?) {
+        ([Level::Number(low), Level::Number(high)], Level::Number(value)) => {
+            Some((value - low) / (high - low))
         }
         _ => None,
     }
@@ -85,11 +101,11 @@ fn along(input: &Input, value: Option<&Level>) -> Option<f64> {
 
 /// Returns whether the case itself lies within the ranges.
 fn is_case_inside(study: &Study) -> bool {
-    let mut places = study
-        .inputs
-        .iter()
-        .map(|input| along(input, study.value_of_case(input).as_ref()));
-    places.all(|place| place.is_some_and(|place| (0.0..=1.0).contains(&place)))
+    let mut inputs = study.inputs.iter();
+    inputs.all(|input| {
+        let place = along(input, study.value_of_case(input).as_ref());
+        place.is_some_and(|place| input.is_disturbance || (0.0..=1.0).contains(&place))
+    })
 }
 
 /// The state of a search after its tests.
@@ -97,7 +113,7 @@ fn is_case_inside(study: &Study) -> bool {
 pub(crate) struct Standing {
     /// The improvement expected from the most promising test, with doubled standard deviations.
     pub expected_improvement: f64,
-    /// True if it is too small for another test.
+    /// True if it is too small for another test, and space-filling tests at the end did not enlarge it.
     pub is_converged: bool,
     /// Q2 of the emulator of the minimised output.
     pub q2: f64,
@@ -112,7 +128,7 @@ pub(crate) fn standing(plan: &Plan, known: &[Known]) -> Option<Standing> {
     };
     let observed = observed(plan, known);
     let emulators = Emulators::new(&observed)?;
-    let ([emulator], [best]) = (&emulators.minimised[..], &observed.best()[..]) else {
+    let ([outlook], [best]) = (&emulators.minimised[..], &emulators.seen.best()[..]) else {
         return None;
     };
     // Places count the tests that are done, as those of the emulator do.
@@ -120,9 +136,9 @@ pub(crate) fn standing(plan: &Plan, known: &[Known]) -> Option<Standing> {
     let (_, worth) = emulators.most_promising(&observed, WIDE, keys.seed)?;
     Some(Standing {
         expected_improvement: worth.exp(),
-        is_converged: observed.is_converged(worth),
-        q2: emulator.q2(),
-        left_out_error: emulator.left_out()[best].mean,
+        is_converged: emulators.seen.is_exhausted(worth) && observed.is_checked(keys.seed),
+        q2: outlook.emulator.q2(),
+        left_out_error: outlook.emulator.left_out().get(best)?.mean,
     })
 }
 
@@ -151,17 +167,42 @@ fn observed(plan: &Plan, known: &[Known]) -> Observed {
         let values = values(output).into_iter();
         values.map(|value| sign * (value - limit)).collect()
     });
+    let Design::Optimise(keys) = &study.design else {
+        return Observed::default();
+    };
+    let kept = study.answers.bounds.iter().flat_map(|bound| {
+        let sides = bound.least.iter().chain(&bound.most);
+        sides.map(|_| bound.probability)
+    });
     Observed {
+        disturbances: disturbances(plan, JUDGED, keys.seed),
+        share: keys.percentile.map(|percentile| percentile / 100.0),
+        kept: kept.collect(),
         points: known.iter().map(point).collect(),
         minimised: study.objectives().into_iter().map(values).collect(),
         excess: excess.collect(),
     }
 }
 
+/// Returns the places of `count` disturbances of equal probability; none in a search that is not robust.
+fn disturbances(plan: &Plan, count: usize, seed: u64) -> Vec<Vec<f64>> {
+    let study = plan.study();
+    let inputs = &study.inputs[study.chosen()..];
+    let place = |(input, share): (&Input, f64)| {
+        along(input, Some(&level_at_share(input, share))).unwrap_or(0.5)
+    };
+    let count = if inputs.is_empty() { 0 } else { count };
+    // Another scrambling than that of the tests.
+    let shares = space_filling(0..count, inputs.len(), !seed);
+    let places = |shares: Vec<f64>| inputs.iter().zip(shares).map(place).collect();
+    shares.map(places).collect()
+}
+
 impl Observed {
     /// Returns `count` points for the next tests: the optimum that the emulators predict, and the points at which an
     /// improvement is likeliest, each as if the emulators had predicted those before it exactly (Ginsbourger, Le Riche and
-    /// Carraro 2010). None once the search has converged; without emulators, the next space-filling points.
+    /// Carraro 2010). Space-filling points without emulators, and once no improvement is expected; none if as many of these
+    /// as of the first tests did not change that.
     fn proposals(&self, count: usize, seed: u64) -> Option<Vec<Vec<f64>>> {
         let axes = self.points.first().map_or(0, Vec::len);
         let filling = |row: usize| space_filling(row..row + 1, axes, seed).next();
@@ -171,24 +212,47 @@ impl Observed {
                 .collect();
         };
         let (mut points, mut proposals) = (self.points.clone(), Vec::new());
+        let mut is_end = false;
         for number in 0..count {
             let explored = emulators.most_promising(self, WIDE, seed);
-            let is_end =
-                |(_, worth): &(_, f64)| !emulators.front.is_empty() && self.is_converged(*worth);
-            if number == 0 && explored.as_ref().is_some_and(is_end) {
+            if let (0, false, Some((_, worth))) = (number, emulators.front.is_empty(), &explored) {
+                is_end = emulators.seen.is_exhausted(*worth);
+            }
+            if is_end && self.is_checked(seed) {
                 return None;
             }
             let predicted = (number == 0).then(|| emulators.most_promising(self, SHARP, seed));
             let new = [predicted.flatten(), explored].into_iter().flatten();
             let new = new
-                .map(|(point, _)| point)
+                .filter(|_| !is_end)
+                .map(|(design, _)| emulators.test_of(&design, self))
                 .find(|point| is_new(point, &points));
-            let point = new.or_else(|| filling(points.len()))?;
+            let other = || {
+                let filling = filling(points.len())?;
+                Some(emulators.test_of(&filling[..self.chosen()], self))
+            };
+            let point = new.or_else(other)?;
             emulators = emulators.believing(&point)?;
             points.push(point.clone());
             proposals.push(point);
         }
         Some(proposals)
+    }
+
+    /// Returns whether as many space-filling tests as a search begins with are at its end: an optimum of the emulators may be
+    /// a local one, and tests elsewhere show it.
+    fn is_checked(&self, seed: u64) -> bool {
+        let (axes, tests) = (self.points.first().map_or(0, Vec::len), self.points.len());
+        let first = first_tests(axes);
+        let is_filling = |row: usize| {
+            let mut filling = space_filling(row..row + 1, axes, seed);
+            let is_own = |point: Vec<f64>| {
+                let design = point[..self.chosen()].to_vec();
+                !is_new(&design, &[self.design(row).to_vec()])
+            };
+            filling.next().is_some_and(is_own)
+        };
+        tests >= 2 * first && (tests - first..tests).all(is_filling)
     }
 }
 
@@ -219,6 +283,7 @@ mod tests {
         let test = |observed: &mut Observed, point: Vec<f64>| {
             let (value, excess) = problem(&point);
             observed.excess.resize(excess.len(), Vec::new());
+            observed.kept.resize(excess.len(), 1.0);
             observed.points.push(point);
             observed.minimised.resize(1, Vec::new());
             observed.minimised[0].push(value);

@@ -24,10 +24,20 @@ pub(super) fn space_filling(
     })
 }
 
+/// The same for a robust search, whose statistics are known less exactly than the outputs of a test.
+const MIN_ROBUST_IMPROVEMENT: f64 = 1e-3;
+
 /// Tests in the unit cube.
 #[derive(Clone, Default)]
 pub(super) struct Observed {
+    /// Chosen inputs, then disturbances.
     pub points: Vec<Vec<f64>>,
+    /// The disturbances under which a design is judged; none in a search that is not robust.
+    pub disturbances: Vec<Vec<f64>>,
+    /// The share of the disturbances below the percentile that is minimised; none for the mean.
+    pub share: Option<f64>,
+    /// The share of the disturbances that must keep each limit.
+    pub kept: Vec<f64>,
     /// The minimised output, or both outputs of a Pareto front; NaN for a test that failed.
     pub minimised: Vec<Vec<f64>>,
     /// For each limit, the amount by which a test exceeds it; negative within the limit.
@@ -35,6 +45,17 @@ pub(super) struct Observed {
 }
 
 impl Observed {
+    /// Returns the number of inputs that the search chooses.
+    pub fn chosen(&self) -> usize {
+        let disturbances = self.disturbances.first().map_or(0, Vec::len);
+        self.points.first().map_or(0, Vec::len) - disturbances
+    }
+
+    /// Returns the chosen inputs of a test.
+    pub fn design(&self, place: usize) -> &[f64] {
+        &self.points[place][..self.chosen()]
+    }
+
     pub fn is_done(&self, place: usize) -> bool {
         self.minimised.iter().all(|all| all[place].is_finite())
     }
@@ -71,9 +92,14 @@ impl Observed {
     }
 
     /// Returns whether the logarithm of an expected improvement is too small for another test.
-    pub fn is_converged(&self, worth: f64) -> bool {
+    pub fn is_exhausted(&self, worth: f64) -> bool {
         let ranges = self.ranges();
         let whole: f64 = ranges.iter().map(|[low, high]| high - low).product();
-        worth < (MIN_IMPROVEMENT * whole).ln()
+        let part = if self.disturbances.is_empty() {
+            MIN_IMPROVEMENT
+        } else {
+            MIN_ROBUST_IMPROVEMENT
+        };
+        worth < (part * whole).ln()
     }
 }

@@ -4,7 +4,10 @@ use std::f64::consts::PI;
 
 use nalgebra::DVector;
 
-use super::observed::{Observed, space_filling};
+use super::{
+    observed::{Observed, space_filling},
+    outlook::Outlook,
+};
 use crate::{
     descent::minimum,
     distribution::{normal_quantile, normal_share},
@@ -22,13 +25,17 @@ pub(super) const WIDE: f64 = 2.0;
 const CANDIDATES_PER_INPUT: usize = 64;
 const CANDIDATES_AROUND: usize = 64;
 const STARTS: usize = 6;
+/// Share of the disturbances under which a robust optimum must be solved.
+const SOLVED: f64 = 0.95;
 /// Step of the differences that give the slope of the worth.
 const DIFFERENCE: f64 = 1e-6;
 
 /// Emulators of the minimised outputs and of the excess over each limit, and for tests that failed also of the failure.
 pub(super) struct Emulators {
-    pub minimised: Vec<Emulator>,
-    limits: Vec<Emulator>,
+    pub minimised: Vec<Outlook>,
+    pub limits: Vec<Outlook>,
+    /// The tests, in a robust search with the predicted statistics of their designs.
+    pub seen: Observed,
     /// The minimised outputs of the best tests: of one, or of those on the front by the first output.
     pub front: Vec<Vec<f64>>,
     front_points: Vec<Vec<f64>>,
@@ -45,28 +52,40 @@ impl Emulators {
             .iter()
             .map(|&one| observed.points[one].clone())
             .collect();
-        let fit = |values: &Vec<f64>| {
+        let fit = |values: &Vec<f64>, share: Option<f64>| {
             let values: Vec<f64> = done.iter().map(|&one| values[one]).collect();
-            Emulator::fit(&points, &values)
+            let emulator = Emulator::fit(&points, &values)?;
+            Some(Outlook::new(emulator, &observed.disturbances, share))
         };
-        let mut limits: Vec<Emulator> = observed.excess.iter().map(fit).collect::<Option<_>>()?;
+        let limits = observed.excess.iter().zip(&observed.kept);
+        let limits = limits.map(|(excess, kept)| fit(excess, Some(*kept)));
+        let mut limits: Vec<Outlook> = limits.collect::<Option<_>>()?;
         if !failed.is_empty() {
             // Half way between a test that failed and one that was done lies the limit.
             let mut failure = vec![-0.5; observed.points.len()];
             failed.iter().for_each(|&one| failure[one] = 0.5);
-            limits.push(Emulator::fit(&observed.points, &failure)?);
+            let failure = Emulator::fit(&observed.points, &failure)?;
+            limits.push(Outlook::new(failure, &observed.disturbances, Some(SOLVED)));
         }
-        let best = observed.best();
-        let of_best = |place: &usize| observed.minimised.iter().map(|all| all[*place]).collect();
+        let minimised = observed.minimised.iter();
+        let minimised: Vec<Outlook> = minimised
+            .map(|values| fit(values, observed.share))
+            .collect::<Option<_>>()?;
+        let seen = if observed.disturbances.is_empty() {
+            observed.clone()
+        } else {
+            predicted(observed, &minimised, &limits)
+        };
+        let best = seen.best();
+        let of_best = |place: &usize| seen.minimised.iter().map(|all| all[*place]).collect();
+        let design = |&place: &usize| seen.design(place).to_vec();
         Some(Self {
-            minimised: observed.minimised.iter().map(fit).collect::<Option<_>>()?,
-            limits,
             front: best.iter().map(of_best).collect(),
-            front_points: best
-                .iter()
-                .map(|&one| observed.points[one].clone())
-                .collect(),
-            worst: observed.ranges().iter().map(|range| range[1]).collect(),
+            front_points: best.iter().map(design).collect(),
+            worst: seen.ranges().iter().map(|range| range[1]).collect(),
+            minimised,
+            limits,
+            seen,
         })
     }
 
@@ -74,8 +93,8 @@ impl Emulators {
     /// 1998), or of the hypervolume of a front, times the probability that it keeps all limits (Schonlau, Welch and Jones
     /// 1998); without a best test, the probability alone. `share` multiplies the standard deviations of all predictions.
     fn worth(&self, point: &[f64], share: f64) -> f64 {
-        let found = |emulator: &Emulator| {
-            let found = emulator.predict(point);
+        let found = |outlook: &Outlook| {
+            let found = outlook.predict(point);
             let deviation = share * found.standard_deviation;
             (found.mean, deviation.max(f64::MIN_POSITIVE))
         };
@@ -118,7 +137,7 @@ impl Emulators {
         seed: u64,
     ) -> Option<(Vec<f64>, f64)> {
         let candidates = self.candidates(observed, seed);
-        let axes = observed.points[0].len();
+        let axes = observed.chosen();
         let mut starts: Vec<(f64, Vec<f64>)> = candidates
             .into_iter()
             .map(|point| (self.worth(&point, share), point))
@@ -139,7 +158,7 @@ impl Emulators {
 
     /// Returns space-filling points and points around the best test, others after every test.
     fn candidates(&self, observed: &Observed, seed: u64) -> Vec<Vec<f64>> {
-        let (axes, row) = (observed.points[0].len(), observed.points.len());
+        let (axes, row) = (observed.chosen(), observed.points.len());
         let count = CANDIDATES_PER_INPUT * axes;
         let filling = space_filling(row * count..(row + 1) * count, axes, seed);
         filling.chain(self.around_best(seed, row)).collect()
@@ -165,7 +184,7 @@ impl Emulators {
 
     /// Returns the emulators after a test with the results that they predict.
     pub fn believing(&self, point: &[f64]) -> Option<Self> {
-        let believing = |one: &Emulator| one.with_test(point.to_vec(), one.predict(point).mean);
+        let believing = |one: &Outlook| one.believing(point);
         Some(Self {
             minimised: self
                 .minimised
@@ -176,7 +195,40 @@ impl Emulators {
             front: self.front.clone(),
             front_points: self.front_points.clone(),
             worst: self.worst.clone(),
+            seen: self.seen.clone(),
         })
+    }
+
+    /// Returns a test of a design: under the disturbance that tells most about its outputs, and about limits that it may or
+    /// may not keep.
+    pub fn test_of(&self, design: &[f64], observed: &Observed) -> Vec<f64> {
+        let doubt = |limit: &Outlook| {
+            let found = limit.predict(design);
+            let kept = normal_share(-found.mean / found.standard_deviation.max(f64::MIN_POSITIVE));
+            4.0 * kept * (1.0 - kept) * limit.gains(design)
+        };
+        if observed.disturbances.is_empty() {
+            return design.to_vec();
+        }
+        let minimised = self.minimised.iter().map(|one| one.gains(design));
+        let gains = minimised.chain(self.limits.iter().map(doubt));
+        let most = gains.reduce(|one, other| one + other).map(|all| all.imax());
+        let under = &observed.disturbances[most.unwrap_or_default()];
+        [design, under.as_slice()].concat()
+    }
+}
+
+/// Returns the tests with the predicted statistics of their designs in place of their own outputs.
+fn predicted(observed: &Observed, minimised: &[Outlook], limits: &[Outlook]) -> Observed {
+    let all = |outlook: &Outlook| {
+        let places = 0..observed.points.len();
+        let mean = |place| outlook.predict(observed.design(place)).mean;
+        places.map(mean).collect::<Vec<f64>>()
+    };
+    Observed {
+        minimised: minimised.iter().map(all).collect(),
+        excess: limits.iter().map(all).collect(),
+        ..observed.clone()
     }
 }
 

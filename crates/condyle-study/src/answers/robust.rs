@@ -1,0 +1,147 @@
+//! The answer of a robust search.
+
+use condyle_case::study::{Bound, Design};
+use serde::Serialize;
+
+use crate::{
+    answers::{
+        data::Data,
+        ranking::Valued,
+        words::{label, shown, with_interval},
+    },
+    error::StudyError,
+    search::{Comparison, Estimate, Standing, comparison, standing},
+    store::Store,
+};
+
+/// The robust optimum beside the design of the first test.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub(crate) struct Robust {
+    pub minimised: &'static str,
+    pub unit: &'static str,
+    /// The statistic that is minimised, in words.
+    pub statistic: String,
+    /// The chosen inputs.
+    pub inputs: Vec<Valued>,
+    /// The limits in words, in the order of the probabilities of keeping them.
+    pub limits: Vec<String>,
+    #[serde(flatten)]
+    pub comparison: Comparison,
+    pub standing: Option<Standing>,
+}
+
+impl Robust {
+    /// Returns the answer; none for other studies, and while no tested design keeps the limits.
+    pub fn read(data: &Data<'_>, store: &Store) -> Result<Option<Self>, StudyError> {
+        let (plan, study) = (data.plan, data.plan.study());
+        let (Design::Optimise(keys), [minimised]) = (&study.design, &study.objectives()[..]) else {
+            return Ok(None);
+        };
+        let known = store.known(plan, 0)?;
+        let Some(comparison) = comparison(plan, &known) else {
+            return Ok(None);
+        };
+        let statistic = keys.percentile.map_or("mean".to_owned(), |percentile| {
+            format!("{percentile} % quantile")
+        });
+        let mut limits: Vec<String> = study.answers.bounds.iter().flat_map(limits).collect();
+        let others = ["solved", "all of these"];
+        let missing = comparison.optimum.kept.len() - limits.len();
+        limits.extend(
+            others[others.len() - missing..]
+                .iter()
+                .map(|&one| one.to_owned()),
+        );
+        let chosen = study.inputs[..study.chosen()].iter().zip(&data.inputs);
+        let valued = chosen
+            .map(|(input, column)| Valued::new(&input.key, &column.values, comparison.optimum.row));
+        Ok(Some(Self {
+            minimised: minimised.key,
+            unit: minimised.unit(),
+            statistic: format!("{statistic} of {}", minimised.label),
+            inputs: valued.collect(),
+            limits,
+            standing: standing(plan, &known),
+            comparison,
+        }))
+    }
+
+    /// Returns the answer in a sentence.
+    pub fn sentence(&self) -> String {
+        let Comparison {
+            optimum,
+            first,
+            beats,
+        } = &self.comparison;
+        let all = optimum.kept.last().map(in_percent).unwrap_or_default();
+        let [own, other] = [optimum, first].map(|design| in_words(&design.statistic));
+        let (row, beats, label) = (optimum.row, in_percent(beats), label(self.minimised));
+        let (statistic, unit) = (&self.statistic, self.unit);
+        format!(
+            "The robust optimum, row {row}, has less {label} than the first design under {beats} of the disturbances, and keeps \
+             every limit under {all}; its {statistic} is {own} {unit}, that of the first design {other} {unit}."
+        )
+    }
+
+    /// Returns rows of a table with the optimum and the first design.
+    pub fn table(&self) -> Vec<Vec<String>> {
+        let Comparison {
+            optimum,
+            first,
+            beats,
+        } = &self.comparison;
+        let row = |name: &str, one: String, other: String| vec![name.to_owned(), one, other];
+        let head = row(
+            &format!("row {}", optimum.row),
+            "robust optimum".to_owned(),
+            "first design".to_owned(),
+        );
+        let inputs = self.inputs.iter();
+        let inputs = inputs.map(|one| row(&one.name, shown(one.value), shown(one.first)));
+        let statistic = format!("{}, {}", self.statistic, self.unit);
+        let statistic = row(
+            &statistic,
+            in_words(&optimum.statistic),
+            in_words(&first.statistic),
+        );
+        let limits = self.limits.iter().zip(optimum.kept.iter().zip(&first.kept));
+        let limits = limits.map(|(name, (one, other))| {
+            row(
+                &format!("probability: {name}"),
+                in_percent(one),
+                in_percent(other),
+            )
+        });
+        let better = "probability: better than the first design";
+        let better = row(better, in_percent(beats), "-".to_owned());
+        [head]
+            .into_iter()
+            .chain(inputs)
+            .chain([statistic])
+            .chain(limits)
+            .chain([better])
+            .collect()
+    }
+}
+
+/// Returns both sides of a limit in words.
+fn limits(bound: &Bound) -> impl Iterator<Item = String> {
+    let (label, unit) = (bound.output.label, bound.output.unit());
+    let side = move |(side, limit): (&str, f64)| {
+        format!("{label} {side} {limit} {unit}")
+            .trim_end()
+            .to_owned()
+    };
+    let least = bound.least.map(|least| ("at least", least));
+    let most = bound.most.map(|most| ("at most", most));
+    [least, most].into_iter().flatten().map(side)
+}
+
+fn in_words(estimate: &Estimate) -> String {
+    let [low, high] = estimate.interval.map(shown);
+    format!("{} ({low} to {high})", shown(estimate.value))
+}
+
+fn in_percent(estimate: &Estimate) -> String {
+    with_interval(estimate.value, estimate.interval)
+}

@@ -1,0 +1,61 @@
+//! Names and numbers of answers in words.
+
+use condyle_results::catalogue;
+
+/// Returns the label of an output in the catalogue; of an input, its key.
+pub(crate) fn label(key: &str) -> &str {
+    catalogue::output(key).map_or(key, |output| output.label)
+}
+
+/// Returns the label with the unit of an output; of an input, its key.
+pub(crate) fn labelled(key: &str) -> String {
+    match catalogue::output(key) {
+        Some(output) if output.unit().is_empty() => output.label.to_owned(),
+        Some(output) => format!("{}, {}", output.label, output.unit()),
+        None => key.to_owned(),
+    }
+}
+
+/// Returns a number with four significant digits.
+pub(crate) fn shown(value: f64) -> String {
+    if value == 0.0 || !value.is_finite() {
+        return format!("{value:.0}");
+    }
+    let decimals = (3 - value.abs().log10().floor() as i32).max(0) as usize;
+    format!("{value:.decimals$}")
+}
+
+pub(crate) fn with_interval(share: f64, interval: [f64; 2]) -> String {
+    let [low, high] = interval.map(percent);
+    format!("{} ({low} to {high})", percent(share))
+}
+
+/// Returns a probability in percent, to a ten thousandth.
+pub(crate) fn chance(probability: f64) -> String {
+    format!("{:.2} %", 100.0 * probability)
+}
+
+pub(crate) fn percent(share: f64) -> String {
+    format!("{:.1} %", 100.0 * share)
+}
+
+/// Returns the share between two ends, or one if they are equal.
+pub(crate) fn percents([low, high]: [f64; 2]) -> String {
+    match low == high {
+        true => percent(low),
+        false => format!("{} to {}", percent(low), percent(high)),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn outputs_have_the_labels_of_the_catalogue_and_inputs_their_keys() {
+        assert_eq!(label("mass_loss_mg"), "mass loss");
+        assert_eq!(labelled("mass_loss_mg"), "mass loss, mg");
+        assert_eq!(labelled("medial_load_share"), "medial load share");
+        assert_eq!(labelled("contact.friction"), "contact.friction");
+    }
+}
