@@ -103,7 +103,7 @@ def creep(runs):
     without = summary(runs / "plus")
     row(
         "mass is worn as without creep",
-        "`creep` against `knight-2007`",
+        "`creep` against `knight-2007` with `ap_force_sign = 1`",
         f"{last['mass_loss_mg']:.1f} against {without['mass_loss_mg']:.1f} mg",
         abs(last["mass_loss_mg"] / without["mass_loss_mg"] - 1) < TOLD / 100,
         "As a scar of wear does, one of creep makes the insert conform: the femur slides farther in it.",
@@ -122,7 +122,7 @@ def turned(runs):
         depth = 100 * (other["max_depth_mm"] / plain["max_depth_mm"] - 1)
         row(
             f"turning an input's direction changes scar and volume: `{key} = -1`",
-            "`knight-2007`",
+            "`knight-2007` with `ap_force_sign = 1`",
             f"volume {volume:+.1f} %, deepest place {depth:+.1f} %",
             abs(volume) > TOLD and abs(depth) > TOLD,
         )

@@ -19,7 +19,7 @@ settings! {
         share: Option<f64> = None, in within(1e-6, 1.0);
         /// Instead of `share`: its cycles in a sequence that repeats, such as 17 of walking and 3 of stairs.
         cycles_in_sequence: Option<u64> = None, in within(1.0, 1e9);
-        /// Machine file of the activity on a machine by joints, relative to the case file: the joints of `[machine]` with other drives, waveforms and springs; `[machine]` itself if not given. Its joints may also stand here.
+        /// Machine file of the activity on a machine by joints, relative to the case file: the joints of `[machine]` with other drives, waveforms and springs; `[machine]` itself if not given. Joints that stand here replace those of the same name.
         file: Option<DataFile> = None;
         /// Cycles a second; that of `[machine]` if not given.
         frequency_hz: Option<f64> = None, in within(0.001, 100.0);
@@ -105,6 +105,9 @@ impl Settings for Activities {
 
     fn read_in(root: &Section<'_>, name: &'static str, log: &mut Log<'_>) -> Option<Self> {
         let sections = root.list(name, log)?;
+        if sections.is_empty() {
+            return Some(Self::default());
+        }
         // Problems of the machine are reported where the machine is read.
         let mut discarded = Log::new(&log.source, log.base);
         let rig = Machine::rig_in(&root.part("machine"), &mut discarded).flatten();
@@ -189,11 +192,12 @@ impl Activity {
     fn read_on(machine: &Rig, section: &Section<'_>, log: &mut Log<'_>) -> Option<Self> {
         let mut keys = ActivityKeys::read(section, log)?;
         let file = keys.file.take();
-        let own = Rig::read_from(section, None, file.as_ref(), log)?;
-        let mut rig = own.unwrap_or_else(|| machine.clone());
-        if let Some(frequency_hz) = keys.frequency_hz.take() {
-            rig.keys.frequency_hz = frequency_hz;
-        }
+        let base = match &file {
+            Some(file) => Rig::in_file(file, section, log)?,
+            None => machine.clone(),
+        };
+        let rig = base.changed_by(section, log)?;
+        keys.frequency_hz = None;
         if let Some(difference) = rig.difference_from(machine) {
             let key = if file.is_some() { "file" } else { "joints" };
             let name = &keys.name;

@@ -48,7 +48,7 @@ settings! {
     MachineSettings {
         /// The simulator to start from: it determines which freedoms are loaded and which are prescribed.
         preset: Preset = Preset::StanmoreForce;
-        /// Machine file in place of a preset, relative to the case file; [its keys](machines.md) may also stand here.
+        /// Machine file in place of a preset, relative to the case file; [its keys](machines.md) may also stand here, where a joint replaces that of the same name.
         file: Option<DataFile> = None;
         /// Gait cycles a second.
         frequency_hz: f64 = 1.1, in within(0.001, 100.0);

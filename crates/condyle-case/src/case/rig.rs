@@ -247,6 +247,32 @@ pub struct RigJoint {
 }
 
 impl RigJoint {
+    /// Reads the joints of a machine; each has its own name.
+    fn read_list(section: &Section<'_>, log: &mut Log<'_>) -> Option<Vec<Self>> {
+        let sections = section.list("joints", log)?;
+        if sections.len() > MAX_JOINTS {
+            let count = sections.len();
+            let message =
+                format!("a machine has at most {MAX_JOINTS} joints, and this one has {count}");
+            let fault = Fault::new(message, "two bodies have six freedoms");
+            log.problem(section.key_span("joints"), fault);
+            return None;
+        }
+        let joints: Vec<Option<Self>> = sections.iter().map(|one| Self::read(one, log)).collect();
+        let joints: Vec<Self> = joints.into_iter().collect::<Option<_>>()?;
+        for (number, joint) in joints.iter().enumerate() {
+            let name = &joint.keys.name;
+            let mut before = joints[..number].iter();
+            if before.any(|other| other.keys.name == *name) {
+                let message = format!("two joints are called \"{name}\"");
+                let fault = Fault::new(message, "give each its own name");
+                log.problem(sections[number].value_span("name"), fault);
+                return None;
+            }
+        }
+        Some(joints)
+    }
+
     fn read(section: &Section<'_>, log: &mut Log<'_>) -> Option<Self> {
         let keys = RigJointKeys::read(section, log)?;
         let channel = channel_of(keys.kind, keys.drive);
@@ -426,48 +452,76 @@ impl Rig {
         })
     }
 
-    /// Returns the machine of the `[machine]` table of a case if it is one by joints: from its file, from a shipped file, or
-    /// from the table itself; the outer `None` if it has problems.
+    /// Returns the machine of the `[machine]` table of a case if it is one by joints: that of its file or of a shipped file with
+    /// the changes of the table, or that of the table; the outer `None` if it has problems.
     pub(super) fn read_from(
         section: &Section<'_>,
         preset: Option<(&str, &str)>,
         file: Option<&DataFile>,
         log: &mut Log<'_>,
     ) -> Option<Option<Self>> {
-        let mut rig = if section.value("joints").is_some() {
-            Self::read(section, log)?
-        } else {
-            let mut rig = if let Some(file) = file {
-                let source = file.source(section, "file", log)?;
-                Self::of_text(&source, Base::of(file.shared_files(), file.path()), log)?
-            } else if let Some((word, text)) = preset {
-                let source = Arc::new(NamedSource::new(
-                    format!("machines/{word}.toml"),
-                    text.to_owned(),
-                ));
+        let base = match (file, preset) {
+            (Some(file), _) => Self::in_file(file, section, log)?,
+            (None, Some((word, text))) => {
+                let name = format!("machines/{word}.toml");
+                let source = Arc::new(NamedSource::new(name, text.to_owned()));
                 let base = log.base;
                 Self::of_text(&source, base, log)?
-            } else {
-                return Some(None);
-            };
-            rig.ligaments.extend(Ligament::read_list(section, log)?);
-            rig
+            }
+            (None, None) if section.value("joints").is_some() => {
+                return Self::read(section, log)?.ordered(section, log).map(Some);
+            }
+            (None, None) => return Some(None),
         };
-        // The case may replace these two keys of a file.
-        for key in RigKeys::keys() {
-            match key.name {
-                "frequency_hz" => {
-                    let of_file = rig.keys.frequency_hz;
-                    rig.keys.frequency_hz = section.setting(&key, Some(of_file), log)?;
-                }
-                "order" => {
-                    let of_file = rig.keys.order.take();
-                    rig.keys.order = section.setting(&key, Some(of_file), log)?;
-                }
-                _ => {}
+        base.changed_by(section, log).map(Some)
+    }
+
+    /// Returns the machine of the file that the key `file` of `section` names.
+    pub(super) fn in_file(
+        file: &DataFile,
+        section: &Section<'_>,
+        log: &mut Log<'_>,
+    ) -> Option<Self> {
+        let source = file.source(section, "file", log)?;
+        Self::of_text(&source, Base::of(file.shared_files(), file.path()), log)
+    }
+
+    /// Returns the machine with the keys of `section`, and with its joints and ligaments in place of those of the same name.
+    pub(super) fn changed_by(mut self, section: &Section<'_>, log: &mut Log<'_>) -> Option<Self> {
+        for joint in RigJoint::read_list(section, log)? {
+            let name = &joint.keys.name;
+            let mut joints = self.joints.iter_mut();
+            let Some(known) = joints.find(|known| known.keys.name == *name) else {
+                let names: Vec<&str> = self.names().collect();
+                let message = format!("the machine has no joint \"{name}\" to replace");
+                let advice = format!("its joints are {}", names.join(", "));
+                log.problem(section.key_span("joints"), Fault::new(message, advice));
+                return None;
+            };
+            *known = joint;
+        }
+        for ligament in Ligament::read_list(section, log)? {
+            let mut known = self.ligaments.iter_mut();
+            match known.find(|known| known.name == ligament.name) {
+                Some(known) => *known = ligament,
+                None => self.ligaments.push(ligament),
             }
         }
-        rig.ordered(section, log).map(Some)
+        for key in RigKeys::keys() {
+            let keys = &mut self.keys;
+            match key.name {
+                "tests" => keys.tests = section.setting(&key, Some(keys.tests), log)?,
+                "frequency_hz" => {
+                    keys.frequency_hz = section.setting(&key, Some(keys.frequency_hz), log)?;
+                }
+                _ => keys.order = section.setting(&key, Some(keys.order.take()), log)?,
+            }
+        }
+        self.ordered(section, log)
+    }
+
+    fn names(&self) -> impl Iterator<Item = &str> {
+        self.joints.iter().map(|joint| joint.keys.name.as_str())
     }
 
     fn of_text(source: &Source, base: Base<'_>, log: &mut Log<'_>) -> Option<Self> {
@@ -484,11 +538,7 @@ impl Rig {
             log.problem(section.key_span(key), Fault::new(message, advice));
             None
         };
-        let names: Vec<&str> = self
-            .joints
-            .iter()
-            .map(|joint| joint.keys.name.as_str())
-            .collect();
+        let names: Vec<&str> = self.names().collect();
         if let Some(Names(order)) = &self.keys.order {
             let (mut wanted, mut present) = (order.clone(), names.clone());
             wanted.sort();
@@ -560,6 +610,9 @@ impl Rig {
     /// Returns the first difference of the motions that this machine and another permit; none if activities of one test
     /// may run on both.
     pub(super) fn difference_from(&self, other: &Self) -> Option<String> {
+        if self.keys.tests != other.keys.tests {
+            return Some("it tests another joint of the body".to_owned());
+        }
         if self.joints.len() != other.joints.len() {
             let (own, others) = (self.joints.len(), other.joints.len());
             return Some(format!("it has {own} joints in place of {others}"));
@@ -678,37 +731,7 @@ impl Rig {
 
     fn read(section: &Section<'_>, log: &mut Log<'_>) -> Option<Self> {
         let keys = RigKeys::read(section, log);
-        let sections = section.list("joints", log)?;
-        if sections.len() > MAX_JOINTS {
-            let message = format!(
-                "a machine has at most {MAX_JOINTS} joints, and this one has {}",
-                sections.len()
-            );
-            log.problem(
-                section.key_span("joints"),
-                Fault::new(message, "two bodies have six freedoms"),
-            );
-            return None;
-        }
-        let joints: Vec<Option<RigJoint>> = sections
-            .iter()
-            .map(|joint| RigJoint::read(joint, log))
-            .collect();
-        let joints: Vec<RigJoint> = joints.into_iter().collect::<Option<_>>()?;
-        for (number, joint) in joints.iter().enumerate() {
-            let name = &joint.keys.name;
-            if joints[..number]
-                .iter()
-                .any(|other| other.keys.name == *name)
-            {
-                let fault = Fault::new(
-                    format!("two joints are called \"{name}\""),
-                    "give each its own name",
-                );
-                log.problem(sections[number].value_span("name"), fault);
-                return None;
-            }
-        }
+        let joints = RigJoint::read_list(section, log)?;
         Some(Self {
             keys: keys?,
             joints,

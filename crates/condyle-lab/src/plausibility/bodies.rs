@@ -194,41 +194,30 @@ const MAX_ROUGH_PERCENT: f64 = 10.0;
 
 /// Warns of a femur whose triangles are too coarse, or too rough, where they touch the insert.
 pub(crate) fn femur_mesh(finished: &Finished<'_>) -> Option<PlausibilityWarning> {
-    let touched: Vec<bool> = {
-        let worn = finished.march.fields().wear_depth_mm.iter();
-        let pressed = finished.march.state().first_pressure_mpa.iter();
-        worn.zip(pressed)
-            .map(|(worn, pressed)| worn + pressed > 0.0)
-            .collect()
-    };
+    let worn = finished.march.fields().wear_depth_mm.iter();
+    let pressed = worn.zip(&finished.march.state().first_pressure_mpa);
+    let pressed = pressed.map(|(worn, pressed)| worn + pressed > 0.0);
+    let nodes: Vec<usize> = (0..)
+        .zip(pressed)
+        .filter_map(|(node, is)| is.then_some(node))
+        .collect();
     let femur = finished.march.counterface();
-    let (mut whole, mut doubtful, mut largest_mm): (f64, f64, f64) = (0.0, 0.0, 0.0);
-    for pose in finished.cycles().flat_map(|cycle| poses(finished, &cycle)) {
-        let nodes = touched
-            .iter()
-            .enumerate()
-            .filter(|(_, is_touched)| **is_touched);
-        for (node, _) in nodes {
+    let cycles = finished.cycles();
+    let poses = cycles.flat_map(|cycle| poses(finished, &cycle));
+    let contact = poses.flat_map(|pose| {
+        nodes.iter().map(move |&node| {
             let place = pose.to_counterface(&finished.surface.positions[node]);
             // The overclosure is a measure of the pressure in every model.
-            let pressed = (-femur.gap_mm(&place)).max(0.0) * finished.surface.shares[node].area_mm2;
-            let deviation_mm = femur.deviation_mm(&place);
-            whole += pressed;
-            if pressed > 0.0 && deviation_mm > MAX_DEVIATION_MM {
-                doubtful += pressed;
-                largest_mm = largest_mm.max(deviation_mm);
-            }
-        }
-    }
-    let percent = 100.0 * doubtful / whole.max(f64::MIN_POSITIVE);
-    let message = format!(
-        "{percent:.0} % of the contact is where the smooth surface of the femur is more than {MAX_DEVIATION_MM} mm from the \
-             triangles of its mesh, up to {largest_mm:.3} mm; up to {MAX_ROUGH_PERCENT:.0} % is acceptable"
-    );
+            let overclosure_mm = (-femur.gap_mm(&place)).max(0.0);
+            (
+                overclosure_mm * finished.surface.shares[node].area_mm2,
+                femur.deviation_mm(&place),
+            )
+        })
+    });
     let advice = "The mesh is too coarse, too rough, or has a sharp edge there: export the femur with a chord error of at most 0.03 mm, \
                  without decimation, and smooth a scan.";
-    let value = (percent, MAX_ROUGH_PERCENT, "%");
-    (percent > MAX_ROUGH_PERCENT).then(|| warning("femur_mesh", value, message, advice))
+    rough(("femur_mesh", "femur"), MAX_DEVIATION_MM, contact, advice)
 }
 
 /// Warns of an insert whose triangles are too coarse where the femur touches them.
@@ -236,22 +225,40 @@ pub(crate) fn insert_mesh(finished: &Finished<'_>) -> Option<PlausibilityWarning
     let pressed_mpa = finished.march.state().first_pressure_mpa.iter();
     let force_n = pressed_mpa.zip(&finished.surface.shares);
     let force_n = force_n.map(|(pressure_mpa, share)| pressure_mpa * share.area_mm2);
+    let deviation_mm = finished.march.insert().deviation_mm().iter().copied();
+    let advice = "The mesh is too coarse there: export the insert with a chord error of at most 0.01 mm, without decimation.";
+    let names = ("insert_mesh", "insert");
+    rough(
+        names,
+        MAX_INSERT_DEVIATION_MM,
+        force_n.zip(deviation_mm),
+        advice,
+    )
+}
+
+/// Warns if too much of the contact lies where the smooth surface of a body is farther from its triangles than `limit_mm`.
+/// `contact` has a measure of the force and the distance, mm, of each place.
+fn rough(
+    (check, body): (&'static str, &str),
+    limit_mm: f64,
+    contact: impl Iterator<Item = (f64, f64)>,
+    advice: &str,
+) -> Option<PlausibilityWarning> {
     let (mut whole, mut doubtful, mut largest_mm): (f64, f64, f64) = (0.0, 0.0, 0.0);
-    for (force_n, deviation_mm) in force_n.zip(finished.march.insert().deviation_mm()) {
-        whole += force_n;
-        if force_n > 0.0 && *deviation_mm > MAX_INSERT_DEVIATION_MM {
-            doubtful += force_n;
-            largest_mm = largest_mm.max(*deviation_mm);
+    for (pressed, deviation_mm) in contact {
+        whole += pressed;
+        if pressed > 0.0 && deviation_mm > limit_mm {
+            doubtful += pressed;
+            largest_mm = largest_mm.max(deviation_mm);
         }
     }
     let percent = 100.0 * doubtful / whole.max(f64::MIN_POSITIVE);
     let message = format!(
-        "{percent:.0} % of the contact is where the smooth surface of the insert is more than {MAX_INSERT_DEVIATION_MM} mm from \
-             the triangles of its mesh, up to {largest_mm:.3} mm; up to {MAX_ROUGH_PERCENT:.0} % is acceptable"
+        "{percent:.0} % of the contact is where the smooth surface of the {body} is more than {limit_mm} mm from the triangles of \
+             its mesh, up to {largest_mm:.3} mm; up to {MAX_ROUGH_PERCENT:.0} % is acceptable"
     );
-    let advice = "The mesh is too coarse there: export the insert with a chord error of at most 0.01 mm, without decimation.";
     let value = (percent, MAX_ROUGH_PERCENT, "%");
-    (percent > MAX_ROUGH_PERCENT).then(|| warning("insert_mesh", value, message, advice))
+    (percent > MAX_ROUGH_PERCENT).then(|| warning(check, value, message, advice))
 }
 
 /// Largest part of a cycle during which a condyle may be beyond the rim, %; our choice.

@@ -331,12 +331,7 @@ impl March {
         let fields = NodeFields::new(&mean, surface, &rates, &self.insert, &self.state.depths);
         self.state.fields = Some(fields);
         self.state.final_cycle = Some(solved.peaks());
-        let cycles = self.cycles();
-        for (activity, cycle) in self.state.activities.iter_mut().zip(&solved.cycles) {
-            activity.keep(cycles, cycle);
-        }
-        self.state.counters = solved.counters;
-        self.last = Some(solved);
+        self.keep(self.cycles(), solved);
         Ok(ControlFlow::Continue(()))
     }
 
@@ -547,7 +542,6 @@ impl March {
     ) {
         let update = self.state.updates.len() - 1;
         let cycles_before = self.state.cycles_before(update);
-        self.state.counters = solved.counters;
         let memory = std::mem::take(&mut solved.memory);
         self.cache = memory.cache;
         let snapshot = Snapshot {
@@ -560,9 +554,15 @@ impl March {
         };
         let part = cycles_before / self.test.schedule.cycles;
         self.state.pass(part, snapshot);
+        self.keep(cycles_before, solved);
+    }
+
+    /// Keeps the cycles solved after `cycles` as the last.
+    fn keep(&mut self, cycles: f64, solved: SolvedCycles) {
         for (activity, cycle) in self.state.activities.iter_mut().zip(&solved.cycles) {
-            activity.keep(cycles_before, cycle);
+            activity.keep(cycles, cycle);
         }
+        self.state.counters = solved.counters;
         self.last = Some(solved);
     }
 }

@@ -8,8 +8,8 @@ use crate::parameter::{Known, Parameter};
 
 pub(super) const KIND: WearLawKind = WearLawKind {
     word: "kang",
-    about: "Depth per cycle = sum of K p |ds|, K = exp(a + b ln CS - c p) in mm3/(N m), with p of the instant, \
-        at most `most_pressure_mpa`, and the cycle's cross-shear ratio CS, at least `least_cross_shear`.",
+    about: "Depth per cycle = sum of K p |ds|, K = exp(a + b ln CS - c p) in mm3/(N m), with p in K the mean \
+        over the slip, at most `most_pressure_mpa`, and the cycle's cross-shear ratio CS, at least `least_cross_shear`.",
     known: Known::Approximate,
     parameters: &[
         Parameter {
@@ -83,40 +83,21 @@ struct Kang {
     most_pressure_mpa: f64,
 }
 
-impl Kang {
-    /// Returns the sum of p |ds| exp(-c p), MPa mm, below and above the pressure at which the factor stops falling.
-    fn weighed_work_mpa_mm(&self, cycle: &MeanCycle<'_>) -> [f64; 2] {
-        let mut work = [0.0; 2];
-        let at_most = (-self.decay_per_mpa * self.most_pressure_mpa).exp();
-        // `for_each` and not `for`: the chained iterators of all activities run faster from inside.
-        cycle.moments().for_each(|(share, moment)| {
-            let slip_work = share * moment.pressure_mpa * moment.distance_mm();
-            if moment.pressure_mpa > self.most_pressure_mpa {
-                work[1] += slip_work * at_most;
-            } else {
-                work[0] += slip_work * (-self.decay_per_mpa * moment.pressure_mpa).exp();
-            }
-        });
-        work
-    }
-}
-
 impl WearLaw for Kang {
     fn wear(&self, cycle: &MeanCycle<'_>) -> NodeWear {
         let cross_shear = cycle.slip_work.cross_shear();
-        let [within, above] = self.weighed_work_mpa_mm(cycle);
-        let work_mpa_mm = within + above;
-        let outside = if cross_shear < self.least_cross_shear {
-            1.0
-        } else {
-            above / work_mpa_mm.max(f64::MIN_POSITIVE)
-        };
-        let log_cross_shear = cross_shear.max(self.least_cross_shear).ln();
-        let unpressed_mm3_per_nm =
-            (self.log_wear_factor + self.cross_shear_exponent * log_cross_shear).exp();
+        // The source correlates the wear of a test with its mean pressure. A share that is partly loaded has the mean of the
+        // loaded part.
+        let pressed_mm = cycle.pressed_distance_mm.max(f64::MIN_POSITIVE);
+        let mean_mpa = cycle.pressure_slip_mpa_mm / pressed_mm;
+        let is_outside =
+            cross_shear < self.least_cross_shear || mean_mpa > self.most_pressure_mpa;
+        let log_factor = self.log_wear_factor
+            + self.cross_shear_exponent * cross_shear.max(self.least_cross_shear).ln()
+            - self.decay_per_mpa * mean_mpa.min(self.most_pressure_mpa);
         NodeWear {
-            depth_mm: unpressed_mm3_per_nm / MM_PER_M * work_mpa_mm,
-            part_outside: Some(outside),
+            depth_mm: log_factor.exp() / MM_PER_M * cycle.pressure_slip_mpa_mm,
+            part_outside: Some(f64::from(u8::from(is_outside))),
         }
     }
 }
@@ -147,18 +128,15 @@ mod tests {
     }
 
     #[test]
-    fn verify_pressures_above_the_most_have_its_factor_and_are_reported() {
+    fn verify_the_factor_is_that_of_the_mean_pressure() {
         let law = KIND.with_defaults().law;
-        let path = [rectangle(20.0, [3.0, 1.0]), rectangle(4.0, [3.0, 1.0])].concat();
-        let within = 4.0 * 8.0 / 1000.0 * factor(0.25, 4.0);
-        let above = 20.0 * 8.0 / 1000.0 * factor(0.25, 10.0);
-        assert_near(depth_mm(law.as_ref(), &path), within + above);
-        let outside_part = outside(law.as_ref(), &path).unwrap();
-        assert_near(outside_part, above / (within + above));
-        assert_eq!(
-            outside(law.as_ref(), &rectangle(4.0, [3.0, 1.0])),
-            Some(0.0)
-        );
+        let at = |mpa: [f64; 2]| mpa.map(|mpa| rectangle(mpa, [3.0, 1.0])).concat();
+        // 16 mm at a mean of 7 MPa, and of 12.
+        let (within, above) = (at([10.0, 4.0]), at([20.0, 4.0]));
+        assert_near(depth_mm(law.as_ref(), &within), 0.112 * factor(0.25, 7.0));
+        assert_near(depth_mm(law.as_ref(), &above), 0.192 * factor(0.25, 10.0));
+        assert_eq!(outside(law.as_ref(), &within), Some(0.0));
+        assert_eq!(outside(law.as_ref(), &above), Some(1.0));
         assert_eq!(outside(law.as_ref(), &straight(4.0, [3.0, 1.0])), Some(1.0));
     }
 }

@@ -12,6 +12,7 @@ use crate::case::drive::DriveWord;
 use crate::case::frame::Side;
 use crate::case::machine as case;
 use crate::case::machine::{Freedom, StiffnessOf};
+use crate::case::rig::Rig;
 
 const TONNE_PER_KG: f64 = 1e-3;
 const TONNE_MM2_PER_KG_M2: f64 = 1e3;
@@ -105,11 +106,12 @@ pub(super) fn start_flexion_rad(machine: &Machine) -> f64 {
 impl Case {
     pub(in crate::case) fn built_activities(&self, low_point_mm: Vec3) -> Vec<Activity> {
         let side = self.heading.side;
+        let build = |machine: &case::Machine, rig: &Option<Rig>| match rig {
+            Some(rig) => rig.build(side),
+            None => machine.build(low_point_mm, side),
+        };
         if self.activities.is_empty() {
-            let machine = match &self.machine.rig {
-                Some(rig) => rig.build(side),
-                None => self.machine.build(low_point_mm, side),
-            };
+            let machine = build(&self.machine, &self.machine.rig);
             return vec![Activity::only("gait", machine)];
         }
         let activities = self.activities.iter().zip(self.activities.shares());
@@ -123,10 +125,7 @@ impl Case {
             own.ie_torque_sign = keys.ie_torque_sign.unwrap_or(own.ie_torque_sign);
             Activity {
                 name: keys.name.clone(),
-                machine: match &activity.rig {
-                    Some(rig) => rig.build(side),
-                    None => machine.build(low_point_mm, side),
-                },
+                machine: build(&machine, &activity.rig),
                 share,
             }
         });

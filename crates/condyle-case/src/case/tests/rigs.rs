@@ -253,7 +253,7 @@ fn activities_on_other_joints_are_refused_at_their_place() {
         (
             "name = \"flexion\"",
             "name = \"bending\"",
-            "it has the joint \"bending\" in place of \"flexion\"",
+            "the machine has no joint \"bending\" to replace",
         ),
         (
             "axis = [0, 0, 1]",
@@ -265,6 +265,8 @@ fn activities_on_other_joints_are_refused_at_their_place() {
         assert!(said.contains(message), "{said}");
         assert!(key.ends_with("joints"), "{key}");
     }
+    let (_, said) = refusal(&with_activities("tests = \"hip\"", "tests = \"disc\""));
+    assert!(said.contains("it tests another joint"), "{said}");
     let knee = format!(
         "{}ap_force_sign = -1\n",
         with_activities("[[0, 3000]]", "[[0, 3500]]")
@@ -275,6 +277,28 @@ fn activities_on_other_joints_are_refused_at_their_place() {
     let (key, said) = refusal(&knee);
     assert!(
         key.ends_with("ap_force_sign") && said.contains("knee simulator"),
+        "{key}: {said}"
+    );
+}
+
+#[test]
+fn a_joint_of_a_case_replaces_that_of_its_preset() {
+    let with = |name: &str| {
+        let joint = format!(
+            "name = \"{name}\"\nkind = \"translation\"\naxis = [0, -1, 0]\ndrive = \"loaded\""
+        );
+        let body = HIP.split_once("[machine]").expect("it has one").0;
+        format!(
+            "{body}[machine]\npreset = \"iso-14242-3-like\"\n[[machine.joints]]\n{joint}\n[machine.joints.load]\nknots_n = [[0, 100], [50, 2000]]\n"
+        )
+    };
+    let case = Case::parse(&with("penetration"), "case.toml", Path::new("")).unwrap();
+    let rig = case.machine.rig.as_ref().unwrap();
+    let load = rig.joints[2].waveform.as_ref().unwrap();
+    assert_eq!((rig.joints.len(), load.at(0.5).0), (6, 2000.0));
+    let (key, said) = refusal(&with("press"));
+    assert!(
+        key.ends_with("joints") && said.contains("no joint \"press\""),
         "{key}: {said}"
     );
 }
