@@ -26,12 +26,12 @@ class NodeCycle(NamedTuple):
     """
 
     pressure_mpa: NDArray[np.float64]
-    """Mean pressure on the node's share of the surface at every instant of contact, MPa: shape (instants,)."""
+    """Mean pressure on the loaded part of the node's share of the surface at every instant of contact, MPa: shape (instants,)."""
     slip_mm: NDArray[np.float64]
     """Slip of the femur past the insert in each instant, along the surface's anterior and lateral directions, mm: shape
     (instants, 2)."""
     share: NDArray[np.float64]
-    """Share of all cycles of the instant's activity: shape (instants,)."""
+    """Share of all cycles of the instant's activity times the loaded part of the node's share of the surface: shape (instants,)."""
     peak_pressure_mpa: float
     """The highest pressure, MPa."""
     sliding_distance_mm: float

@@ -19,8 +19,8 @@ struct FallingWearFactor {
 
 impl WearLaw for FallingWearFactor {
     fn wear(&self, cycle: &MeanCycle<'_>) -> NodeWear {
-        // Every instant that the node is pressed, weighted by the share of its activity.
-        let depth_mm = |(share, moment): (f64, &condyle::contact::Moment)| {
+        // Every instant that the node is pressed, weighted by the share of its activity and the loaded part of its surface.
+        let depth_mm = |(share, moment): (f64, condyle::contact::Moment)| {
             let relative = self.reference_pressure_mpa / moment.pressure_mpa;
             let factor_mm2_per_n =
                 self.wear_factor_mm3_per_nm / 1000.0 * relative.powf(self.exponent);

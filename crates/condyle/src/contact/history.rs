@@ -150,11 +150,10 @@ impl CycleHistory {
         self.first.len().saturating_sub(1)
     }
 
-    /// Returns the instants at which a node was in contact, in the order of time.
-    pub fn moments(&self, node: usize) -> impl Iterator<Item = &Moment> {
+    /// Returns the records of a node, in the order of time.
+    pub fn records_of(&self, node: usize) -> impl Iterator<Item = &Record> {
         let own = &self.sorted[self.first[node]..self.first[node + 1]];
-        own.iter()
-            .map(|&record| &self.records[record as usize].moment)
+        own.iter().map(|&record| &self.records[record as usize])
     }
 
     /// Returns the sums over those instants.

@@ -12,6 +12,7 @@ pub type SharedCycle<'a> = (f64, &'a CycleHistory);
 pub struct MeanCycle<'a> {
     activities: &'a [SharedCycle<'a>],
     node: usize,
+    area_mm2: f64,
     /// Highest mean pressure on the node's share in any activity, MPa.
     pub peak_pressure_mpa: f64,
     /// Sliding distance while any part of the node's share is loaded, sum of |ds|, mm.
@@ -25,12 +26,16 @@ pub struct MeanCycle<'a> {
     pub slip_work: SlipWork,
 }
 
+/// Smallest loaded part of a share; it only keeps the pressure on it finite.
+const MIN_LOADED: f64 = 1e-6;
+
 impl<'a> MeanCycle<'a> {
     /// Creates the mean cycle of node `node`, whose share of the surface is `area_mm2` large.
     pub fn new(activities: &'a [SharedCycle<'a>], node: usize, area_mm2: f64) -> Self {
         let mut mean = Self {
             activities,
             node,
+            area_mm2,
             peak_pressure_mpa: 0.0,
             sliding_distance_mm: 0.0,
             pressed_distance_mm: 0.0,
@@ -48,12 +53,30 @@ impl<'a> MeanCycle<'a> {
         mean
     }
 
-    /// Returns every instant of every activity with the activity's share, in the order of time.
-    pub fn moments(&self) -> impl Iterator<Item = (f64, &'a Moment)> + use<'a> {
-        let (activities, node) = (self.activities, self.node);
+    /// Returns every instant of every activity in the order of time: the activity's share times the loaded part of the node's
+    /// share, and the slip with the mean pressure on that part.
+    ///
+    /// The mean over the whole share depends on the mesh where the contact ends within the share. A law that is not linear
+    /// in pressure would converge with the first order of the edge length: the mass by `power-law` was 9 % too high on edges
+    /// of 1 mm.
+    pub fn moments(&self) -> impl Iterator<Item = (f64, Moment)> + use<'a> {
+        let (activities, node, area_mm2) = (self.activities, self.node, self.area_mm2);
         activities.iter().flat_map(move |(share, cycle)| {
-            let moments = cycle.moments(node);
-            moments.map(move |moment| (*share, moment))
+            cycle.records_of(node).map(move |record| {
+                let loaded = (f64::from(record.pressed_mm2) / area_mm2).clamp(MIN_LOADED, 1.0);
+                let Moment {
+                    pressure_mpa,
+                    slip_mm,
+                } = record.moment;
+                let pressure_mpa = pressure_mpa / loaded;
+                (
+                    share * loaded,
+                    Moment {
+                        pressure_mpa,
+                        slip_mm,
+                    },
+                )
+            })
         })
     }
 
@@ -75,6 +98,19 @@ impl<'a> MeanCycle<'a> {
 mod tests {
     use super::super::tests::{history, straight};
     use super::*;
+
+    #[test]
+    fn a_share_loaded_in_part_has_the_pressure_of_that_part() {
+        let history = history(&straight(4.0, [6.0, 0.0]));
+        // The helper presses 2 mm2: half of a share of 4.
+        let shared = [(0.5, &history)];
+        let moments: Vec<_> = MeanCycle::new(&shared, 0, 4.0).moments().collect();
+        assert!(
+            moments
+                .iter()
+                .all(|(weight, moment)| *weight == 0.25 && moment.pressure_mpa == 8.0)
+        );
+    }
 
     #[test]
     fn activities_count_by_their_shares() {
