@@ -207,6 +207,23 @@ fn verify_the_estimated_errors_of_the_default_case() {
     );
 }
 
+/// With the mean pressure on whole shares in place of their loaded part, the coarser mesh has 12 % more mass.
+#[test]
+fn verify_the_mass_by_the_default_law_on_coarser_meshes() {
+    let [coarse, fine] = [2.4, 1.2].map(|edge_mm| {
+        let [mass_mg, _] = losses(case("stanmore-force.toml"), |case| {
+            updated(case, 2);
+            case.time.increments = 100;
+            match &mut case.insert.shape {
+                condyle_case::case::InsertShape::Generic(insert) => insert.edge_mm = edge_mm,
+                other => panic!("{other:?}"),
+            }
+        });
+        mass_mg
+    });
+    assert!((coarse / fine - 1.0).abs() < 0.04, "{coarse} {fine}");
+}
+
 #[test]
 fn verify_the_estimated_errors_of_updates_where_the_insert_creeps() {
     let keys = "[creep]\nlaw = \"lee-pienkowski\"\n";
