@@ -207,7 +207,7 @@ fn verify_the_estimated_errors_of_the_default_case() {
     );
 }
 
-/// With the mean pressure on whole shares in place of their loaded part, the coarser mesh has 12 % more mass.
+/// With the mean pressure on whole shares in place of their loaded part, the coarser mesh has 15 % more mass.
 #[test]
 fn verify_the_mass_by_the_default_law_on_coarser_meshes() {
     let [coarse, fine] = [2.4, 1.2].map(|edge_mm| {
