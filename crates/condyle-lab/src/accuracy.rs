@@ -144,7 +144,7 @@ pub(crate) fn estimate(
     let Some(mut again) = Again::new(march, watch) else {
         return ControlFlow::Continue(None);
     };
-    let of_peak = match case.contact.model.deformable() {
+    let of_peak = match case.contact.deformable() {
         Some(_) => COARSER_DEFORMABLE_PEAK,
         None => COARSER_MESH,
     };

@@ -307,6 +307,10 @@ impl RigJoint {
         }
     }
 
+    fn name(&self) -> &str {
+        &self.keys.name
+    }
+
     /// Returns the unit of its waveform.
     pub fn unit(&self) -> &'static str {
         let channel = channel_of(self.keys.kind, self.keys.drive);
@@ -521,7 +525,7 @@ impl Rig {
     }
 
     fn names(&self) -> impl Iterator<Item = &str> {
-        self.joints.iter().map(|joint| joint.keys.name.as_str())
+        self.joints.iter().map(RigJoint::name)
     }
 
     fn of_text(source: &Source, base: Base<'_>, log: &mut Log<'_>) -> Option<Self> {
@@ -604,7 +608,7 @@ impl Rig {
                 one.keys.kind == other.keys.kind && one.keys.point_mm == other.keys.point_mm;
             is_alike && a.cross(&b).norm() < PARALLEL
         });
-        found.map(|(one, other)| (one.keys.name.as_str(), other.keys.name.as_str()))
+        found.map(|(one, other)| (one.name(), other.name()))
     }
 
     /// Returns the first difference of the motions that this machine and another permit; none if activities of one test
@@ -619,7 +623,7 @@ impl Rig {
         }
         let pairs = self.joints.iter().zip(&other.joints);
         let mut differ = pairs.filter_map(|(joint, other)| {
-            let (name, other_name) = (&joint.keys.name, &other.keys.name);
+            let (name, other_name) = (joint.name(), other.name());
             if name != other_name {
                 return Some(format!(
                     "it has the joint \"{name}\" in place of \"{other_name}\""

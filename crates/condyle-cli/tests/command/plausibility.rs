@@ -380,6 +380,8 @@ fn verify_explicit_steps_of_a_flexed_start_against_implicit_ones() {
     };
     let masses_mg = ["case.toml", "implicit.toml"].map(|file| {
         let case = fs::read_to_string(folder.join("explicit-flies-off").join(file)).unwrap();
+        // Explicit steps chatter in swing, which only a law of the mean pressure sees.
+        let case = case.replace("law = \"kang\"", "law = \"archard\"");
         let bench = Bench::with_case(&format!("{case}[accuracy]\nestimate = false\n"));
         bench.run_into("out");
         bench.summary("out")[&catalogue::MASS_LOSS_MG]

@@ -156,6 +156,11 @@ impl CycleHistory {
         own.iter().map(|&record| &self.records[record as usize])
     }
 
+    /// Returns the instants at which a node was in contact, in the order of time.
+    pub fn moments(&self, node: usize) -> impl Iterator<Item = &Moment> {
+        self.records_of(node).map(|record| &record.moment)
+    }
+
     /// Returns the sums over those instants.
     pub fn sums(&self, node: usize) -> &NodeSums {
         &self.sums[node]

@@ -65,7 +65,7 @@ fn every_choice_round_trips() {
 }
 
 #[test]
-fn force_case_is_the_default_and_that_of_the_paper_differs_in_load_and_law() {
+fn force_case_is_the_default_and_that_of_the_paper_differs_in_load_direction_and_law() {
     let default = parsed("").unwrap();
     let [force, mut paper] = ["stanmore-force.toml", "knight-2007.toml"].map(|name| {
         let mut case = shipped(name);
@@ -82,6 +82,8 @@ fn force_case_is_the_default_and_that_of_the_paper_differs_in_load_and_law() {
     assert_eq!(words, ("archard", "power-law"));
     paper.machine.waveforms = default.machine.waveforms.clone();
     paper.wear = default.wear.clone();
+    assert_eq!(paper.machine.settings.ap_force_sign.0, -1.0);
+    paper.machine.settings.ap_force_sign = default.machine.settings.ap_force_sign;
     assert_eq!(paper, default);
 }
 
