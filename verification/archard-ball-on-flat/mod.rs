@@ -10,7 +10,7 @@ use condyle::{
 };
 
 use crate::{
-    Case, Row,
+    Case, Row, default_case,
     drives::to_and_fro,
     law::THICKNESS_MM,
     marched::{bodies_of, case_in, marched, run_on, started},
@@ -115,7 +115,7 @@ fn of_a_knee() -> Vec<Row> {
 }
 
 fn knee() -> condyle_case::case::Case {
-    let default = include_str!("../../cases/knight-2007.toml");
+    let default = default_case::text();
     let above = default.split("[march]").next().unwrap_or_default();
     let cycles = CYCLES as u64;
     let text = format!("{above}[march]\ncycles = {cycles}\nupdates = 1\n");

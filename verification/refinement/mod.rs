@@ -3,6 +3,7 @@
 use crate::{
     Case, Row,
     convergence::order_of_differences,
+    default_case,
     marched::{marched, test_of},
 };
 
@@ -11,8 +12,6 @@ pub(crate) const CASE: Case = Case {
     readme: include_str!("README.md"),
     rows,
 };
-
-const DEFAULT_CASE: &str = include_str!("../../cases/knight-2007.toml");
 
 /// Accepted error of the mass loss, and of the deepest wear.
 const MASS: f64 = 0.005;
@@ -141,7 +140,7 @@ impl Finer {
             assert!(text.contains(line), "the default case has no longer {line}");
             text.replace(line, new)
         };
-        changes.iter().fold(DEFAULT_CASE.to_owned(), change)
+        changes.iter().fold(default_case::text(), change)
     }
 }
 
