@@ -45,7 +45,11 @@ def cases():
         for number in range(count):
             edge_mm = round(draw.uniform(least_mm, most_mm), 2)
             increments, updates = draw.randint(80, 200), draw.randint(5, 12)
-            settings = [*own, f"machine.frequency_hz={draw.uniform(0.9, 1.2):.2f}", f"contact.friction={draw.uniform(0.02, 0.1):.3f}"]
+            settings = [
+                *own,
+                f"machine.frequency_hz={draw.uniform(0.9, 1.2):.2f}",
+                f"contact.friction={draw.uniform(0.02, 0.1):.3f}",
+            ]
             if base in ("stanmore-force", "stanmore-displacement", "creep"):
                 settings += [
                     f"insert.sagittal_radius_mm={draw.uniform(42, 75):.1f}",
