@@ -90,8 +90,7 @@ impl WearLaw for Kang {
         // loaded part.
         let pressed_mm = cycle.pressed_distance_mm.max(f64::MIN_POSITIVE);
         let mean_mpa = cycle.pressure_slip_mpa_mm / pressed_mm;
-        let is_outside =
-            cross_shear < self.least_cross_shear || mean_mpa > self.most_pressure_mpa;
+        let is_outside = cross_shear < self.least_cross_shear || mean_mpa > self.most_pressure_mpa;
         let log_factor = self.log_wear_factor
             + self.cross_shear_exponent * cross_shear.max(self.least_cross_shear).ln()
             - self.decay_per_mpa * mean_mpa.min(self.most_pressure_mpa);
