@@ -33,9 +33,9 @@ class NodeCycle(NamedTuple):
     share: NDArray[np.float64]
     """Share of all cycles of the instant's activity times the loaded part of the node's share of the surface: shape (instants,)."""
     peak_pressure_mpa: float
-    """The highest pressure, MPa."""
+    """The highest mean pressure on the node's whole share of the surface, MPa."""
     sliding_distance_mm: float
-    """Sum of share times slip, mm."""
+    """Sum of the slip while any of the node's share of the surface is loaded, by the shares of the activities, mm."""
     pressure_slip_mpa_mm: float
     """Sum of share times pressure times slip, MPa mm."""
     cross_shear: float

@@ -52,7 +52,7 @@ def run(
     >>> import condyle
     >>> result = condyle.run({"march": {"updates": 2}, "accuracy": {"estimate": False}})
     >>> round(result.mass_loss_mg), result.wear["cycles"].tolist()
-    (46, [2500000.0, 5000000.0])
+    (44, [2500000.0, 5000000.0])
     """
     if out is None and (resume or force):
         raise ValueError("resume and force refer to the run in a folder: give out, too")
