@@ -20,7 +20,7 @@ settings! {
         key: String;
         /// Its name in tables and pictures; its key if not given.
         name: String = String::new();
-        /// Whether it scatters in a search for a robust optimum, instead of being chosen.
+        /// True if it scatters in a search for a robust optimum, instead of being chosen.
         disturbance: bool = false;
     }
 

@@ -64,18 +64,11 @@ impl<'a> MeanCycle<'a> {
         activities.iter().flat_map(move |(share, cycle)| {
             cycle.records_of(node).map(move |record| {
                 let loaded = (f64::from(record.pressed_mm2) / area_mm2).clamp(MIN_LOADED, 1.0);
-                let Moment {
-                    pressure_mpa,
-                    slip_mm,
-                } = record.moment;
-                let pressure_mpa = pressure_mpa / loaded;
-                (
-                    share * loaded,
-                    Moment {
-                        pressure_mpa,
-                        slip_mm,
-                    },
-                )
+                let moment = Moment {
+                    pressure_mpa: record.moment.pressure_mpa / loaded,
+                    ..record.moment
+                };
+                (share * loaded, moment)
             })
         })
     }
