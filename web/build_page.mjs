@@ -1,5 +1,6 @@
-// Bundles the page: node build_page.mjs WASM FOLDER
+// Bundles the page: node build_page.mjs WASM FOLDER [BOOK]
 //
+// BOOK is the address of the book from the page; without it, the page has no link to one.
 // The folder is then a static site, with each file also compressed by brotli and gzip.
 import { build } from "esbuild";
 import { createHash } from "node:crypto";
@@ -7,7 +8,7 @@ import { mkdirSync, readFileSync, rmSync, writeFileSync } from "node:fs";
 import { brotliCompressSync, gzipSync } from "node:zlib";
 import { licences } from "./licences.mjs";
 
-const [wasm, folder] = process.argv.slice(2);
+const [wasm, folder, book] = process.argv.slice(2);
 
 async function bundled(entry, define = {}) {
   const { outputFiles } = await build({
@@ -26,7 +27,7 @@ async function bundled(entry, define = {}) {
 }
 
 const files = {
-  "index.html": readFileSync("index.html"),
+  "index.html": Buffer.from(readFileSync("index.html", "utf8").replace("<!-- book -->", book ? `<a href="${book}/">Documentation</a>` : "")),
   "page.js": await bundled("page"),
   "worker.js": await bundled("worker"),
   "condyle-web.wasm": readFileSync(wasm),
@@ -41,6 +42,7 @@ files["service_worker.js"] = await bundled("service_worker", {
 
 rmSync(folder, { recursive: true, force: true });
 mkdirSync(folder, { recursive: true });
+console.log("compressing the page");
 const sizes = [0, 0];
 for (const [name, bytes] of Object.entries(files)) {
   const [brotli, gzip] = [brotliCompressSync(bytes), gzipSync(bytes, { level: 9 })];

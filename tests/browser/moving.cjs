@@ -215,6 +215,18 @@ async function gait(page) {
   await keep(page, "gait");
 }
 
+// Drawn by the processor, a moving picture has fewer pixels than one at rest, is smoothed only then, and is not blended.
+async function cheap(page) {
+  const { antialias, alpha } = await page.$eval(".stage canvas", (canvas) => canvas.getContext("webgl2").getContextAttributes());
+  assert(!antialias && !alpha, "the renderer in software is not recognised");
+  const width = () => page.$eval(".stage canvas", (canvas) => canvas.width / canvas.clientWidth);
+  await drawn(page);
+  const fine = await width();
+  await page.getByRole("button", { name: "Play" }).click();
+  await page.waitForFunction((fine) => [...document.querySelectorAll(".stage canvas")].every((canvas) => canvas.width / canvas.clientWidth < fine / 2), fine);
+  await page.getByRole("button", { name: "Pause" }).click();
+}
+
 // Frames a second while the gait plays, at 800 x 600.
 async function played(browser) {
   const page = await browser.newPage({ viewport: { width: 1280, height: 900 } });
@@ -250,6 +262,7 @@ async function main() {
     await linked(page);
     await curves(page);
     await gait(page);
+    await cheap(page);
     assert.match(await page.locator("#licences").textContent(), /three[\s\S]*Permission is hereby granted[\s\S]*uplot/i);
     assert.deepStrictEqual(heard, [], "the page asks for other files or reports errors");
     await page.emulateMedia({ media: "print" });

@@ -23,7 +23,7 @@ import {
   WebGLRenderer,
 } from "three";
 import { OrbitControls } from "three/addons/controls/OrbitControls.js";
-import { toCreasedNormals } from "three/addons/utils/BufferGeometryUtils.js";
+import { mergeVertices, toCreasedNormals } from "three/addons/utils/BufferGeometryUtils.js";
 import type { ColourMap, Range } from "./colours";
 import { element } from "./dom";
 import { FlatStage } from "./flat_stage";
@@ -40,7 +40,8 @@ const DIRECTIONS: Record<View, [number, number, number]> = {
   oblique: [0.75, 0.85, 0.6],
 };
 
-// Drawn by the processor: pixels for each point of the screen, for a picture at rest.
+// Drawn by the processor: pixels for each point of the screen, for a picture that moves and for one at rest.
+const COARSE_IN_MOTION = 0.75;
 const FINE_AT_REST = 2;
 // A picture is at rest after this time without a change, ms.
 const REST_MS = 250;
@@ -109,9 +110,12 @@ export class Stage {
     private readonly host: HTMLElement,
     scene: Scene,
   ) {
-    // Without a graphics card, edges are smoothed only at rest, by more pixels. Saved pictures are the last one drawn.
-    this.renderer = new WebGLRenderer({ antialias: !this.isSlow, preserveDrawingBuffer: true });
-    this.canvas = this.renderer.domElement;
+    this.canvas = element("canvas");
+    // Without a graphics card, edges are smoothed only at rest, by more pixels. Saved pictures are the last one drawn. The
+    // renderer of three.js would ask for a canvas that is blended with the page.
+    const context = this.canvas.getContext("webgl2", { alpha: false, antialias: !this.isSlow, preserveDrawingBuffer: true });
+    if (!context) throw new Error("WebGL is off");
+    this.renderer = new WebGLRenderer({ canvas: this.canvas, context });
     this.canvas.setAttribute("role", "application");
     this.canvas.setAttribute("aria-label", "The bodies in 3-D: arrow keys turn them, plus and minus zoom, Home resets the view");
     this.canvas.tabIndex = 0;
@@ -353,7 +357,7 @@ export class Stage {
       this.isAsked = false;
       if (this.end.signal.aborted) return;
       if (!this.isSlow) return this.draw();
-      this.drawWith(1);
+      this.drawWith(COARSE_IN_MOTION);
       clearTimeout(this.resting);
       this.resting = setTimeout(() => this.draw(), REST_MS);
     });
@@ -400,7 +404,8 @@ function surfaceGeometry(scene: Scene, colours: Float32Array): BufferGeometry {
 
 function bodyGeometry(scene: Scene, name: string): BufferGeometry {
   const geometry = geometryOf(scene.values(`${name}.nodes`), Uint32Array.from(scene.whole(`${name}.triangles`)));
-  return toCreasedNormals(geometry, SHARP_RAD);
+  // Corners with one normal are shared again, so that each is lit once.
+  return mergeVertices(toCreasedNormals(geometry, SHARP_RAD));
 }
 
 function geometryOf(places: Float32Array, triangles: Uint32Array): BufferGeometry {
@@ -422,11 +427,18 @@ export function matrixOf(numbers: ArrayLike<number>): Matrix4 {
   return new Matrix4().set(n(3), n(4), n(5), n(0), n(6), n(7), n(8), n(1), n(9), n(10), n(11), n(2), 0, 0, 0, 1);
 }
 
+// Software that draws instead of a graphics card.
+const SOFTWARE = /swiftshader|llvmpipe|softpipe|software|basic render/i;
+
 // Whether the browser draws without a graphics card; if WebGL is off, the renderer throws.
 function isDrawnByProcessor(): boolean {
   const found = element("canvas").getContext("webgl2", { failIfMajorPerformanceCaveat: true });
-  found?.getExtension("WEBGL_lose_context")?.loseContext();
-  return found === null;
+  if (!found) return true;
+  // Browsers may call a processor fast, but name it.
+  const name = found.getExtension("WEBGL_debug_renderer_info")?.UNMASKED_RENDERER_WEBGL ?? found.RENDERER;
+  const isSlow = SOFTWARE.test(String(found.getParameter(name)));
+  found.getExtension("WEBGL_lose_context")?.loseContext();
+  return isSlow;
 }
 
 // The bodies in three dimensions, or the surface from above where the browser has no WebGL.

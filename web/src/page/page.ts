@@ -235,12 +235,15 @@ async function compiled(): Promise<WebAssembly.Module> {
 
 async function start(): Promise<void> {
   document.head.append(element("style", {}, plotStyle + viewStyle + style));
+  // In a frame, the page around it has the heading.
+  document.documentElement.toggleAttribute("data-framed", window.top !== window);
   const generic = EXAMPLES[0]![1];
   const memory = new Memory(generic);
   const [module, recalled] = await Promise.all([compiled(), memory.recalled()]);
   const page = new Page(module, recalled ?? generic, memory);
   await page.begin();
-  if ("serviceWorker" in navigator) await navigator.serviceWorker.register("service_worker.js");
+  // Refused in a frame of another site, where the page works with the network only.
+  if ("serviceWorker" in navigator) await navigator.serviceWorker.register("service_worker.js").catch(() => undefined);
 }
 
 start().catch((error: unknown) => {
