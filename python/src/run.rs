@@ -52,6 +52,7 @@ pub fn run<'py>(
                 force,
                 threads,
                 cache,
+                report: true,
             };
             run_case(case, &options, &mut |event| listener.hear(&event))
         }

@@ -76,11 +76,11 @@ async function sameAsInNode(page) {
     const files = { "case.toml": new TextEncoder().encode(text) };
     const answer = await new Promise((done) => {
       worker.onmessage = ({ data }) => data.answer && done(data.answer);
-      worker.postMessage({ module, order: { words: ["run", "case.toml", "out"], files, output: "out" } });
+      worker.postMessage({ module, order: { words: ["run", "case.toml", "results", "scene"], files, outputs: ["results", "scene"] } });
     });
     worker.terminate();
-    const hash = new Uint8Array(await crypto.subtle.digest("SHA-256", answer.files["out/scene"]));
-    return { hash: [...hash].map((byte) => byte.toString(16).padStart(2, "0")).join(""), summary: new TextDecoder().decode(answer.files["out/summary.json"]) };
+    const hash = new Uint8Array(await crypto.subtle.digest("SHA-256", answer.files.scene));
+    return { hash: [...hash].map((byte) => byte.toString(16).padStart(2, "0")).join(""), summary: new TextDecoder().decode(answer.files["results/summary.json"]) };
   }, text);
   assert.strictEqual(found.hash, createHash("sha256").update(wanted).digest("hex"), "the browser finds other bytes than Node");
   const timeless = (text) => text.replaceAll(/"wall_s": [^,\n]*/g, "");
@@ -108,6 +108,19 @@ async function sliders(page) {
   await ran(page, () => page.keyboard.press("ArrowLeft"));
   assert.match(await page.locator("#case-text").inputValue(), /sagittal_radius_mm = 89/);
   return solved_ms;
+}
+
+// Coarse numbers come first, and the report is of the run that is shown: nothing is solved again.
+async function previewed(page) {
+  await page.evaluate(() => {
+    window.tiles = [];
+    const note = () => window.tiles.push({ coarse: document.documentElement.hasAttribute("data-preview"), mass: Number.parseFloat(document.querySelector("[data-number=mass_loss_mg]").textContent) });
+    new MutationObserver(note).observe(document.getElementById("tiles"), { childList: true });
+  });
+  await ran(page, () => page.getByLabel("Friction").fill("0.1"));
+  const [first, last, ...more] = await page.evaluate(() => window.tiles);
+  assert(first.coarse && !last.coarse && more.length === 0, JSON.stringify([first, last, ...more]));
+  assert(first.mass !== last.mass && Math.abs(first.mass / last.mass - 1) < 0.1, `${first.mass} mg at first, then ${last.mass}`);
 }
 
 // A new run shows nothing of the run before from the moment it starts.
@@ -217,6 +230,8 @@ async function drop(page, files) {
 
 async function saved(page) {
   await ran(page, () => write(page, QUICK));
+  // The time of the run that is shown must be that in the saved folder: the run is not solved again.
+  fs.writeFileSync(path.join(made, "state.txt"), await state(page));
   for (const [name, file] of [["Save the results folder", "results.zip"], ["Save the report", "report.html"], ["Save the case", "case.toml"]]) {
     const [download] = await Promise.all([page.waitForEvent("download"), page.getByRole("button", { name }).click()]);
     assert.strictEqual(download.suggestedFilename(), file);
@@ -283,6 +298,7 @@ async function main() {
     const summary = await sameAsInNode(page);
     await numbers(page, summary);
     const solved_ms = await sliders(page);
+    await previewed(page);
     await freshStart(page);
     await remembered(page);
     await examples(page);

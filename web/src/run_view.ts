@@ -13,6 +13,8 @@ export interface RunViewOptions {
   root?: ParentNode;
   // The picture of a chart that is saved as SVG.
   svgOf?: (chart: Chart) => (() => string) | undefined;
+  // The viewer of the run before, whose renderer goes on.
+  previous?: Viewer;
 }
 
 export class RunView {
@@ -25,10 +27,10 @@ export class RunView {
 
   constructor(
     private readonly scene: Scene,
-    { root = document, svgOf }: RunViewOptions = {},
+    { root = document, svgOf, previous }: RunViewOptions = {},
   ) {
     this.maps = new FlatMaps(root, (x, z) => this.viewer?.pickAt(x, z));
-    if (scene.facts.updates.length) this.viewer = new Viewer(scene);
+    if (scene.facts.updates.length) this.viewer = new Viewer(scene, previous);
     const { viewer } = this;
     // Other activities have motions of their own, which the bodies do not show.
     const chosen: Record<string, (chart: Chart) => (x: number) => void> = {

@@ -100,7 +100,7 @@ export class Stage {
   private readonly arrows: ArrowHelper[] = [];
   private readonly unworn: Float32Array;
   private readonly neutral = new Matrix4();
-  private readonly isSlow = isDrawnByProcessor();
+  private readonly isSlow: boolean;
   private paper = new Color();
   private readonly end = new AbortController();
   private isAsked = false;
@@ -109,17 +109,13 @@ export class Stage {
   constructor(
     private readonly host: HTMLElement,
     scene: Scene,
+    // A stage that ends: its renderer goes on, since a new one takes a tenth of a second.
+    previous?: Stage,
   ) {
-    this.canvas = element("canvas");
-    // Without a graphics card, edges are smoothed only at rest, by more pixels. Saved pictures are the last one drawn. The
-    // renderer of three.js would ask for a canvas that is blended with the page.
-    const context = this.canvas.getContext("webgl2", { alpha: false, antialias: !this.isSlow, preserveDrawingBuffer: true });
-    if (!context) throw new Error("WebGL is off");
-    this.renderer = new WebGLRenderer({ canvas: this.canvas, context });
-    this.canvas.setAttribute("role", "application");
-    this.canvas.setAttribute("aria-label", "The bodies in 3-D: arrow keys turn them, plus and minus zoom, Home resets the view");
-    this.canvas.tabIndex = 0;
-
+    previous?.release();
+    this.isSlow = previous?.isSlow ?? isDrawnByProcessor();
+    this.renderer = previous?.renderer ?? newRenderer(this.isSlow);
+    this.canvas = this.renderer.domElement;
     this.unworn = scene.values("surface.nodes");
     this.colours = new Float32Array(this.unworn.length);
     this.surface = new Mesh(surfaceGeometry(scene, this.colours), new Matter({ side: FrontSide }));
@@ -148,7 +144,7 @@ export class Stage {
       this.ask();
       this.onTurn();
     });
-    this.canvas.addEventListener("keydown", (event) => this.key(event));
+    this.canvas.addEventListener("keydown", (event) => this.key(event), { signal: this.end.signal });
     this.showFemur(0.3);
     this.look("oblique");
     new ResizeObserver(() => this.fit()).observe(host);
@@ -295,15 +291,20 @@ export class Stage {
     this.canvas.dataset["still"] = "yes";
   }
 
+  // A stage whose renderer went on to another has nothing left.
   dispose(): void {
-    clearTimeout(this.resting);
-    this.end.abort();
-    this.controls.dispose();
+    if (this.end.signal.aborted) return;
+    this.release();
     this.renderer.dispose();
     this.renderer.forceContextLoss();
     this.canvas.remove();
-    this.scale.remove();
-    for (const { box } of this.names) box.remove();
+  }
+
+  private release(): void {
+    clearTimeout(this.resting);
+    this.end.abort();
+    this.controls.dispose();
+    this.world.traverse((body) => body instanceof Mesh && (body.geometry as BufferGeometry).dispose());
   }
 
   private arrow(index: number): ArrowHelper {
@@ -366,7 +367,8 @@ export class Stage {
   private fit(): void {
     const { clientWidth: width, clientHeight: height } = this.host;
     if (!width || !height) return;
-    this.renderer.setSize(width, height);
+    const size = this.renderer.getSize(new Vector2());
+    if (size.x !== width || size.y !== height) this.renderer.setSize(width, height);
     this.camera.aspect = width / height;
     this.camera.updateProjectionMatrix();
     // The colour of the page is known only once the stage is in the document.
@@ -430,6 +432,16 @@ export function matrixOf(numbers: ArrayLike<number>): Matrix4 {
 // Software that draws instead of a graphics card.
 const SOFTWARE = /swiftshader|llvmpipe|softpipe|software|basic render/i;
 
+function newRenderer(isSlow: boolean): WebGLRenderer {
+  const canvas = element("canvas", { role: "application", tabindex: 0 });
+  canvas.setAttribute("aria-label", "The bodies in 3-D: arrow keys turn them, plus and minus zoom, Home resets the view");
+  // Without a graphics card, edges are smoothed only at rest, by more pixels. Saved pictures are the last one drawn. The
+  // renderer of three.js would ask for a canvas that is blended with the page.
+  const context = canvas.getContext("webgl2", { alpha: false, antialias: !isSlow, preserveDrawingBuffer: true });
+  if (!context) throw new Error("WebGL is off");
+  return new WebGLRenderer({ canvas, context });
+}
+
 // Whether the browser draws without a graphics card; if WebGL is off, the renderer throws.
 function isDrawnByProcessor(): boolean {
   const found = element("canvas").getContext("webgl2", { failIfMajorPerformanceCaveat: true });
@@ -442,9 +454,9 @@ function isDrawnByProcessor(): boolean {
 }
 
 // The bodies in three dimensions, or the surface from above where the browser has no WebGL.
-export function stageOf(host: HTMLElement, scene: Scene): Stage | FlatStage {
+export function stageOf(host: HTMLElement, scene: Scene, previous?: Stage | FlatStage): Stage | FlatStage {
   try {
-    return new Stage(host, scene);
+    return new Stage(host, scene, previous?.isFlat ? undefined : previous);
   } catch {
     return new FlatStage(host, scene);
   }

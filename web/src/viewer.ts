@@ -82,10 +82,14 @@ export class Viewer {
   private readonly instants: Slider;
   private readonly play = button("Play", () => this.togglePlay());
 
-  constructor(private readonly scene: Scene) {
+  // `previous`: a viewer that ends, whose renderer goes on.
+  constructor(
+    private readonly scene: Scene,
+    previous?: Viewer,
+  ) {
     const { updates, fields } = scene.facts;
     const host = element("div", { class: "stage" });
-    this.stage = stageOf(host, scene);
+    this.stage = stageOf(host, scene, previous?.stage);
     this.update = updates.length - 1;
     this.maps = new Map(fields.map(({ name, colours }) => [name, new ColourMap(colours)]));
     this.field = (fields.find(({ name }) => name === "wear_depth_mm") ?? fields[0])?.name ?? IN_CYCLE;
@@ -100,7 +104,7 @@ export class Viewer {
     this.instants = new Slider("Through the cycle", [0, last, 1], percent, (instant) => this.chooseInstant(instant));
     this.instants.value = 0;
     this.box.append(host, this.legend(), this.status, this.controls(), this.picked);
-    this.listen();
+    this.listen(host);
     this.showUpdate(this.update);
   }
 
@@ -391,11 +395,10 @@ export class Viewer {
     savePicture(`${this.field}.png`, slide(this.stage.shot(SLIDE_PX), legend));
   }
 
-  private listen(): void {
-    const { canvas } = this.stage;
+  private listen(host: HTMLElement): void {
     let began = [0, 0];
-    canvas.addEventListener("pointerdown", (event) => (began = [event.clientX, event.clientY]));
-    canvas.addEventListener("pointerup", (event) => {
+    host.addEventListener("pointerdown", (event) => (began = [event.clientX, event.clientY]));
+    host.addEventListener("pointerup", (event) => {
       // A drag turns the bodies; a click picks a point.
       if (Math.hypot(event.clientX - began[0]!, event.clientY - began[1]!) < 4) this.pick(event);
     });

@@ -24,6 +24,7 @@ pub fn run(arguments: &Run) -> Done {
         force: arguments.force,
         threads: usize::from(arguments.threads),
         cache: Cache::of_user(),
+        report: true,
     };
     let (case, set) = (&arguments.case, &arguments.changes.set);
     let outcome = {

@@ -193,6 +193,7 @@ fn run_row(arguments: &RunRow) -> Done {
         force: false,
         threads: 1,
         cache: Cache::of_user(),
+        report: true,
     };
     plan.assignments(&test).iter().for_each(note);
     let case = plan.case_of(&test)?;

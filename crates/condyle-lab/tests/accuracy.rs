@@ -36,6 +36,7 @@ fn run(case: &Case) -> Summary {
         force: false,
         threads,
         cache: Cache::off(),
+        report: true,
     };
     let outcome = run_case(case, &options, &mut |_| std::ops::ControlFlow::Continue(()));
     match outcome.unwrap_or_else(|error| panic!("{error}")) {

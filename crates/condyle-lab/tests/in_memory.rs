@@ -75,6 +75,7 @@ fn a_run_in_memory_finds_what_one_into_a_folder_writes() {
         force: false,
         threads: 1,
         cache: Cache::off(),
+        report: true,
     };
     let mut go_on = |_: RunEvent<'_>| ControlFlow::Continue(());
     let written = run_case(&case(), &options, &mut go_on).expect("it runs");

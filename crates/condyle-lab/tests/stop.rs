@@ -34,6 +34,7 @@ fn options(out: PathBuf, resume: bool) -> RunOptions {
         force: false,
         threads: 1,
         cache: Cache::off(),
+        report: true,
     }
 }
 

@@ -230,6 +230,7 @@ fn run(case: &Case, folder: &str, options: &ConvergeOptions, reporter: &Reporter
         force: false,
         threads: 1,
         cache: options.cache.clone(),
+        report: true,
     };
     let mut on_event = |event: RunEvent<'_>| {
         reporter.report(match event {

@@ -5,9 +5,9 @@
 //!
 //! | arguments | effect |
 //! | --- | --- |
-//! | `check CASE` | reports the problems of the text and files of a case |
-//! | `run CASE OUT` | runs it in memory; OUT receives `scene` and `summary.json` |
-//! | `keep CASE OUT` | runs it into the results folder OUT, report and all |
+//! | `preview CASE OUT` | runs it into the results folder OUT with few increments and updates, and estimates no errors |
+//! | `run CASE OUT SCENE` | runs it into the results folder OUT, without its report; SCENE receives what the page shows |
+//! | `report OUT` | writes the report of the results folder OUT |
 //! | `draft CASE FEMUR INSERT` | writes a case of two meshes, as `condyle new` does |
 //!
 //! It ends with 0, with 2 on bad input and with 3 where the physics could not be solved, as the command does.
@@ -15,7 +15,6 @@
 mod draft;
 mod failure;
 mod message;
-mod recorder;
 mod runs;
 
 use std::{env, path::Path, process::ExitCode};
@@ -38,9 +37,14 @@ fn main() -> ExitCode {
 
 fn done(words: &[&str]) -> Result<(), Failure> {
     match words {
-        ["check", case] => runs::check(Path::new(case)),
-        ["run", case, out] => runs::run(Path::new(case), Path::new(out)),
-        ["keep", case, out] => runs::keep(Path::new(case), Path::new(out)),
+        ["preview", case, out] => {
+            runs::run(&runs::coarse(runs::read(Path::new(case))?), Path::new(out))
+        }
+        ["run", case, out, scene] => {
+            runs::run(&runs::read(Path::new(case))?, Path::new(out))?;
+            runs::draw(Path::new(out), Path::new(scene))
+        }
+        ["report", out] => runs::report(Path::new(out)),
         ["draft", case, femur, insert] => {
             draft::draft(Path::new(case), Path::new(femur), Path::new(insert))
         }

@@ -1,50 +1,21 @@
-//! Checks and runs of a case: in memory for the page, or into a results folder.
+//! Checks and runs of a case.
 
 use std::{fs, ops::ControlFlow, path::Path};
 
-use condyle_case::{cache::Cache, case::Case};
-use condyle_lab::{InMemory, Outcome, Reached, RunError, RunEvent, RunOptions};
-use condyle_results::{Directions, Summary};
+use condyle_case::{
+    cache::Cache,
+    case::{Case, Update},
+};
+use condyle_lab::{Outcome, Reached, RunEvent, RunOptions};
+use condyle_report::{Results, scene::Scene};
 
 use crate::{
     failure::Failure,
     message::{Message, send},
-    recorder::Recorder,
 };
 
-/// Reads the case at `case` and reports all of its problems.
-pub fn check(case: &Path) -> Result<(), Failure> {
-    read(case).map(|_| ())
-}
-
-/// Runs the case at `case` in memory; writes what the page shows into the folder `out`.
-pub fn run(case: &Path, out: &Path) -> Result<(), Failure> {
-    let case = read(case)?;
-    let how = InMemory {
-        threads: 1,
-        cache: Cache::off(),
-        wear_law: None,
-    };
-    let mut recorder = Recorder::new(case.heading.side);
-    let mut reporter = ProgressReporter::of(&case);
-    let outcome = condyle_lab::run_in_memory(&case, &how, &mut recorder, &mut |event| {
-        reporter.report(&event)
-    });
-    let summary = done(outcome)?;
-    let mut scene = recorder.into_scene(summary.neutral_pose);
-    scene.directions = Directions {
-        joint: summary.joint,
-        side: case.heading.side,
-    };
-    scene.title = case.heading.title;
-    write(out, "scene", &scene.to_bytes())?;
-    let json = serde_json::to_vec_pretty(&summary).expect("numbers and text always serialise");
-    write(out, "summary.json", &json)
-}
-
-/// Runs the case at `case` into the results folder `out`.
-pub fn keep(case: &Path, out: &Path) -> Result<(), Failure> {
-    let case = read(case)?;
+/// Runs a case into the results folder `out`, without its report.
+pub fn run(case: &Case, out: &Path) -> Result<(), Failure> {
     let options = RunOptions {
         out: out.to_owned(),
         resume: false,
@@ -52,19 +23,12 @@ pub fn keep(case: &Path, out: &Path) -> Result<(), Failure> {
         force: true,
         threads: 1,
         cache: Cache::off(),
+        report: false,
     };
-    let mut reporter = ProgressReporter::of(&case);
-    let outcome = condyle_lab::run_case(&case, &options, &mut |event| reporter.report(&event));
-    done(outcome).map(|_| ())
-}
-
-fn read(case: &Path) -> Result<Case, Failure> {
-    Case::read(case).map_err(|problems| Failure::from(&problems))
-}
-
-fn done(outcome: Result<Outcome, RunError>) -> Result<Box<Summary>, Failure> {
+    let mut reporter = ProgressReporter::of(case);
+    let outcome = condyle_lab::run_case(case, &options, &mut |event| reporter.report(&event));
     match outcome {
-        Ok(Outcome::Done(summary) | Outcome::DoneBefore(summary)) => Ok(summary),
+        Ok(Outcome::Done(_) | Outcome::DoneBefore(_)) => Ok(()),
         Ok(Outcome::Interrupted(_)) => {
             unreachable!("the page ends the whole program to stop a run")
         }
@@ -72,10 +36,37 @@ fn done(outcome: Result<Outcome, RunError>) -> Result<Box<Summary>, Failure> {
     }
 }
 
-fn write(folder: &Path, name: &str, content: &[u8]) -> Result<(), Failure> {
-    let path = folder.join(name);
-    let written = fs::create_dir_all(folder).and_then(|()| fs::write(&path, content));
-    written.map_err(|error| Failure::of_file(&path, &error))
+/// Writes the scene of the results folder `out`.
+pub fn draw(out: &Path, scene: &Path) -> Result<(), Failure> {
+    let results = Results::read(out).map_err(Failure::of_words)?;
+    let bytes = Scene::read(out, &results).to_bytes();
+    fs::write(scene, bytes).map_err(|error| Failure::of_file(scene, &error))
+}
+
+/// Writes the report of the results folder `out`.
+pub fn report(out: &Path) -> Result<(), Failure> {
+    let written = condyle_report::write_report(out);
+    written.map(|_| ()).map_err(Failure::of_words)
+}
+
+/// Reads the case at `case`; the failure has all of its problems.
+pub fn read(case: &Path) -> Result<Case, Failure> {
+    Case::read(case).map_err(|problems| Failure::from(&problems))
+}
+
+/// Increments and updates of a preview: on the default knee, mass and depth are within a few percent of the whole run, in a
+/// quarter of its time.
+const PREVIEW_INCREMENTS: u64 = 120;
+const PREVIEW_UPDATES: u64 = 3;
+
+/// Returns a case that is solved in a fraction of the time, for a preview.
+pub fn coarse(mut case: Case) -> Case {
+    case.accuracy.estimate = false;
+    case.time.increments = case.time.increments.min(PREVIEW_INCREMENTS);
+    if let Update::Fixed(fixed) = &mut case.march.update {
+        fixed.updates = fixed.updates.min(PREVIEW_UPDATES);
+    }
+    case
 }
 
 /// Reports the progress of a run to the page.

@@ -42,9 +42,9 @@ fn folder_with(case: &str) -> tempfile::TempDir {
 }
 
 #[test]
-fn what_the_page_shows_is_what_the_results_folder_holds() {
+fn what_the_page_shows_and_saves_is_the_results_folder_of_one_run() {
     let folder = folder_with(CASE);
-    let ran = called(folder.path(), &["run", "case.toml", "out"]);
+    let ran = called(folder.path(), &["run", "case.toml", "results", "scene"]);
     assert!(ran.status.success(), "{ran:?}");
     let reached = messages(&ran);
     let updates = reached
@@ -52,25 +52,20 @@ fn what_the_page_shows_is_what_the_results_folder_holds() {
         .filter_map(|line| line["reached"]["updates"].as_u64());
     assert_eq!(updates.collect::<Vec<_>>(), [0, 1, 2, 3]);
     assert_eq!(reached.last(), Some(&Value::from("estimating")));
+    let out = folder.path().join("results");
+    let summary = fs::read(out.join("summary.json")).expect("it was written");
+    assert!(!out.join("report.html").exists());
 
-    let kept = called(folder.path(), &["keep", "case.toml", "results"]);
-    assert!(kept.status.success(), "{kept:?}");
-    let results_folder = folder.path().join("results");
-    assert!(results_folder.join("report.html").exists());
-    let results = Results::read(&results_folder).expect("it is whole");
-    let scene = Scene::read(&results_folder, &results);
+    let reported = called(folder.path(), &["report", "results"]);
+    assert!(reported.status.success(), "{reported:?}");
+    assert!(out.join("report.html").exists());
+    let results = Results::read(&out).expect("it is whole");
+    let scene = Scene::read(&out, &results);
     assert_eq!(scene.missing, Vec::<String>::new());
-    let shown = fs::read(folder.path().join("out/scene")).expect("it was written");
+    let shown = fs::read(folder.path().join("scene")).expect("it was written");
     assert!(shown == scene.to_bytes(), "the scenes differ");
-
-    let summary = |path: &str| {
-        let text = fs::read_to_string(folder.path().join(path)).expect("it was written");
-        let mut summary: Value = serde_json::from_str(&text).expect("it is JSON");
-        summary["wall_s"] = Value::Null;
-        summary["error"]["wall_s"] = Value::Null;
-        summary
-    };
-    assert_eq!(summary("out/summary.json"), summary("results/summary.json"));
+    let after = fs::read(out.join("summary.json")).expect("it is there");
+    assert!(after == summary, "the report has another run");
 }
 
 #[test]
@@ -78,9 +73,8 @@ fn a_wrong_case_fails_with_the_message_of_the_command() {
     const WRONG: &str = "[contact]\nfrictoin = 0.04\n";
     let folder = folder_with(WRONG);
     for words in [
-        &["check", "case.toml"][..],
-        &["run", "case.toml", "out"],
-        &["keep", "case.toml", "results"],
+        &["preview", "case.toml", "results"][..],
+        &["run", "case.toml", "results", "scene"],
     ] {
         let output = called(folder.path(), words);
         assert_eq!(output.status.code(), Some(2));
@@ -114,9 +108,29 @@ fn files_that_are_not_meshes_give_no_case() {
 }
 
 #[test]
-fn a_good_case_checks_and_what_is_no_call_is_refused() {
+fn a_preview_is_near_the_run_and_estimates_no_errors() {
+    let folder = folder_with("[insert]\nedge_mm = 2.0\nlayers = 1\n");
+    let summary = |words: &[&str]| -> Value {
+        let ran = called(folder.path(), words);
+        assert!(ran.status.success(), "{ran:?}");
+        let text = fs::read(folder.path().join("out/summary.json"));
+        serde_json::from_slice(&text.expect("it was written")).expect("it is JSON")
+    };
+    let run = summary(&["run", "case.toml", "out", "scene"]);
+    let preview = summary(&["preview", "case.toml", "out"]);
+    assert!(preview["error"].is_null() && run["error"].is_object());
+    assert!(preview["contact_evaluations"].as_f64() < run["contact_evaluations"].as_f64());
+    for name in ["mass_loss_mg", "max_depth_mm", "peak_pressure_mpa"] {
+        let [run, preview] = [&run, &preview].map(|of| of[name].as_f64().expect("it is a number"));
+        assert!(
+            (preview / run - 1.0).abs() < 0.1,
+            "{name}: {preview}, not {run}"
+        );
+    }
+}
+
+#[test]
+fn what_is_no_call_is_refused() {
     let folder = folder_with(CASE);
-    let checked = called(folder.path(), &["check", "case.toml"]);
-    assert!(checked.status.success() && checked.stdout.is_empty());
     assert_eq!(called(folder.path(), &["nonsense"]).status.code(), Some(2));
 }

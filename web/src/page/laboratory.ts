@@ -8,7 +8,9 @@ import type { Found } from "./shown_run";
 import { Solver } from "./solver";
 import type { Bodies } from "./dropped";
 
-const CASE = "case.toml";
+const [CASE, RESULTS, SCENE] = ["case.toml", "results", "scene"] as const;
+const SUMMARY = `${RESULTS}/summary.json`;
+export const REPORT = `${RESULTS}/report.html`;
 // All keys of a case have defaults, but a text that was deleted is not meant to be one.
 const EMPTY = 'error: the case is empty\n\nWrite at least one key, such as `title = "Defaults"`, or go back to the case before.';
 // Pause after a change before a run starts, ms: a moving slider starts none.
@@ -16,6 +18,8 @@ const PATIENCE_MS = 120;
 
 export interface Listener {
   message(message: Message): void;
+  // Called with the numbers of a coarse run.
+  previewed(summary: Summary): void;
   found(found: Found): void;
   failed(failure: Failure | null): void;
   // Called with whether a run is in progress.
@@ -25,10 +29,10 @@ export interface Listener {
 export class Laboratory {
   text: string;
   private bodies: Files = {};
-  private readonly runs: Solver;
-  private readonly checks: Solver;
+  private readonly solver: Solver;
   private timer = 0;
-  private folder: { text: string; files: Files } | undefined;
+  // The results folder of the last run, without its report until that is asked for.
+  private folder: Files = {};
 
   constructor(
     module: WebAssembly.Module,
@@ -36,62 +40,64 @@ export class Laboratory {
     private readonly listener: Listener,
   ) {
     this.text = text;
-    this.runs = new Solver(module);
-    this.checks = new Solver(module);
+    this.solver = new Solver(module);
   }
 
-  // Checks a changed text and runs it once it no longer changes.
+  // Runs a changed text once it no longer changes.
   change(text: string): void {
     this.text = text;
     this.cancel();
-    this.timer = window.setTimeout(() => void this.checkAndRun(), PATIENCE_MS);
+    this.timer = window.setTimeout(() => void this.run(), PATIENCE_MS);
   }
 
   cancel(): void {
     clearTimeout(this.timer);
-    this.runs.cancel();
+    this.solver.cancel();
     this.listener.busy(false);
   }
 
+  // Solves the case coarsely, for numbers at once, and then as it is. Failures are those of the whole run.
   async run(): Promise<void> {
+    if (this.text.trim() === "") return this.listener.failed({ message: EMPTY, problems: [] });
     this.listener.busy(true);
-    const answer = await this.runs.call({ words: ["run", CASE, "out"], files: this.files(), output: "out" }, this.listener.message);
-    if (!answer) return;
+    const files = this.files();
+    const preview = await this.solver.call({ words: ["preview", CASE, RESULTS], files, outputs: [RESULTS] });
+    if (!preview) return;
+    if (!preview.failure) {
+      this.folder = {};
+      this.listener.previewed(summaryOf(preview.files));
+    }
+    const found = await this.call(["run", CASE, RESULTS, SCENE], files, [RESULTS, SCENE]);
+    if (!found) return;
+    const { [SCENE]: scene, ...folder } = found;
+    this.folder = folder;
+    this.listener.found({ scene: new Scene(scene!.buffer as ArrayBuffer), summary: summaryOf(folder) });
+  }
+
+  // The files of a call; undefined if it failed or was cancelled.
+  private async call(words: string[], files: Files, outputs: string[]): Promise<Files | undefined> {
+    this.listener.busy(true);
+    const answer = await this.solver.call({ words, files, outputs }, this.listener.message);
+    if (!answer) return undefined;
     this.listener.busy(false);
     this.listener.failed(answer.failure);
-    const [scene, summary] = [answer.files["out/scene"], answer.files["out/summary.json"]];
-    if (answer.failure || !scene || !summary) return;
-    this.listener.found({ scene: new Scene(scene.buffer as ArrayBuffer), summary: JSON.parse(decode(summary)) as Summary });
+    return answer.failure ? undefined : answer.files;
   }
 
   // A case of two meshes, with unit and axes as condyle detects them.
   async draft({ femur, insert, files }: Bodies): Promise<string | undefined> {
     this.cancel();
-    this.listener.busy(true);
-    const answer = await this.runs.call({ words: ["draft", CASE, femur, insert], files, output: CASE }, this.listener.message);
-    if (!answer) return undefined;
-    this.listener.busy(false);
-    this.listener.failed(answer.failure);
-    const drafted = answer.files[CASE];
-    if (answer.failure || !drafted) return undefined;
+    const drafted = (await this.call(["draft", CASE, femur, insert], files, [CASE]))?.[CASE];
+    if (!drafted) return undefined;
     this.bodies = files;
-    this.folder = undefined;
     return decode(drafted);
   }
 
-  // The results folder of the case, as the command writes it; solved once for each text.
-  async kept(folder: string): Promise<Files | undefined> {
-    if (this.folder?.text === this.text) return this.folder.files;
-    this.cancel();
-    const { text } = this;
-    this.listener.busy(true);
-    const answer = await this.runs.call({ words: ["keep", CASE, folder], files: this.files(), output: folder }, this.listener.message);
-    if (!answer) return undefined;
-    this.listener.busy(false);
-    this.listener.failed(answer.failure);
-    if (answer.failure) return undefined;
-    this.folder = { text, files: answer.files };
-    return answer.files;
+  // The results folder of the run that is shown, as the command writes it; undefined if that was stopped.
+  async kept(): Promise<Files | undefined> {
+    if (!this.folder[SUMMARY]) return undefined;
+    if (!this.folder[REPORT]) this.folder = (await this.call(["report", RESULTS], this.folder, [RESULTS])) ?? this.folder;
+    return this.folder[REPORT] && this.folder;
   }
 
   // The meshes that the case names.
@@ -99,19 +105,15 @@ export class Laboratory {
     return this.bodies;
   }
 
-  private async checkAndRun(): Promise<void> {
-    if (this.text.trim() === "") return this.listener.failed({ message: EMPTY, problems: [] });
-    const answer = await this.checks.call({ words: ["check", CASE], files: this.files(), output: CASE });
-    if (!answer) return;
-    this.listener.failed(answer.failure);
-    if (!answer.failure) await this.run();
-  }
-
   // The files of the case; a worker gets copies of them.
   private files(): Files {
     const text = new TextEncoder().encode(this.text);
     return { ...this.bodies, [CASE]: text };
   }
+}
+
+function summaryOf(files: Files): Summary {
+  return JSON.parse(decode(files[SUMMARY]!)) as Summary;
 }
 
 function decode(bytes: Uint8Array): string {

@@ -11,9 +11,9 @@ import schema from "../../../cases/condyle.schema.json";
 import { take, takeDropped, type Bodies } from "./dropped";
 import { Editor } from "./editor";
 import { EXAMPLES } from "./examples";
-import { Laboratory } from "./laboratory";
+import { Laboratory, REPORT } from "./laboratory";
 import { Memory } from "./memory";
-import { comparison, doubts, notes, tiles } from "./numbers";
+import { comparison, doubts, notes, tiles, type Summary } from "./numbers";
 import style from "./page.css";
 import type { Failure, Message } from "./program";
 import { CaseSchema } from "./schema";
@@ -24,8 +24,14 @@ import { zip } from "./zip";
 // Charts that are drawn for the kept run and the present one together.
 const COMPARED = ["w-mass_loss_mg", "w-max_depth_mm"];
 
+const NOTHING_TO_SAVE = "There is no finished run to save: change the case, and let its run end";
+
 function byId(id: string): HTMLElement {
   return document.getElementById(id)!;
+}
+
+function nextFrame(): Promise<unknown> {
+  return new Promise((done) => requestAnimationFrame(done));
 }
 
 class Page {
@@ -46,7 +52,8 @@ class Page {
   ) {
     this.laboratory = new Laboratory(module, text, {
       message: (message) => this.report(message),
-      found: (found) => this.find(found),
+      previewed: (summary) => this.showNumbers(summary, true),
+      found: (found) => void this.find(found),
       failed: (failure) => this.fail(failure),
       busy: (isBusy) => this.begun(isBusy),
     });
@@ -140,28 +147,38 @@ class Page {
   // A new run starts at nothing: words and bar of the run before are not its own.
   private begun(isBusy: boolean): void {
     document.documentElement.toggleAttribute("data-busy", isBusy);
+    for (const id of ["save-results", "save-report"]) byId(id).toggleAttribute("disabled", isBusy);
     if (isBusy) this.reach(0, "The run is being prepared");
   }
 
   private reach(part: number, words: string): void {
     (byId("progress") as HTMLProgressElement).value = part;
-    this.say(words);
+    const isPreview = document.documentElement.hasAttribute("data-preview");
+    this.say(isPreview ? `${words}; the numbers below are of a coarse run` : words);
   }
 
   private say(words: string): void {
     byId("state").textContent = words;
   }
 
-  private find(found: Found): void {
-    const { summary } = found;
-    this.now = found;
-    this.shown.show(found);
+  private showNumbers(summary: Summary, isPreview: boolean): void {
+    document.documentElement.toggleAttribute("data-preview", isPreview);
     byId("tiles").replaceChildren(...tiles(summary));
     byId("doubts").replaceChildren(...doubts(summary));
     byId("notes").replaceChildren(...notes(summary));
     byId("doubtful").hidden = byId("doubts").childElementCount === 0;
+  }
+
+  // A frame between numbers, bodies and the rest, so that none of them holds up the page for long.
+  private async find(found: Found): Promise<void> {
+    const { summary } = found;
+    this.now = found;
+    this.showNumbers(summary, false);
     const solved = summary.wall_s + (summary.error?.wall_s ?? 0);
     this.say(`${inDigits(summary.cycles / 1e6)} million cycles, solved in ${inDigits(solved)} s on this machine`);
+    await nextFrame();
+    this.shown.show(found);
+    await nextFrame();
     this.compare();
     // Meshes are in no address: with them, the case would not run elsewhere.
     if (Object.keys(this.laboratory.meshes).length === 0) void this.memory.remember(this.laboratory.text);
@@ -178,7 +195,10 @@ class Page {
 
   private cancel(): void {
     this.laboratory.cancel();
-    this.say("The run is stopped; the previous run is shown.");
+    const isPreview = document.documentElement.hasAttribute("data-preview");
+    this.say(
+      isPreview ? "The run is stopped; the numbers are of a coarse run, the picture of the run before." : "The run is stopped; the previous run is shown.",
+    );
   }
 
   private keep(): void {
@@ -197,16 +217,16 @@ class Page {
   }
 
   private async saveResults(): Promise<void> {
-    const files = await this.laboratory.kept("results");
-    if (!files) return;
+    const files = await this.laboratory.kept();
+    if (!files) return this.say(NOTHING_TO_SAVE);
     save("results.zip", await zip(files));
     this.say("results.zip is saved: unpacked, it is a folder for the command");
   }
 
   private async saveReport(): Promise<void> {
-    const files = await this.laboratory.kept("results");
-    const report = files?.["results/report.html"];
-    if (!report) return;
+    const files = await this.laboratory.kept();
+    const report = files?.[REPORT];
+    if (!report) return this.say(NOTHING_TO_SAVE);
     save("report.html", new Blob([report as BlobPart], { type: "text/html" }));
     this.say("report.html is saved");
   }

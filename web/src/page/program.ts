@@ -26,8 +26,8 @@ export interface Message {
 export interface Call {
   words: string[];
   files: Files;
-  // The folder or file to return.
-  output: string;
+  // The folders and files to return.
+  outputs: string[];
 }
 
 export interface Answer {
@@ -35,7 +35,7 @@ export interface Answer {
   failure: Failure | null;
 }
 
-export function call(module: WebAssembly.Module, { words, files, output }: Call, onMessage: (message: Message) => void): Answer {
+export function call(module: WebAssembly.Module, { words, files, outputs }: Call, onMessage: (message: Message) => void): Answer {
   let failure: Failure | null = null;
   const wasi = new Wasi(["condyle-web", ...words], files, (line) => {
     const message = JSON.parse(line) as Message | "estimating";
@@ -49,7 +49,7 @@ export function call(module: WebAssembly.Module, { words, files, output }: Call,
   } catch (thrown) {
     failure = internal(`${wasi.errors}\n${String(thrown)}`);
   }
-  return { files: wasi.at(output), failure };
+  return { files: Object.assign({}, ...outputs.map((name) => wasi.at(name))) as Files, failure };
 }
 
 function internal(words: string): Failure {

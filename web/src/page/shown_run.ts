@@ -22,7 +22,7 @@ export class ShownRun {
   show({ scene }: Found): void {
     const before = this.view?.viewer;
     // The page has no flat maps.
-    const view = new RunView(scene, { root: this.bodies });
+    const view = new RunView(scene, { root: this.bodies, previous: before });
     const boxes = (isWear: boolean) => view.plots.filter(({ chart }) => (chart.group === "wear") === isWear).map(({ box }) => box);
     this.bodies.replaceChildren(...(view.viewer ? [view.viewer.box] : []));
     this.worn.replaceChildren(element("div", { class: "worn" }, ...boxes(true), view.history));

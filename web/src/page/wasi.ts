@@ -17,8 +17,8 @@ export class Wasi {
     // Called with every line of standard output.
     heard: (line: string) => void,
   ) {
-    const all = Object.entries(files).map(([path, bytes]): [string, Inode] => [path, new File(bytes)]);
-    this.root = new PreopenDirectory("/", new Map(all));
+    this.root = new PreopenDirectory("/", new Map());
+    for (const [path, bytes] of Object.entries(files)) this.put(path, new File(bytes));
     const decoder = new TextDecoder();
     const errors = new ConsoleStdout((bytes) => (this.errors += decoder.decode(bytes, { stream: true })));
     this.wasi = new WASI(words, [], [new NoInput(), ConsoleStdout.lineBuffered(heard), errors, this.root], { debug: false });
@@ -41,6 +41,18 @@ export class Wasi {
     };
     visit(name, this.root.dir.contents.get(name));
     return found;
+  }
+
+  private put(path: string, file: File): void {
+    const [name, ...folders] = path.split("/").reverse() as [string, ...string[]];
+    let folder = this.root.dir;
+    for (const inner of folders.reverse()) {
+      const found = folder.contents.get(inner);
+      const next = found instanceof Directory ? found : new Directory(new Map());
+      folder.contents.set(inner, next);
+      folder = next;
+    }
+    folder.contents.set(name, file);
   }
 
   private overrides(): Record<string, (...words: number[]) => unknown> {

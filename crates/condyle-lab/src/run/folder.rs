@@ -59,8 +59,7 @@ fn run_read(
     let start_from = match found(case, case_path, options, &inputs_blake3)? {
         Found::Done(summary) => {
             // The run may have been stopped before it wrote the page; the same folder gives the same page.
-            condyle_report::write_report(&options.out)?;
-            ResultsFolder::existing(&options.out).finish()?;
+            finish(&ResultsFolder::existing(&options.out), options)?;
             return Ok(Outcome::DoneBefore(summary));
         }
         Found::Checkpoint(checkpoint, spent_s) => Start::Resume(checkpoint, spent_s),
@@ -79,10 +78,16 @@ fn run_read(
     let outcome = run.complete(&mut |run| written.write_update(run), on_event)?;
     if let Outcome::Done(summary) = &outcome {
         written.folder.write_summary(summary)?;
-        condyle_report::write_report(written.folder.path())?;
-        written.folder.finish()?;
+        finish(&written.folder, options)?;
     }
     Ok(outcome)
+}
+
+fn finish(folder: &ResultsFolder, options: &RunOptions) -> Result<(), RunError> {
+    if options.report {
+        condyle_report::write_report(folder.path())?;
+    }
+    Ok(folder.finish()?)
 }
 
 /// Returns the part of a run that the folder holds; an error if a new run cannot be written to it, or with `resume`

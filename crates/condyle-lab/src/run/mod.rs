@@ -81,6 +81,8 @@ pub struct RunOptions {
     pub threads: usize,
     /// The cache of the one-time work on a mesh for the next run; results do not depend on it.
     pub cache: Cache,
+    /// Write the report page, too; [`condyle_report::write_report`] writes it later.
+    pub report: bool,
 }
 
 /// Time spent on the solver alone.

@@ -1,7 +1,6 @@
 //! The scene of a run, which the page shows in 3-D: bodies, updates, cycles and charts.
 //!
-//! A [`Scene`] is made from a results folder, or from a march in memory; [`Scene::to_bytes`] encodes it for the page's
-//! programs, with the same bytes from both.
+//! [`Scene::read`] makes it from a results folder; [`Scene::to_bytes`] encodes it for the page's programs.
 
 mod encode;
 mod read;
@@ -21,13 +20,13 @@ pub struct Scene {
     updates: Vec<SceneUpdate>,
     charts: Vec<Panel>,
     /// The names of its directions.
-    pub directions: Directions,
+    directions: Directions,
     /// The title of the case.
-    pub title: String,
+    title: String,
     /// The femur in the insert frame at neutral.
-    pub femur: Option<TriangleMesh>,
+    femur: Option<TriangleMesh>,
     /// The pose of the femur at neutral.
-    pub neutral_pose: Option<NeutralPose>,
+    neutral_pose: Option<NeutralPose>,
     /// The cycles with stored motion.
     pub cycles: Vec<SceneCycle>,
     /// The files that could not be read, with reasons.
@@ -66,7 +65,7 @@ pub struct SceneCycle {
 
 impl Scene {
     /// Makes the scene of an unworn insert; none if no face has nodes that are all marked 1.
-    pub fn of_insert(mesh: &HexMesh, articulating: &[f64]) -> Option<Self> {
+    fn of_insert(mesh: &HexMesh, articulating: &[f64]) -> Option<Self> {
         let articulating = Articulating::of(mesh, articulating)?;
         let insert = SceneInsert {
             skin: skin(mesh, &articulating),
@@ -81,7 +80,7 @@ impl Scene {
 
     /// Adds the insert after an update, with fields at the nodes of its mesh. Returns false, and adds nothing, if the mesh
     /// has other nodes than that of the scene.
-    pub fn add_update<'a>(
+    fn add_update<'a>(
         &mut self,
         cycles: f64,
         nodes: &[Vec3],
@@ -107,7 +106,7 @@ impl Scene {
     }
 
     /// Adds the charts of the tables of a run.
-    pub fn add_charts(&mut self, results: &Results) {
+    fn add_charts(&mut self, results: &Results) {
         self.charts = charts::all(results);
     }
 

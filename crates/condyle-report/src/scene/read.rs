@@ -136,7 +136,7 @@ fn or_missing<T>(read: Result<Option<T>, ReportError>, missing: &mut Vec<String>
 
 impl SceneCycle {
     /// Makes the first and the last cycle of a table like `femur_pose.csv`; none if it has other columns.
-    pub fn of_poses(poses: &Table) -> Vec<Self> {
+    fn of_poses(poses: &Table) -> Vec<Self> {
         let names = poses.names().iter();
         let columns: Option<Vec<&[f64]>> = names.map(|name| poses.column(name)).collect();
         let Some([cycles, percents, numbers @ ..]) = columns.as_deref() else {
@@ -161,7 +161,7 @@ impl SceneCycle {
     }
 
     /// Adds the pressures of a table like `cycle_last_pressure.csv`; rows of unknown increments are left out.
-    pub fn add_pressures(&mut self, table: &Table) {
+    fn add_pressures(&mut self, table: &Table) {
         let column = |name| table.column(name).unwrap_or_default();
         // Both files write the same percent with the same digits: its bits are a key.
         let increments = self.percents.iter().map(|percent| percent.to_bits());
