@@ -163,12 +163,34 @@ async function examples(page) {
   await ran(page, () => page.getByLabel("Example").selectOption("Knee, Stanmore simulator"));
 }
 
+// Two designs: both views turn together, and the differences are a sentence, a list of settings, a table and a map.
 async function comparing(page) {
   await page.getByRole("button", { name: "Keep this run" }).click();
   await ran(page, () => page.getByLabel("Friction").fill("0.14"));
   const told = await page.locator("#comparison").innerText();
-  assert.match(told, /Mass loss, mg\s+[\d.]+\s+[\d.]+\s+[−\d.]+ %/, told);
+  assert.match(told, /This run wears [\d.]+ mg (more|less) than the kept one \([+−][\d.]+ %\), [\d.]+ times the discretisation errors of both/, told);
+  assert.match(told, /contact\.friction: 0\.\d+ → 0\.14/, told);
+  assert.match(told, /Mass loss, mg\s+[\d.]+ ± [\d.]+\s+[\d.]+ ± [\d.]+\s+[+−][\d.]+ %\s+[\d.]+ times/, told);
+  const widths = await page.$$eval(".stage", (all) => all.map(({ clientWidth }) => clientWidth));
+  assert(widths.length === 2 && Math.abs(widths[0] - widths[1]) < 2, `the views are ${widths} px wide`);
+  const pictures = () => page.$$eval(".stage canvas", (all) => all.map((canvas) => canvas.toDataURL()));
+  await page.waitForFunction(() => document.querySelectorAll(".stage canvas[data-still]").length === 2);
+  const before = await pictures();
+  await page.locator("#kept .stage canvas").press("ArrowLeft");
+  await page.waitForFunction(() => document.querySelectorAll(".stage canvas[data-still]").length === 2);
+  (await pictures()).forEach((picture, index) => assert.notStrictEqual(picture, before[index], `picture ${index + 1} does not turn`));
+  // Colours of both signs: more friction moves the scar.
+  const [red, blue] = await page.$eval(".difference canvas", (canvas) => {
+    const { data } = canvas.getContext("2d").getImageData(0, 0, canvas.width, canvas.height);
+    const count = (isOf) => data.filter((_, at) => at % 4 === 0 && data[at + 3] === 255 && isOf(data[at], data[at + 2])).length;
+    return [count((red, blue) => red > blue + 40), count((red, blue) => blue > red + 40)];
+  });
+  assert(red > 20 && blue > 20, `${red} red and ${blue} blue squares`);
   await keep(page, "compared");
+  await page.locator("#comparison").scrollIntoViewIfNeeded();
+  await keep(page, "comparison");
+  await page.getByRole("button", { name: "Stop comparing" }).click();
+  assert.strictEqual(await page.locator(".stage canvas").count(), 1);
 }
 
 async function textWithFaults(page) {

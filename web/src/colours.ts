@@ -1,5 +1,8 @@
 // Colour maps, whose colours come with the scene, and round marks of their bars.
 
+import { inDigits } from "./digits";
+import { element } from "./dom";
+
 const LEVELS = 256;
 // As on the flat maps, nothing has the colour of polyethylene.
 const BARE = "#f2f0ea";
@@ -81,4 +84,13 @@ export function roundMarks([low, high]: Range, count = 5): number[] {
   const last = Math.floor(high / step + 1e-9);
   // Twelve digits remove the rounding noise of the product.
   return Array.from({ length: last - first + 1 }, (_, at) => Number(((first + at) * step).toPrecision(12)));
+}
+
+// Round marks at their places along a bar.
+export function barMarks([low, high]: Range): HTMLElement[] {
+  return roundMarks([low, high]).map((mark) => {
+    const made = element("span", {}, inDigits(mark));
+    made.style.left = `${high > low ? (100 * (mark - low)) / (high - low) : 0}%`;
+    return made;
+  });
 }

@@ -1,4 +1,4 @@
-// Viewers of several runs that show the same view, field, update and instant, in the same colours.
+// Viewers of several runs that show the same view, field, update and instant, in the same colours. Earlier links of each end.
 
 import type { Range } from "./colours";
 import type { Viewer } from "./viewer";

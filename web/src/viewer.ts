@@ -1,6 +1,6 @@
 // The stage with its controls: update or instant, field, colours, sections and views.
 
-import { ColourMap, roundMarks, type Range } from "./colours";
+import { barMarks, ColourMap, type Range } from "./colours";
 import { button, choice, element, labelled, Slider } from "./dom";
 import type { FlatStage } from "./flat_stage";
 import { forces, shares } from "./forces";
@@ -235,13 +235,7 @@ export class Viewer {
     if (shown === this.legendShown) return;
     this.legendShown = shown;
     this.bar.style.background = this.map().gradient;
-    const [low, high] = range;
-    const marks = roundMarks(range).map((mark) => {
-      const made = element("span", {}, inDigits(mark));
-      made.style.left = `${high > low ? (100 * (mark - low)) / (high - low) : 0}%`;
-      return made;
-    });
-    this.barEnds.replaceChildren(...marks);
+    this.barEnds.replaceChildren(...barMarks(range));
     this.barTitle.textContent = this.fieldInWords();
   }
 

@@ -54,6 +54,29 @@ export function withValue(text: string, place: Place, value: string): string {
   return lines.join("\n");
 }
 
+// The values that differ between two cases, by table and key; a list of tables has numbers.
+export function changed(before: string, after: string): [key: string, before?: string, after?: string][] {
+  const [first, second] = [valuesOf(before), valuesOf(after)];
+  const keys = [...new Set([...first.keys(), ...second.keys()])];
+  return keys.filter((key) => first.get(key) !== second.get(key)).map((key) => [key, first.get(key), second.get(key)]);
+}
+
+function valuesOf(text: string): Map<string, string> {
+  const [values, seen] = [new Map<string, string>(), new Map<string, number>()];
+  let table = "";
+  for (const line of text.split("\n")) {
+    const heading = headingOf(line);
+    if (heading !== undefined) {
+      const count = (seen.get(heading) ?? 0) + 1;
+      seen.set(heading, count);
+      table = `${heading}${count > 1 ? ` ${count}` : ""}.`;
+    }
+    const key = keyOf(line);
+    if (key !== undefined) values.set(table + key, VALUE.exec(line)?.[2] ?? "");
+  }
+  return values;
+}
+
 function lineOf(lines: string[], { table, key }: Place): number | undefined {
   const found = lines.findIndex((line, index) => keyOf(line) === key && tableAt(lines, index) === table);
   return found < 0 ? undefined : found;
@@ -64,8 +87,10 @@ export function keyOf(line: string): string | undefined {
 }
 
 // A number or a word has no `#` in it.
+const VALUE = /^(\s*[A-Za-z0-9_-]+\s*=\s*)("[^"]*"|[^#]*?)(\s*(?:#.*)?)$/;
+
 function parts(line: string): { before: string; value: string; after: string } {
-  const [, before, value, after] = /^(\s*[A-Za-z0-9_-]+\s*=\s*)("[^"]*"|[^#]*?)(\s*(?:#.*)?)$/.exec(line)!;
+  const [, before, value, after] = VALUE.exec(line)!;
   return { before: before!, value: value!, after: after! };
 }
 

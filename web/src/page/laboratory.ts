@@ -71,7 +71,7 @@ export class Laboratory {
     if (!found) return;
     const { [SCENE]: scene, ...folder } = found;
     this.folder = folder;
-    this.listener.found({ scene: new Scene(scene!.buffer as ArrayBuffer), summary: summaryOf(folder) });
+    this.listener.found({ scene: new Scene(scene!.buffer as ArrayBuffer), summary: summaryOf(folder), text: decode(folder[`${RESULTS}/${CASE}`]!) });
   }
 
   // The files of a call; undefined if it failed or was cancelled.

@@ -72,15 +72,37 @@ export function notes(summary: Summary): HTMLElement[] {
   return summary.notes.map(({ message, advice }) => element("p", { class: "note" }, `${capital(message)}. ${advice}`));
 }
 
-// Two runs and the difference of the second from the first.
+// Two runs with their errors, and the difference of the second from the first.
 export function comparison(kept: Summary, now: Summary): HTMLTableElement {
   const cells = (tag: "th" | "td", words: string[]) => words.map((text) => element(tag, {}, text));
-  const head = element("tr", {}, ...cells("th", ["", "kept", "present", "difference"]));
+  const head = element("tr", {}, ...cells("th", ["", "kept", "this run", "difference", "of the errors"]));
   const rows = HEADLINES.map((headline) => {
     const [before, after] = [shownValue(kept, headline), shownValue(now, headline)];
-    const change = before === 0 ? "–" : `${inDigits(100 * (after / before - 1))} %`;
+    const [first, second] = [kept, now].map((summary) => errorOf(summary, headline.key));
+    const withError = (value: number, error?: number) => (error === undefined ? inDigits(value) : `${inDigits(value)} ± ${Number(error.toPrecision(2))}`);
+    const change = before === 0 ? "–" : signed(100 * (after / before - 1), "%");
     const named = element("th", { scope: "row" }, `${capital(headline.label)}, ${printed(headline.unit)}`);
-    return element("tr", {}, named, ...cells("td", [inDigits(before), inDigits(after), change]));
+    return element("tr", {}, named, ...cells("td", [withError(before, first), withError(after, second), change, times(after - before, first, second)]));
   });
   return element("table", {}, element("thead", {}, head), element("tbody", {}, ...rows));
+}
+
+// The answer to which of two runs wears more, in a sentence.
+export function verdict(kept: Summary, now: Summary): string {
+  const [before, after] = [kept.mass_loss_mg, now.mass_loss_mg];
+  if (before === after) return "Both runs wear the same mass.";
+  const judged = times(after - before, errorOf(kept, "mass_loss_mg"), errorOf(now, "mass_loss_mg"));
+  const errors = judged === "–" ? "" : `, ${judged} the discretisation errors of both`;
+  const [more, part] = [inDigits(Math.abs(after - before)), signed(100 * (after / before - 1), "%")];
+  return `This run wears ${more} mg ${after > before ? "more" : "less"} than the kept one (${part})${errors}.`;
+}
+
+// A difference over the sum of the errors.
+function times(difference: number, ...errors: (number | undefined)[]): string {
+  const sum = errors.reduce((sum: number, error) => sum + (error ?? NaN), 0);
+  return sum > 0 ? `${Number((Math.abs(difference) / sum).toPrecision(2))} times` : "–";
+}
+
+function signed(value: number, unit: string): string {
+  return `${value > 0 ? "+" : ""}${inDigits(Number(value.toPrecision(3)))} ${unit}`;
 }

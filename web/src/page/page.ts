@@ -2,27 +2,23 @@
 
 import plotStyle from "uplot/dist/uPlot.min.css";
 import { choice, element, labelled } from "../dom";
-import { Plot } from "../plots";
 import { inDigits } from "../digits";
 import { save, saveText } from "../save";
-import type { Scene } from "../scene";
 import viewStyle from "../style.css";
 import schema from "../../../cases/condyle.schema.json";
+import { Compared } from "./compared";
 import { take, takeDropped, type Bodies } from "./dropped";
 import { Editor } from "./editor";
 import { EXAMPLES } from "./examples";
 import { Laboratory, REPORT } from "./laboratory";
 import { Memory } from "./memory";
-import { comparison, doubts, notes, tiles, type Summary } from "./numbers";
+import { doubts, notes, tiles, type Summary } from "./numbers";
 import style from "./page.css";
 import type { Failure, Message } from "./program";
 import { CaseSchema } from "./schema";
 import { ShownRun, type Found } from "./shown_run";
 import { Sliders } from "./sliders";
 import { zip } from "./zip";
-
-// Charts that are drawn for the kept run and the present one together.
-const COMPARED = ["w-mass_loss_mg", "w-max_depth_mm"];
 
 const NOTHING_TO_SAVE = "There is no finished run to save: change the case, and let its run end";
 
@@ -36,13 +32,12 @@ function nextFrame(): Promise<unknown> {
 
 class Page {
   private readonly laboratory: Laboratory;
-  private readonly shown = new ShownRun(byId("bodies"), byId("worn"), byId("gait"));
+  private readonly shown = new ShownRun(byId("present"), byId("worn"), byId("gait"));
+  private readonly compared = new Compared(byId("comparison"), byId("kept"));
   private readonly sliders: Sliders;
   private readonly editor: Editor;
   private readonly examples = this.newExamples();
   private now: Found | undefined;
-  private kept: Found | undefined;
-  private plots: Plot[] = [];
   private runs = 0;
 
   constructor(
@@ -179,7 +174,7 @@ class Page {
     await nextFrame();
     this.shown.show(found);
     await nextFrame();
-    this.compare();
+    this.compared.show(found, this.shown.viewer);
     // Meshes are in no address: with them, the case would not run elsewhere.
     if (Object.keys(this.laboratory.meshes).length === 0) void this.memory.remember(this.laboratory.text);
     document.documentElement.dataset["ready"] = "yes";
@@ -202,18 +197,7 @@ class Page {
   }
 
   private keep(): void {
-    this.kept = this.now;
-    this.compare();
-  }
-
-  private compare(): void {
-    const box = byId("comparison");
-    box.hidden = !this.kept;
-    const { kept, now } = this;
-    if (!kept || !now) return;
-    this.plots.forEach((plot) => plot.dispose());
-    this.plots = COMPARED.flatMap((id) => sideBySide(kept.scene, now.scene, id));
-    byId("compared").replaceChildren(comparison(kept.summary, now.summary), ...this.plots.map((plot) => plot.box));
+    if (this.now) this.compared.keep(this.now, this.shown.viewer);
   }
 
   private async saveResults(): Promise<void> {
@@ -230,21 +214,6 @@ class Page {
     save("report.html", new Blob([report as BlobPart], { type: "text/html" }));
     this.say("report.html is saved");
   }
-}
-
-// A chart of two runs; none where one of them lacks it.
-function sideBySide(kept: Scene, now: Scene, id: string): Plot[] {
-  const [before, after] = [kept, now].map((scene) => scene.charts().find((chart) => chart.id === id));
-  const [first, last] = [before?.curves.at(-1), after?.curves.at(-1)];
-  if (!before || !after || !first || !last) return [];
-  // Both in the unit of the present run.
-  const scale = before.cycles_per_x / after.cycles_per_x;
-  const x = Array.from(first.x, (at) => at * scale);
-  const curves = [
-    { ...first, x, name: "kept", style: "first" },
-    { ...last, name: "present", style: "last" },
-  ];
-  return [new Plot({ ...after, curves })];
 }
 
 async function compiled(): Promise<WebAssembly.Module> {

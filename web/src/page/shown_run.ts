@@ -3,15 +3,22 @@
 import { element } from "../dom";
 import { RunView } from "../run_view";
 import type { Scene } from "../scene";
+import type { Viewer } from "../viewer";
 import type { Summary } from "./numbers";
 
 export interface Found {
   scene: Scene;
   summary: Summary;
+  // The case with every default.
+  text: string;
 }
 
 export class ShownRun {
   private view: RunView | undefined;
+
+  get viewer(): Viewer | undefined {
+    return this.view?.viewer;
+  }
 
   constructor(
     private readonly bodies: HTMLElement,

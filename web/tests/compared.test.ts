@@ -1,0 +1,28 @@
+import assert from "node:assert/strict";
+import test from "node:test";
+import { fill } from "../src/difference_map";
+import { changed } from "../src/page/case_text";
+
+test("the settings that differ are listed by table and key", () => {
+  const before = 'title = "A"\n[femur]\nradius_mm = 24.0 # of a condyle\n[[laws]]\nk = 1\n[[laws]]\nk = 2\n';
+  const after = 'title = "A"\n[femur]\nradius_mm = 26.0\nspacing_mm = 46\n[[laws]]\nk = 1\n[[laws]]\nk = 3\n';
+  assert.deepEqual(changed(before, after), [
+    ["femur.radius_mm", "24.0", "26.0"],
+    ["laws 2.k", "2", "3"],
+    ["femur.spacing_mm", undefined, "46"],
+  ]);
+  assert.deepEqual(changed(before, before), []);
+});
+
+test("a triangle has the linear field of its corners, whichever way it turns", () => {
+  const corner = (across: number, down: number) => ({ across, down, value: 2 * across - down + 1 });
+  const corners = [corner(0.2, 0.1), corner(7.9, 1), corner(2, 7.7)] as const;
+  for (const [a, b, c] of [corners, [...corners].reverse()] as const) {
+    const grid = { values: new Float32Array(64).fill(NaN), width: 8, height: 8 };
+    fill(grid, a!, b!, c!);
+    const found = [...grid.values].map((value, at) => [value, 2 * ((at % 8) + 0.5) - (Math.floor(at / 8) + 0.5) + 1] as const);
+    const inside = found.filter(([value]) => Number.isFinite(value));
+    assert(inside.length > 20 && inside.length < 40, `${inside.length} squares`);
+    for (const [value, wanted] of inside) assert(Math.abs(value - wanted) < 1e-5, `${value}, not ${wanted}`);
+  }
+});
