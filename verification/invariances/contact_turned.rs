@@ -6,7 +6,7 @@ use condyle::{
     geometry::{Counterface, GenericInsertShape, Insert},
     spatial::{Mat6, Pose, RelativeMotion, Twist, Vec6, WrenchByTwist},
 };
-use condyle_mesh::columns::ColumnGrid;
+use condyle_mesh::columns::{ColumnGrid, Meshing};
 use nalgebra::Rotation3;
 
 use crate::{Row, plate::rubbing, pressed::contact_of};
@@ -110,7 +110,13 @@ fn insert(place: impl Fn(&Vec3) -> Vec3) -> Insert {
     };
     let points = (0..=grid.cells.0).flat_map(|i| (0..=grid.cells.1).map(move |k| (i, k)));
     let columns: Vec<_> = points.map(|(i, k)| column(i, k)).collect();
-    let mut built = grid.plan().hexahedra(&columns, 1);
+    let mut built = grid.plan().hexahedra(
+        &columns,
+        Meshing {
+            edge_mm: 1.0,
+            layers: 1,
+        },
+    );
     built
         .mesh
         .nodes

@@ -8,7 +8,7 @@ use condyle::{
     geometry::{GenericInsertShape, Insert},
     machine::{Drive, JointKind, knee},
 };
-use condyle_mesh::columns::ColumnGrid;
+use condyle_mesh::columns::{ColumnGrid, Meshing};
 
 use super::knee::EXACTLY;
 use crate::{
@@ -84,7 +84,13 @@ fn insert(factor: f64) -> Insert {
     };
     let points = (0..=grid.cells.0).flat_map(|i| (0..=grid.cells.1).map(move |k| (i, k)));
     let columns: Vec<_> = points.map(|(i, k)| column(i, k)).collect();
-    let built = grown(grid, factor).plan().hexahedra(&columns, 1);
+    let built = grown(grid, factor).plan().hexahedra(
+        &columns,
+        Meshing {
+            edge_mm: 1.5,
+            layers: 1,
+        },
+    );
     Insert::new(built.mesh, &built.articulating, &built.backside).expect("an insert")
 }
 

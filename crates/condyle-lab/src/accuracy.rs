@@ -32,9 +32,8 @@ use condyle_case::case::Case;
 use condyle_results::{
     ErrorEstimate, Part, QuantityErrors, Summary,
     catalogue::{
-        AP_RANGE_MM, FIRST_CYCLE_CONTACT_AREA_MM2, FIRST_CYCLE_PEAK_PRESSURE_MPA, IE_RANGE_DEG,
-        MASS_LOSS_MG, MAX_DEPTH_MM, PEAK_CONTACT_AREA_CYCLE, PEAK_CONTACT_AREA_MM2,
-        PEAK_PRESSURE_CYCLE, PEAK_PRESSURE_MPA, Scalar,
+        AP_RANGE_MM, IE_RANGE_DEG, MASS_LOSS_MG, MAX_DEPTH_MM, PEAK_CONTACT_AREA_MM2,
+        PEAK_MAX_SHEAR_MPA, PEAK_PRESSURE_MPA, PEAK_VON_MISES_MPA, Scalar,
     },
     joint_range,
 };
@@ -46,7 +45,7 @@ use worn_surface::WornSurface;
 const FINER_INCREMENTS: f64 = 4.0 / 3.0;
 /// For twice the slip tolerance: first order.
 const LOOSER_SLIP: f64 = -1.0;
-/// For twice the edge length: second order.
+/// For twice the edge length and half the layers: second order.
 const COARSER_MESH: f64 = -1.0 / 3.0;
 /// The same for the peak pressure of a deformable insert, which is that of a node: first order, as finer runs of varied cases
 /// show (`scripts/evidence stated-errors`).
@@ -63,11 +62,24 @@ type Found<T> = Result<T, String>;
 /// Errors of volume loss and maximum depth, %.
 type OfWear = [f64; 2];
 
-/// Highest pressure and largest area of a cycle, or errors of them, %.
-type Peaks = [f64; 2];
+/// The values of [`PEAKS`] in a cycle, the stresses 0 for a foundation; or errors of them, %.
+type Peaks = [f64; PEAKS.len()];
 
-/// The peaks of the first cycle, and its ranges of AP and IE; or errors of them, %.
-type FirstCycle = [f64; 4];
+/// The results whose largest values in a cycle are compared.
+const PEAKS: [&Scalar; 4] = [
+    &PEAK_PRESSURE_MPA,
+    &PEAK_CONTACT_AREA_MM2,
+    &PEAK_VON_MISES_MPA,
+    &PEAK_MAX_SHEAR_MPA,
+];
+
+/// Results of the first cycle, or errors of them, %.
+#[derive(Clone, Copy)]
+struct FirstCycle {
+    peaks: Peaks,
+    /// Ranges of AP and IE.
+    ranges: [f64; 2],
+}
 
 /// The errors by one part of the discretisation.
 struct PartEstimate {
@@ -86,44 +98,31 @@ impl PartEstimate {
         }
     }
 
-    fn errors(self, summary: &Summary) -> QuantityErrors {
+    /// Returns the errors of the numbers of a run with these peaks in its first cycle.
+    fn errors(self, summary: &Summary, first_peaks: Peaks) -> QuantityErrors {
         let worn = self
             .wear
             .as_ref()
             .map_or(0.0, |[mass, depth]| mass.abs().max(depth.abs()));
         let [mass, depth] = each(self.wear);
-        let [later_pressure, later_area] = each(self.later);
-        let [pressure, area, ap, ie] = each(self.first);
+        let later = each(self.later);
+        let first = each(self.first.clone().map(|first| first.peaks));
+        let [ap, ie] = each(self.first.map(|first| first.ranges));
         // A later cycle was solved again on a surface of the same depth; its own part knows the wear no better than that.
-        let of_peak = |[peak, first_peak, cycle]: [&Scalar; 3], first, later: Found<f64>| {
-            if summary[cycle] == 0.0 {
-                return first;
+        let peaks = later.into_iter().zip(first).enumerate();
+        let peaks = peaks.map(|(i, (later, first))| {
+            if !is_later(summary, &first_peaks, i) {
+                return (PEAKS[i], first);
             }
-            let by_wear = 1.0 - summary[first_peak] / summary[peak];
-            later.map(|own| own.hypot(by_wear * worn).copysign(own))
-        };
-        let of_pressure = [
-            &PEAK_PRESSURE_MPA,
-            &FIRST_CYCLE_PEAK_PRESSURE_MPA,
-            &PEAK_PRESSURE_CYCLE,
-        ];
-        let pressure = of_peak(of_pressure, pressure, later_pressure);
-        let of_area = [
-            &PEAK_CONTACT_AREA_MM2,
-            &FIRST_CYCLE_CONTACT_AREA_MM2,
-            &PEAK_CONTACT_AREA_CYCLE,
-        ];
-        let area = of_peak(of_area, area, later_area);
-        let errors: QuantityErrors = vec![
-            (&MASS_LOSS_MG, mass),
-            (&MAX_DEPTH_MM, depth),
-            (&PEAK_PRESSURE_MPA, pressure),
-            (&PEAK_CONTACT_AREA_MM2, area),
-            (&AP_RANGE_MM, ap),
-            (&IE_RANGE_DEG, ie),
-        ];
+            let by_wear = 1.0 - first_peaks[i] / summary[PEAKS[i]];
+            let with_wear = |own: f64| own.hypot(by_wear * worn).copysign(own);
+            (PEAKS[i], later.map(with_wear))
+        });
+        let errors = [(&MASS_LOSS_MG, mass), (&MAX_DEPTH_MM, depth)];
+        let errors = errors.into_iter().chain(peaks);
+        let errors = errors.chain([(&AP_RANGE_MM, ap), (&IE_RANGE_DEG, ie)]);
         let is_result = |(scalar, _): &(&Scalar, _)| summary.get(scalar).is_some();
-        errors.into_iter().filter(is_result).collect()
+        errors.filter(is_result).collect()
     }
 }
 
@@ -132,6 +131,11 @@ fn each<const N: usize>(found: Found<[f64; N]>) -> [Found<f64>; N] {
         Ok(values) => values.map(Ok),
         Err(why) => std::array::from_fn(|_| Err(why.clone())),
     }
+}
+
+/// Returns true if a peak of the run is higher than that of its first cycle.
+fn is_later(summary: &Summary, first_peaks: &Peaks, peak: usize) -> bool {
+    summary[PEAKS[peak]] > first_peaks[peak]
 }
 
 /// Estimates the error of a finished march; none for a march without updates. Breaks if `watch` requests a stop.
@@ -144,11 +148,11 @@ pub(crate) fn estimate(
     let Some(mut again) = Again::new(march, watch) else {
         return ControlFlow::Continue(None);
     };
-    let of_peak = match case.contact.deformable() {
-        Some(_) => COARSER_DEFORMABLE_PEAK,
-        None => COARSER_MESH,
-    };
-    let (mesh, base) = again.by_mesh(case.coarser_insert(), of_peak, summary);
+    let mut of_peaks = [COARSER_MESH; PEAKS.len()];
+    if case.contact.deformable().is_some() {
+        of_peaks[0] = COARSER_DEFORMABLE_PEAK;
+    }
+    let (mesh, base) = again.by_mesh(case.coarser_insert(), of_peaks, summary);
     let all = 0..again.snapshots.len();
     // The slip tolerance has nearly the same effect throughout the march: the last snapshot represents it.
     let last = all.end.saturating_sub(1)..all.end;
@@ -166,11 +170,13 @@ pub(crate) fn estimate(
         return ControlFlow::Break(());
     }
     let parts = [
-        (Part::Increments, increments.errors(summary)),
-        (Part::Updates, updates.errors(summary)),
-        (Part::Mesh, mesh.errors(summary)),
-        (Part::SlipTolerance, slip_tolerance.errors(summary)),
+        (Part::Increments, increments),
+        (Part::Updates, updates),
+        (Part::Mesh, mesh),
+        (Part::SlipTolerance, slip_tolerance),
     ];
+    let first_peaks = first_peaks(march.state());
+    let parts = parts.map(|(part, own)| (part, own.errors(summary, first_peaks)));
     let estimate = ErrorEstimate::new(|scalar| summary[scalar], parts);
     ControlFlow::Continue(Some(estimate))
 }
@@ -229,7 +235,7 @@ impl<'a> Again<'a> {
     fn by_mesh(
         &mut self,
         coarser: Found<Insert>,
-        of_peak: f64,
+        of_peaks: Peaks,
         summary: &Summary,
     ) -> (PartEstimate, Base) {
         // The run's own first cycle.
@@ -257,17 +263,18 @@ impl<'a> Again<'a> {
         let missed = 100.0 * self.worn.missed_between_nodes();
         let depth = if missed > depth.abs() { missed } else { depth };
         let fine = &self.march.test().insert;
-        let later = self.later_peaks(summary, COARSER_MESH, &test, |snapshot| {
+        let later = self.later_peaks(summary, of_peaks, &test, |snapshot| {
             let surface = WornSurface::with(fine, &snapshot.depths.total_mm());
             snapshot.on(&test.insert, surface.depths_on(&test.insert))
         });
         let first = first_cycle(march.state());
-        let mut of_first = errors(COARSER_MESH, first, own.first);
-        of_first[0] *= of_peak / COARSER_MESH;
         let part = PartEstimate {
             wear: Ok([mass, depth]),
             later,
-            first: Ok(of_first),
+            first: Ok(FirstCycle {
+                peaks: errors(of_peaks, first.peaks, own.first.peaks),
+                ranges: errors([COARSER_MESH; 2], first.ranges, own.first.ranges),
+            }),
         };
         (part, Base { test, first })
     }
@@ -288,7 +295,13 @@ impl<'a> Again<'a> {
         };
         let first = self.started(change(base.test.clone()));
         let first = first.and_then(|march| self.solved(march));
-        let first = first.map(|march| errors(factor, first_cycle(march.state()), base.first));
+        let first = first.map(|march| {
+            let changed = first_cycle(march.state());
+            FirstCycle {
+                peaks: errors([factor; PEAKS.len()], changed.peaks, base.first.peaks),
+                ranges: errors([factor; 2], changed.ranges, base.first.ranges),
+            }
+        });
         PartEstimate { wear, later, first }
     }
 
@@ -300,14 +313,14 @@ impl<'a> Again<'a> {
         changed: &WearTest,
     ) -> Found<(OfWear, Peaks)> {
         let (count, weights) = (snapshots.len() as f64, self.worn.weights());
-        let (mut mean, mut peaks) = ([0.0; 2], [0.0; 2]);
+        let (mut mean, mut peaks) = ([0.0; 2], Peaks::default());
         for number in snapshots {
             let snapshot = self.snapshots[number];
             let march = self.solved(self.march_from(changed, snapshot))?;
             let reference = worn(&snapshot.step, &weights);
             let wear = self.errors_of_wear(factor, &march, &weights, reference);
             mean = [0, 1].map(|i| mean[i] + wear[i] / count);
-            peaks = self.errors_of_peaks(factor, &march, snapshot);
+            peaks = self.errors_of_peaks([factor; PEAKS.len()], &march, snapshot);
         }
         Ok((mean, peaks))
     }
@@ -316,13 +329,16 @@ impl<'a> Again<'a> {
     fn by_updates(&mut self, summary: &Summary) -> PartEstimate {
         let test = self.as_run();
         // The surface that exact steps would give.
-        let later = self.later_peaks(summary, MISSED, &test, |snapshot| {
+        let later = self.later_peaks(summary, [MISSED; PEAKS.len()], &test, |snapshot| {
             snapshot.lowered(&test.insert, snapshot.step.error_mm.clone())
         });
         PartEstimate {
             wear: self.wear_by_updates(),
             later,
-            first: Ok([0.0; 4]),
+            first: Ok(FirstCycle {
+                peaks: Peaks::default(),
+                ranges: [0.0; 2],
+            }),
         }
     }
 
@@ -350,7 +366,7 @@ impl<'a> Again<'a> {
         }
         let worn = |update: &UpdateRecord| [update.volume_loss_mm3, update.max_depth_mm];
         let halved = march.state().updates.last().map_or([0.0; 2], worn);
-        Ok(errors(HALF_THE_UPDATES, halved, worn(last)))
+        Ok(errors([HALF_THE_UPDATES; 2], halved, worn(last)))
     }
 
     /// Returns the errors of the peaks in the later cycle, in %, from a changed insert in that cycle; 0 if the first
@@ -358,17 +374,17 @@ impl<'a> Again<'a> {
     fn later_peaks(
         &mut self,
         summary: &Summary,
-        factor: f64,
+        factors: Peaks,
         test: &WearTest,
         change: impl FnOnce(&Snapshot) -> Snapshot,
     ) -> Found<Peaks> {
-        let is_later =
-            summary[&PEAK_PRESSURE_CYCLE] > 0.0 || summary[&PEAK_CONTACT_AREA_CYCLE] > 0.0;
-        let Some(snapshot) = self.snapshots.last().copied().filter(|_| is_later) else {
-            return Ok([0.0; 2]);
+        let first = first_peaks(self.march.state());
+        let any_is_later = (0..PEAKS.len()).any(|i| is_later(summary, &first, i));
+        let Some(snapshot) = self.snapshots.last().copied().filter(|_| any_is_later) else {
+            return Ok(Peaks::default());
         };
         let march = self.solved(self.march_from(test, &change(snapshot)))?;
-        Ok(self.errors_of_peaks(factor, &march, snapshot))
+        Ok(self.errors_of_peaks(factors, &march, snapshot))
     }
 
     fn march_from(&self, test: &WearTest, snapshot: &Snapshot) -> March {
@@ -396,9 +412,9 @@ impl<'a> Again<'a> {
         Ok(march)
     }
 
-    fn errors_of_peaks(&self, factor: f64, march: &March, snapshot: &Snapshot) -> Peaks {
+    fn errors_of_peaks(&self, factors: Peaks, march: &March, snapshot: &Snapshot) -> Peaks {
         let reference = peaks_of(&self.march.state().updates[snapshot.update]);
-        errors(factor, first_peaks(march.state()), reference)
+        errors(factors, first_peaks(march.state()), reference)
     }
 
     fn errors_of_wear(
@@ -416,35 +432,42 @@ impl<'a> Again<'a> {
     }
 }
 
-/// Returns errors in %: `factor` times the relative difference of `now` from `reference`; 0 where they are equal.
-fn errors<const N: usize>(factor: f64, now: [f64; N], reference: [f64; N]) -> [f64; N] {
+/// Returns errors in %: `factors` times the relative differences of `now` from `reference`; 0 where they are equal.
+fn errors<const N: usize>(factors: [f64; N], now: [f64; N], reference: [f64; N]) -> [f64; N] {
     std::array::from_fn(|i| {
         // Both may be 0, and their quotient would be NaN.
         if now[i] == reference[i] {
             return 0.0;
         }
-        100.0 * factor * (now[i] / reference[i] - 1.0)
+        100.0 * factors[i] * (now[i] / reference[i] - 1.0)
     })
 }
 
 fn peaks_of(update: &UpdateRecord) -> Peaks {
+    let stress = update.under_surface.as_ref();
+    let [mises, shear] =
+        stress.map_or([0.0; 2], |under| [under.von_mises_mpa, under.max_shear_mpa]);
     [
         update.peaks.peak_pressure_mpa,
         update.peaks.contact_area_mm2,
+        mises,
+        shear,
     ]
 }
 
 fn first_peaks(state: &MarchState) -> Peaks {
-    state.updates.first().map_or([0.0; 2], peaks_of)
+    state.updates.first().map_or_else(Peaks::default, peaks_of)
 }
 
 /// Returns the peaks of the first cycle of a march, and the ranges of its motion, in the units of files.
 fn first_cycle(state: &MarchState) -> FirstCycle {
-    let [pressure, area] = first_peaks(state);
     let cycles = state.activities.first().map(|own| &own.first_and_last);
     let first = cycles.and_then(|cycles| cycles.as_ref());
     let range = |joint| first.map_or(0.0, |(first, _)| joint_range(&first.rows, joint));
-    [pressure, area, range(AP), range(IE)]
+    FirstCycle {
+        peaks: first_peaks(state),
+        ranges: [range(AP), range(IE)],
+    }
 }
 
 /// Returns the volume that a cycle wore, and the mean of its depth by `weights`.

@@ -96,12 +96,19 @@ mod tests {
     use std::f64::consts::PI;
 
     use super::*;
+    use crate::columns::Meshing;
 
     #[test]
     fn verify_area_and_quality_of_the_disc() {
         let plan = disc_plan(0.05, 1).unwrap();
         let count = plan.places_mm.len();
-        let disc = plan.hexahedra(&vec![(0.0, 0.05); count], 1);
+        let disc = plan.hexahedra(
+            &vec![(0.0, 0.05); count],
+            Meshing {
+                edge_mm: 0.05,
+                layers: 1,
+            },
+        );
         // The polygon of the rim has this area.
         let sides = 4.0 * (plan.quads.len() as f64 / 4.0).sqrt();
         assert!(

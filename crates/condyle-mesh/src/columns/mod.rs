@@ -152,7 +152,7 @@ fn columns_of(
             *bottom = lowest - thickness_mm;
         }
     }
-    let mut columns = plan.hexahedra(&columns, meshing.layers);
+    let mut columns = plan.hexahedra(&columns, meshing);
     columns.deviation_mm = deviations_mm(&columns, &footprint);
     Ok((columns, holes))
 }

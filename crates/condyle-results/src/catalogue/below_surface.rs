@@ -12,7 +12,8 @@ use super::{Scalar, scalar::scalars};
 
 scalars! { "Below the surface";
     /// Largest von Mises stress. At the centre of an element, at the instant of highest pressure of a cycle solved.
-    PEAK_VON_MISES_MPA = Scalar::sometimes("peak_von_mises_mpa", "largest von Mises stress", 1, |run| Some(most_stressed(run)?.von_mises_mpa));
+    PEAK_VON_MISES_MPA = Scalar::sometimes("peak_von_mises_mpa", "largest von Mises stress", 1, |run| Some(most_stressed(run)?.von_mises_mpa))
+        .estimated();
 
     /// Depth of the largest von Mises stress. Below the surface, to half an element.
     PEAK_VON_MISES_DEPTH_MM = Scalar::sometimes("peak_von_mises_depth_mm", "depth of that stress", 1, |run| Some(most_stressed(run)?.von_mises_depth_mm))
@@ -20,6 +21,7 @@ scalars! { "Below the surface";
 
     /// Largest shear stress. At the centre of an element, at the instant of highest pressure of a cycle solved.
     PEAK_MAX_SHEAR_MPA = Scalar::sometimes("peak_max_shear_mpa", "largest shear stress", 1, |run| Some(most_sheared(run)?.1.max_shear_mpa))
+        .estimated()
         .in_cycle("peak_max_shear_cycle");
 
     /// Depth of the largest shear stress. Below the surface, to half an element.

@@ -72,7 +72,7 @@ impl GenericInsertShape {
     ) -> Result<Insert, InsertError> {
         let grid = ColumnGrid::filling(LOW_MM, HIGH_MM, meshing.edge_mm, meshing.layers)?;
         let columns = grid.columns(|x, z| (-self.thickness_mm, self.height_mm(x, z)));
-        let mut built = grid.plan().hexahedra(&columns, meshing.layers);
+        let mut built = grid.plan().hexahedra(&columns, meshing);
         let nodes = built.mesh.nodes.iter_mut();
         nodes.for_each(|node| *node = place(node));
         Insert::new(built.mesh, &built.articulating, &built.backside)
@@ -93,7 +93,7 @@ pub fn flat_insert(
     let (x, z) = (size_mm.0 / 2.0, size_mm.1 / 2.0);
     let grid = ColumnGrid::filling((-x, -z), (x, z), meshing.edge_mm, meshing.layers)?;
     let columns = vec![(-thickness_mm, 0.0); grid.point_count()];
-    let built = grid.plan().hexahedra(&columns, meshing.layers);
+    let built = grid.plan().hexahedra(&columns, meshing);
     Insert::new(built.mesh, &built.articulating, &built.backside)
 }
 

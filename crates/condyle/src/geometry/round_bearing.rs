@@ -112,7 +112,7 @@ impl TroughShape {
             let top_mm = -(self.radius_mm * self.radius_mm - x * x).max(0.0).sqrt();
             (bottom_mm, top_mm)
         });
-        let built = grid.plan().hexahedra(&columns, meshing.layers);
+        let built = grid.plan().hexahedra(&columns, meshing);
         Insert::new(built.mesh, &built.articulating, &built.backside)
     }
 }
@@ -137,8 +137,9 @@ fn round_bearing(
 ) -> Result<Insert, InsertError> {
     let plan = disc_plan(edge_mm / extent_mm, layers)?;
     // Heights of 0 to 1 stand for the parts of the thickness above the backside.
+    let edge_mm = edge_mm / thickness_mm;
     let columns = vec![(0.0, 1.0); plan.places_mm.len()];
-    let mut built = plan.hexahedra(&columns, layers);
+    let mut built = plan.hexahedra(&columns, Meshing { edge_mm, layers });
     for node in &mut built.mesh.nodes {
         *node = place(Place::new(node.x, node.z), 1.0 - node.y);
     }

@@ -33,20 +33,20 @@ const PER_MM: f64 = 100.0;
 const ROUNDING: f64 = 1e-6;
 
 impl Case {
-    /// Returns the insert of this case in a mesh with twice the edge length.
+    /// Returns the insert of this case in a mesh with twice the edge length and half the layers.
     ///
     /// # Errors
     /// In words: an insert that is read as hexahedra, or that has no such mesh.
     pub fn coarser_insert(&self) -> Result<geometry::Insert, String> {
         let mut coarser = self.insert.clone();
         match &mut coarser.shape {
-            InsertShape::Generic(insert) => insert.edge_mm *= 2.0,
-            InsertShape::Cup(insert) => insert.edge_mm *= 2.0,
-            InsertShape::CupMesh(insert) => insert.edge_mm *= 2.0,
-            InsertShape::Trough(insert) => insert.edge_mm *= 2.0,
-            InsertShape::Pin(insert) => insert.edge_mm *= 2.0,
-            InsertShape::Flat(insert) => insert.edge_mm *= 2.0,
-            InsertShape::Mesh(insert) => insert.edge_mm *= 2.0,
+            InsertShape::Generic(insert) => coarsen(&mut insert.edge_mm, &mut insert.layers),
+            InsertShape::Cup(insert) => coarsen(&mut insert.edge_mm, &mut insert.layers),
+            InsertShape::CupMesh(insert) => coarsen(&mut insert.edge_mm, &mut insert.layers),
+            InsertShape::Trough(insert) => coarsen(&mut insert.edge_mm, &mut insert.layers),
+            InsertShape::Pin(insert) => coarsen(&mut insert.edge_mm, &mut insert.layers),
+            InsertShape::Flat(insert) => coarsen(&mut insert.edge_mm, &mut insert.layers),
+            InsertShape::Mesh(insert) => coarsen(&mut insert.edge_mm, &mut insert.layers),
             InsertShape::Hexahedra(_) => {
                 return Err("an insert read as hexahedra has no coarser mesh".to_owned());
             }
@@ -250,6 +250,11 @@ impl Case {
         }
         Ok(geometry::Insert::new(file.mesh, &articulating, &backside)?)
     }
+}
+
+fn coarsen(edge_mm: &mut f64, layers: &mut u64) {
+    *edge_mm *= 2.0;
+    *layers = layers.div_ceil(2);
 }
 
 fn meshing(edge_mm: f64, layers: u64) -> Meshing {
