@@ -3,7 +3,7 @@
     study.py CONDYLE DATA OUT
 
 DATA is the folder of the real implants; without it only generic implants run. A finer run has half the edge length, twice
-the increments and four times the updates. OUT gets results.csv, a row per case and quantity, and table.md.
+the layers and increments, and four times the updates. OUT gets results.csv, a row per case and quantity, and table.md.
 """
 
 import csv
@@ -21,6 +21,8 @@ QUANTITIES = {
     "max_depth_mm": "maximum depth",
     "peak_pressure_mpa": "peak pressure",
     "peak_contact_area_mm2": "largest contact area",
+    "peak_von_mises_mpa": "von Mises stress below the surface",
+    "peak_max_shear_mpa": "shear stress below the surface",
     "ap_range_mm": "AP range",
     "ie_range_deg": "IE range",
 }
@@ -59,15 +61,15 @@ def cases():
             elif base == "hip-iso":
                 settings.append(f"insert.radius_mm={draw.uniform(14.05, 14.3):.2f}")
 
-            def mesh(edge_mm, increments, updates):
+            def mesh(edge_mm, layers, increments, updates):
                 steps = [f"time.increments={increments}", f"march.updates={updates}"]
-                return [f"insert.edge_mm={edge_mm}", *steps]
+                return [f"insert.edge_mm={edge_mm}", f"insert.layers={layers}", *steps]
 
             yield (
                 f"{kind} {number + 1}",
                 base,
-                [*settings, *mesh(edge_mm, increments, updates)],
-                [*settings, *mesh(edge_mm / 2, 2 * increments, 4 * updates), "accuracy.estimate=false"],
+                [*settings, *mesh(edge_mm, 4, increments, updates)],
+                [*settings, *mesh(edge_mm / 2, 8, 2 * increments, 4 * updates), "accuracy.estimate=false"],
             )
 
 
