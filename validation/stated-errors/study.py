@@ -101,12 +101,12 @@ def compared(condyle, name, base, settings, finer):
 
 
 def table(rows):
-    lines = ["| quantity | cases | within the stated error | within twice | within three times | largest change |"]
+    lines = ["| quantity | cases | within half the stated error | within the stated error | within twice | largest change |"]
     lines.append("| --- | ---: | ---: | ---: | ---: | ---: |")
     for key, label in [*QUANTITIES.items(), (None, "all")]:
         of_key = [(float(stated), abs(float(change))) for _, each, stated, change, _ in rows if key in (None, each)]
         if of_key:
-            within = [f"{sum(change <= factor * stated for stated, change in of_key)}" for factor in (1, 2, 3)]
+            within = [f"{sum(change <= factor * stated for stated, change in of_key)}" for factor in (0.5, 1, 2)]
             largest = max(change for _, change in of_key)
             lines.append(f"| {label} | {len(of_key)} | {' | '.join(within)} | {largest:.1f} % |")
     return "\n".join(lines) + "\n"

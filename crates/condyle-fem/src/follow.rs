@@ -12,8 +12,8 @@ const RELATIVE_RESIDUAL: f64 = 1e-2;
 /// Spreads the displacement of some nodes into the mesh, harmonically: every free node moves by
 /// the mean of its neighbours along the edges.
 ///
-/// In a stack of layers below a moved surface that is the linear interpolation between the
-/// surface and the fixed backside, so an element thins but cannot invert before the stack is gone.
+/// In a stack of layers below a moved surface all layers thin by the same amount, so that an element cannot invert before
+/// the depth is the number of layers times the thickness of the thinnest.
 pub struct InteriorFollower {
     /// Nodes that are not held, ascending; "row k" is that of node `free[k]`.
     free: Vec<u32>,

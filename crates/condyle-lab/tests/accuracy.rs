@@ -261,18 +261,18 @@ fn verify_the_estimated_errors_of_updates_where_the_insert_creeps() {
 }
 
 #[test]
-fn the_default_case_states_half_a_percent_of_mass_and_one_of_depth() {
+fn the_default_case_states_one_percent_of_mass_and_two_of_depth() {
     let summary = run(&default_case());
     let error = summary
         .error
         .clone()
         .expect("a case asks for it unless it says otherwise");
     assert!(
-        error.of(&catalogue::MASS_LOSS_MG).percent.total < 0.5,
+        error.of(&catalogue::MASS_LOSS_MG).percent.total < 1.0,
         "{error:?}"
     );
     assert!(
-        error.of(&catalogue::MAX_DEPTH_MM).percent.total < 1.0,
+        error.of(&catalogue::MAX_DEPTH_MM).percent.total < 2.0,
         "{error:?}"
     );
     let mass_mg = error.of(&catalogue::MASS_LOSS_MG).percent.total / 100.0
@@ -393,7 +393,7 @@ fn what_cannot_be_estimated_says_why() {
 }
 
 #[test]
-fn a_finer_run_is_within_three_times_the_stated_error_of_the_area() {
+fn a_finer_run_is_within_one_and_a_half_times_the_stated_error_of_the_area() {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR"))
         .join("../../../shared/reproducers/second/contact-area-error");
     if !folder.exists() {
@@ -410,7 +410,7 @@ fn a_finer_run_is_within_three_times_the_stated_error_of_the_area() {
         let error = own.error.as_ref().expect("is asked for");
         let stated = error.of(&catalogue::PEAK_CONTACT_AREA_MM2).percent.total;
         assert!(
-            seen < 3.0 * stated,
+            seen < 1.5 * stated,
             "{number}: {stated} % stated, {seen} % seen"
         );
     }

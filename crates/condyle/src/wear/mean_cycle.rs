@@ -75,8 +75,7 @@ impl<'a> MeanCycle<'a> {
 
     /// Returns the part of sum of p |ds|, 0 to 1, above `pressure_mpa`; 0 where nothing slid.
     pub fn part_above(&self, pressure_mpa: f64) -> f64 {
-        // Most nodes never exceed it, and the moments are many.
-        if self.peak_pressure_mpa <= pressure_mpa || self.pressure_slip_mpa_mm == 0.0 {
+        if self.pressure_slip_mpa_mm == 0.0 {
             return 0.0;
         }
         let above = self
