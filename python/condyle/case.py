@@ -115,7 +115,7 @@ class Case:
 
         >>> check = Case.from_text("").check()
         >>> check.facts["insert"]["hexahedra"]
-        9108
+        12144
 
         Raises:
             BadInput: unusable bodies.

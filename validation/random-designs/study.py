@@ -25,7 +25,7 @@ from judge import judge, silent
 
 LONGEST_S = 300
 # A refined run may differ from a coarse one by this many stated errors, and by a little more for its own error.
-STATED_ERRORS = 3.0
+STATED_ERRORS = 1.5
 REFINED_RUN_S_OWN_PERCENT = 0.5
 GOOD, DOUBTFUL = "good", "good, with a warning"
 ENDS = {2: "error: bad input", 3: "error: the physics could not be solved"}

@@ -133,6 +133,16 @@ fn each<const N: usize>(found: Found<[f64; N]>) -> [Found<f64>; N] {
     }
 }
 
+impl FirstCycle {
+    /// Returns the errors by a change that led from `reference` to these results, with Richardson's factors.
+    fn errors(self, of_peaks: Peaks, of_ranges: f64, reference: Self) -> Self {
+        Self {
+            peaks: errors(of_peaks, self.peaks, reference.peaks),
+            ranges: errors([of_ranges; 2], self.ranges, reference.ranges),
+        }
+    }
+}
+
 /// Returns true if a peak of the run is higher than that of its first cycle.
 fn is_later(summary: &Summary, first_peaks: &Peaks, peak: usize) -> bool {
     summary[PEAKS[peak]] > first_peaks[peak]
@@ -271,10 +281,7 @@ impl<'a> Again<'a> {
         let part = PartEstimate {
             wear: Ok([mass, depth]),
             later,
-            first: Ok(FirstCycle {
-                peaks: errors(of_peaks, first.peaks, own.first.peaks),
-                ranges: errors([COARSER_MESH; 2], first.ranges, own.first.ranges),
-            }),
+            first: Ok(first.errors(of_peaks, COARSER_MESH, own.first)),
         };
         (part, Base { test, first })
     }
@@ -297,10 +304,7 @@ impl<'a> Again<'a> {
         let first = first.and_then(|march| self.solved(march));
         let first = first.map(|march| {
             let changed = first_cycle(march.state());
-            FirstCycle {
-                peaks: errors([factor; PEAKS.len()], changed.peaks, base.first.peaks),
-                ranges: errors([factor; 2], changed.ranges, base.first.ranges),
-            }
+            changed.errors([factor; PEAKS.len()], factor, base.first)
         });
         PartEstimate { wear, later, first }
     }
@@ -378,13 +382,18 @@ impl<'a> Again<'a> {
         test: &WearTest,
         change: impl FnOnce(&Snapshot) -> Snapshot,
     ) -> Found<Peaks> {
-        let first = first_peaks(self.march.state());
-        let any_is_later = (0..PEAKS.len()).any(|i| is_later(summary, &first, i));
-        let Some(snapshot) = self.snapshots.last().copied().filter(|_| any_is_later) else {
+        let Some(snapshot) = self.later_snapshot(summary) else {
             return Ok(Peaks::default());
         };
         let march = self.solved(self.march_from(test, &change(snapshot)))?;
         Ok(self.errors_of_peaks(factors, &march, snapshot))
+    }
+
+    /// Returns the last snapshot, if any peak is later than the first cycle.
+    fn later_snapshot(&self, summary: &Summary) -> Option<&'a Snapshot> {
+        let first = first_peaks(self.march.state());
+        let any_is_later = (0..PEAKS.len()).any(|i| is_later(summary, &first, i));
+        self.snapshots.last().copied().filter(|_| any_is_later)
     }
 
     fn march_from(&self, test: &WearTest, snapshot: &Snapshot) -> March {

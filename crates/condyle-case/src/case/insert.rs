@@ -20,7 +20,7 @@ settings! {
         [flat] shape: GenericInsertShape;
         /// Edge of a hexahedron, seen from above.
         edge_mm: f64 = Meshing::default().edge_mm, in within(0.1, 10.0);
-        /// Hexahedra through the thickness.
+        /// Hexahedra through the thickness; the top one is as thick as an edge is long, if they suffice, and the others thicken downwards.
         layers: u64 = Meshing::default().layers as u64, in within(1.0, 40.0);
     }
 
@@ -36,7 +36,7 @@ settings! {
         rotation_deg: Option<[f64; 3]> = None, in within(-180.0, 180.0);
         /// Edge of a hexahedron, seen from above.
         edge_mm: f64 = Meshing::default().edge_mm, in within(0.1, 10.0);
-        /// Hexahedra through the thickness.
+        /// Hexahedra through the thickness; the top one is as thick as an edge is long, if they suffice, and the others thicken downwards.
         layers: u64 = Meshing::default().layers as u64, in within(1.0, 40.0);
         /// Height along y of the insert frame below which the mesh is cut away and closed flat: for an insert that its file fuses with the tray.
         clip_below_mm: Option<f64> = None, in within(-500.0, 500.0);
@@ -66,7 +66,7 @@ settings! {
         [flat] shape: CupShape;
         /// Edge of a hexahedron along the surface.
         edge_mm: f64 = 1.0, in within(0.1, 10.0);
-        /// Hexahedra through the thickness.
+        /// Hexahedra through the thickness; the top one is as thick as an edge is long, if they suffice, and the others thicken downwards.
         layers: u64 = 6, in within(1.0, 40.0);
     }
 
@@ -84,7 +84,7 @@ settings! {
         anteversion_deg: f64 = CupShape::default().anteversion_deg, in within(-90.0, 90.0);
         /// Edge of a hexahedron along the surface.
         edge_mm: f64 = 1.0, in within(0.1, 10.0);
-        /// Hexahedra through the thickness.
+        /// Hexahedra through the thickness; the top one is as thick as an edge is long, if they suffice, and the others thicken downwards.
         layers: u64 = 6, in within(1.0, 40.0);
     }
 
@@ -94,7 +94,7 @@ settings! {
         [flat] shape: TroughShape;
         /// Edge of a hexahedron, seen from above.
         edge_mm: f64 = 1.0, in within(0.1, 10.0);
-        /// Hexahedra through the thickness.
+        /// Hexahedra through the thickness; the top one is as thick as an edge is long, if they suffice, and the others thicken downwards.
         layers: u64 = 6, in within(1.0, 40.0);
     }
 
@@ -106,7 +106,7 @@ settings! {
         thickness_mm: f64 = 10.0, in within(1.0, 50.0);
         /// Edge of a hexahedron along the surface.
         edge_mm: f64 = 0.5, in within(0.05, 10.0);
-        /// Hexahedra through the height.
+        /// Hexahedra through the height, as through a thickness.
         layers: u64 = 6, in within(1.0, 40.0);
     }
 
@@ -116,7 +116,7 @@ settings! {
         thickness_mm: f64 = GenericInsertShape::default().thickness_mm, in within(1.0, 50.0);
         /// Edge of a hexahedron, seen from above.
         edge_mm: f64 = Meshing::default().edge_mm, in within(0.1, 10.0);
-        /// Hexahedra through the thickness.
+        /// Hexahedra through the thickness; the top one is as thick as an edge is long, if they suffice, and the others thicken downwards.
         layers: u64 = Meshing::default().layers as u64, in within(1.0, 40.0);
     }
 }

@@ -98,7 +98,7 @@ fn new_writes_a_case_that_runs() {
         bench.write("case.toml", &short);
         bench.run_into("out");
         assert_eq!(bench.summary("out")[&catalogue::UPDATES], 1.0);
-        assert!(bench.summary("out")[&catalogue::HEXAHEDRA] < 2000.0);
+        assert!(bench.summary("out")[&catalogue::HEXAHEDRA] < 2600.0);
     }
 }
 

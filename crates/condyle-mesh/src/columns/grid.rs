@@ -64,31 +64,26 @@ impl Meshing {
     /// long, if the layers suffice, and each layer below is thicker by the same ratio. On the default knee, four such layers
     /// are as accurate as six of equal thickness.
     fn depths(&self, thickness_mm: f64) -> Vec<f64> {
-        let of_growth = |growth: f64| {
-            let mut depth = 0.0;
-            let mut bounds = vec![0.0];
-            bounds.extend((0..self.layers).map(|layer| {
-                depth += growth.powi(layer as i32);
-                depth
-            }));
-            bounds
-        };
         let (mut low, mut high) = (1.0, MAX_GROWTH);
         // The bisection ends at the resolution of numbers.
         while low < 0.5 * (low + high) && 0.5 * (low + high) < high {
             let middle = 0.5 * (low + high);
-            match of_growth(middle)[self.layers] * self.edge_mm < thickness_mm {
+            match self.edge_mm * in_top_layers(middle, self.layers) < thickness_mm {
                 true => low = middle,
                 false => high = middle,
             }
         }
-        let bounds = of_growth(low);
+        let all = in_top_layers(low, self.layers);
+        let bounds = (0..=self.layers).rev();
         bounds
-            .iter()
-            .rev()
-            .map(|bound| bound / bounds[self.layers])
+            .map(|above| in_top_layers(low, above) / all)
             .collect()
     }
+}
+
+/// Returns the thickness of some layers together, in units of the topmost.
+fn in_top_layers(growth: f64, layers: usize) -> f64 {
+    (0..layers as i32).map(|layer| growth.powi(layer)).sum()
 }
 
 /// A rectangular grid over the transverse plane.
@@ -292,11 +287,38 @@ mod tests {
     }
 
     #[test]
+    fn the_top_layer_is_as_thick_as_an_edge_is_long_and_the_others_grow() {
+        let parts = |edge_mm, layers, thickness_mm| {
+            let depths = Meshing { edge_mm, layers }.depths(thickness_mm);
+            let pairs = depths.windows(2).rev();
+            pairs.map(|pair| pair[0] - pair[1]).collect::<Vec<f64>>()
+        };
+        let near = |found: &[f64], exact: &[f64]| {
+            let pairs = found.iter().zip(exact);
+            found.len() == exact.len() && pairs.into_iter().all(|(a, b)| (a - b).abs() < 1e-12)
+        };
+        // 1 + 1.5 + 2.25 + 3.375 = 8.125.
+        let four = [1.0, 1.5, 2.25, 3.375].map(|layer| layer / 8.125);
+        assert!(near(&parts(1.0, 4, 8.125), &four));
+        assert!(near(&parts(3.0, 4, 8.0), &[0.25; 4]));
+        assert!(near(
+            &parts(0.1, 3, 8.0),
+            &[1.0, 2.0, 4.0].map(|layer| layer / 7.0)
+        ));
+    }
+
+    #[test]
     fn places_that_no_quad_names_have_no_nodes() {
         let grid = ColumnGrid::filling((0.0, 0.0), (3.0, 1.0), 1.0, 1).unwrap();
         let mut plan = grid.plan();
         plan.quads.pop();
-        let part = plan.hexahedra(&vec![(0.0, 1.0); grid.point_count()], 1);
+        let part = plan.hexahedra(
+            &vec![(0.0, 1.0); grid.point_count()],
+            Meshing {
+                edge_mm: 1.0,
+                layers: 1,
+            },
+        );
         assert_eq!(part.mesh.hexes.len(), 2);
         assert_eq!(part.mesh.nodes.len(), 12);
     }

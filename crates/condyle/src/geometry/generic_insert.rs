@@ -111,13 +111,13 @@ mod tests {
     }
 
     #[test]
-    fn default_mesh_has_about_nine_thousand_good_hexahedra() {
+    fn default_mesh_has_about_twelve_thousand_good_hexahedra() {
         let insert = GenericInsertShape::default()
             .insert(Meshing::default())
             .unwrap();
         let mesh = insert.mesh();
         assert!(
-            (8_900..9_300).contains(&mesh.hexes.len()),
+            (11_900..12_400).contains(&mesh.hexes.len()),
             "{}",
             mesh.hexes.len()
         );

@@ -58,7 +58,7 @@ fn shipped_generic_cases_build() {
     for name in ["stanmore-force.toml", "stanmore-displacement.toml"] {
         let built = Case::read(&cases().join(name)).unwrap().build(1).unwrap();
         assert!(built.warnings.is_empty());
-        assert!((8_900..9_300).contains(&built.test.insert.mesh().hexes.len()));
+        assert!((11_900..12_400).contains(&built.test.insert.mesh().hexes.len()));
         assert_eq!(built.test.schedule, Schedule::fixed(5e6, 10));
     }
 }
