@@ -108,6 +108,39 @@ async function slide(page) {
   if (pictures) fs.writeFileSync(path.join(pictures, "slide.png"), bytes);
 }
 
+// The saved bodies are glTF of the run's size, and the saved video shows a cycle.
+async function exports(page) {
+  const file = async (name) => {
+    const saved = page.waitForEvent("download");
+    await page.getByRole("button", { name }).click();
+    const download = await saved;
+    return { name: download.suggestedFilename(), bytes: fs.readFileSync(await download.path()) };
+  };
+  await move(page, "Wear made larger", 1);
+  const { name, bytes } = await file("Save bodies");
+  assert.strictEqual(name, "bodies.glb");
+  assert.strictEqual(bytes.toString("latin1", 0, 4), "glTF");
+  assert.strictEqual(bytes.readUInt32LE(8), bytes.length);
+  const head = JSON.parse(bytes.toString("utf8", 20, 20 + bytes.readUInt32LE(12)));
+  assert.deepStrictEqual(head.meshes.map(({ name }) => name), ["articulating surface", "insert", "femur"]);
+  const { min, max } = head.accessors[head.meshes[0].primitives[0].attributes.POSITION];
+  // The generic insert: x from -24 to 22, z from -36 to 36 mm.
+  [min[0] + 24, max[0] - 22, min[2] + 36, max[2] - 36].forEach((off) => assert(Math.abs(off) < 0.1, `${min} to ${max}`));
+  const film = await file("Save video");
+  assert.match(film.name, /^cycle\.(webm|mp4)$/);
+  // In a page of its own: the policy of a report loads no video.
+  const blank = await page.context().browser().newPage();
+  const size = await blank.evaluate(async (address) => {
+    const clip = Object.assign(document.createElement("video"), { muted: true, src: address });
+    await new Promise((done, failed) => Object.assign(clip, { onloadeddata: done, onerror: failed }));
+    return [clip.videoWidth, clip.videoHeight];
+  }, `data:video/${path.extname(film.name).slice(1)};base64,${film.bytes.toString("base64")}`);
+  await blank.close();
+  assert.deepStrictEqual(size, [1920, 1080]);
+  assert(film.bytes.length > 20_000, `the video has ${film.bytes.length} bytes`);
+  if (pictures) fs.writeFileSync(path.join(pictures, film.name), film.bytes);
+}
+
 // Without WebGL, the surface is shown from above, and follows the controls.
 async function withoutWebGl(browser) {
   const page = await browser.newPage({ viewport: { width: 1280, height: 900 } });
@@ -263,6 +296,7 @@ async function main() {
     await curves(page);
     await gait(page);
     await cheap(page);
+    await exports(page);
     assert.match(await page.locator("#licences").textContent(), /three[\s\S]*Permission is hereby granted[\s\S]*uplot/i);
     assert.deepStrictEqual(heard, [], "the page asks for other files or reports errors");
     await page.emulateMedia({ media: "print" });

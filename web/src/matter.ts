@@ -100,6 +100,16 @@ export class Matter extends RawShaderMaterial {
     this.needsUpdate = true;
   }
 
+  // Red, green and blue in linear light.
+  get rgb(): [number, number, number] {
+    const { r, g, b } = this.uniforms["tint"]!.value as Color;
+    return [r, g, b];
+  }
+
+  get opacityShown(): number {
+    return this.uniforms["opacity"]!.value as number;
+  }
+
   seeThrough(opacity: number): void {
     this.uniforms["opacity"]!.value = opacity;
     this.depthWrite = opacity === 1;

@@ -21,8 +21,12 @@ export interface Legend {
   map: ColourMap;
 }
 
-export function slide({ canvas, names, scale }: Shot, legend: Legend): HTMLCanvasElement {
-  const made = element("canvas", { width: WIDTH, height: HEIGHT });
+export function newSlide(): HTMLCanvasElement {
+  return element("canvas", { width: WIDTH, height: HEIGHT });
+}
+
+// Draws on a slide and returns it.
+export function slide({ canvas, names, scale }: Shot, legend: Legend, made = newSlide()): HTMLCanvasElement {
   const pen = made.getContext("2d")!;
   const write = (words: string, x: number, y: number, px: number, colour = INK) => {
     pen.font = `${px}px Inter, "Helvetica Neue", "Segoe UI", Roboto, Arial, sans-serif`;

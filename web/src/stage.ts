@@ -27,6 +27,7 @@ import { mergeVertices, toCreasedNormals } from "three/addons/utils/BufferGeomet
 import type { ColourMap, Range } from "./colours";
 import { element } from "./dom";
 import { FlatStage } from "./flat_stage";
+import type { Body } from "./glb";
 import { Matter } from "./matter";
 import type { Pose, Scene } from "./scene";
 
@@ -86,6 +87,7 @@ export class Stage {
   private readonly camera = new PerspectiveCamera(28, 4 / 3, 1, 2000);
   private readonly controls: OrbitControls;
   private readonly surface: Mesh<BufferGeometry, Matter>;
+  private readonly skin: Mesh<BufferGeometry, Matter>;
   private readonly colours: Float32Array;
   private readonly femur?: Mesh<BufferGeometry, Matter>;
   private readonly marker: Mesh;
@@ -119,7 +121,7 @@ export class Stage {
     this.unworn = scene.values("surface.nodes");
     this.colours = new Float32Array(this.unworn.length);
     this.surface = new Mesh(surfaceGeometry(scene, this.colours), new Matter({ side: FrontSide }));
-    const skin = new Mesh(bodyGeometry(scene, "skin"), new Matter({ colour: SKIN, side: FrontSide }));
+    const skin = (this.skin = new Mesh(bodyGeometry(scene, "skin"), new Matter({ colour: SKIN, side: FrontSide })));
     this.inside = [this.surface, skin].map((mesh) => new Mesh(mesh.geometry, this.cutFace));
     for (const mesh of this.inside) mesh.visible = false;
     this.world.add(this.surface, skin, ...this.inside);
@@ -282,6 +284,17 @@ export class Stage {
       names: names.map(({ words, x, y }) => ({ words, x: x / clientWidth, y: y / clientHeight })),
       scale: { part: width / clientHeight, words: this.scale.textContent ?? "" },
     };
+  }
+
+  // The bodies as they are shown, for other programs.
+  bodies(): Body[] {
+    const { surface, skin, femur } = this;
+    const shown: Body[] = [
+      { name: "articulating surface", mesh: surface, colour: [1, 1, 1, 1] },
+      { name: "insert", mesh: skin, colour: [...skin.material.rgb, 1] },
+    ];
+    if (femur?.visible) shown.push({ name: "femur", mesh: femur, colour: [...femur.material.rgb, femur.material.opacityShown] });
+    return shown;
   }
 
   // Draws now, as finely as a picture at rest. Changes call `ask` instead, so that many are drawn once.

@@ -6,8 +6,10 @@ import type { FlatStage } from "./flat_stage";
 import { forces, shares } from "./forces";
 import { cyclesInWords, inDigits } from "./digits";
 import { withUnit } from "./plots";
-import { savePicture } from "./save";
-import { slide } from "./slide";
+import { glb } from "./glb";
+import { save, savePicture } from "./save";
+import { newSlide, slide } from "./slide";
+import { hasVideo, video } from "./video";
 import { matrixOf, stageOf, type Axis, type Force, type Stage, type View } from "./stage";
 import type { CycleFacts, Field, Pressed, Scene } from "./scene";
 
@@ -21,6 +23,8 @@ const READ_MS = 150;
 const SECTION_MM = 45;
 // Height of the bodies in a saved picture, px.
 const SLIDE_PX = 850;
+// The same in a video, which is drawn while it is recorded.
+const VIDEO_PX = 600;
 // A point farther than this from every node is outside of the surface, mm.
 const REACH_MM = 3;
 
@@ -345,7 +349,10 @@ export class Viewer {
 
   private viewButtons(): HTMLElement[] {
     const views = this.stage.isFlat ? [] : VIEWS.map(([view, words]) => button(words, () => this.stage.look(view)));
-    return [...views, button("Pick the highest", () => this.pickHighest()), button("Save picture", () => this.savePicture())];
+    const saves = [button("Save picture", () => this.savePicture())];
+    if (this.cycles.length && hasVideo()) saves.push(button("Save video", () => void this.saveVideo()));
+    if (!this.stage.isFlat) saves.push(button("Save bodies", () => this.saveBodies()));
+    return [...views, button("Pick the highest", () => this.pickHighest()), ...saves];
   }
 
   private cycleChoice(): HTMLSelectElement {
@@ -383,10 +390,38 @@ export class Viewer {
     this.place();
   }
 
-  private savePicture(): void {
+  // A slide of what is shown, with at least `height` pixels for the bodies.
+  private slide(height: number, made?: HTMLCanvasElement): HTMLCanvasElement {
     const { title } = this.scene.facts;
     const legend = { title, field: this.fieldInWords(), state: this.status.textContent ?? "", range: this.range(), map: this.map() };
-    savePicture(`${this.field}.png`, slide(this.stage.shot(SLIDE_PX), legend));
+    return slide(this.stage.shot(height), legend, made);
+  }
+
+  private savePicture(): void {
+    savePicture(`${this.field}.png`, this.slide(SLIDE_PX));
+  }
+
+  // A cycle of the gait as a video of slides.
+  private async saveVideo(): Promise<void> {
+    this.stop();
+    const { instant, isInCycle } = this;
+    const count = this.cycle?.percents.length ?? 1;
+    const made = newSlide();
+    const film = await video(made, SECONDS_A_CYCLE, (part) => {
+      this.statusAt = 0;
+      this.showInstant(Math.min(count - 1, Math.floor(part * count)));
+      this.slide(VIDEO_PX, made);
+    });
+    save(`cycle.${film.type.split("/")[1]}`, film);
+    if (isInCycle) this.showInstant(instant);
+    else this.showUpdate(this.update);
+  }
+
+  // Exaggerated wear is in the name of the file.
+  private saveBodies(): void {
+    if (this.stage.isFlat) return;
+    const times = this.exaggeration > 1 ? `_wear_x${this.exaggeration}` : "";
+    save(`bodies${times}.glb`, glb(this.scene.facts.title, this.stage.bodies()));
   }
 
   private listen(host: HTMLElement): void {
