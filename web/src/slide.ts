@@ -50,7 +50,10 @@ export function slide({ canvas, names, scale }: Shot, legend: Legend, made = new
   pen.textAlign = "center";
   for (const { words, x, y } of names) write(words, left + x * width, top + y * height, 26, SOFT);
   pen.textAlign = "left";
-  write(legend.field, BAR.left - 60, BAR.top - 40, 28);
+  // A long name ends at the edge of the slide.
+  pen.textAlign = "right";
+  write(legend.field, WIDTH - BODIES.left, BAR.top - 40, 28);
+  pen.textAlign = "left";
   drawBar(pen, legend, write);
   return made;
 }
