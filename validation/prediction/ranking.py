@@ -2,8 +2,9 @@
 
 Usage: ranking.py CONDYLE OUT. Runs random designs with the default law, each of which states its mass by draws of the
 posterior; of two designs this gives the part of laboratories in which one wears less. Each simulated laboratory has a law of its
-own, a draw that the runs do not use, which moves the surface itself, and settings that scatter as in `condyle uncertainty`, the
-same for all designs that it tests. Writes OUT, a table of stated probabilities with the part of laboratories that agree.
+own, a draw that the runs do not use, which moves the surface itself, and settings that scatter as in `condyle uncertainty`: those
+of its machine are the same for all designs that it tests, those of the parts and their set-up are not. Writes OUT, a table of
+stated probabilities with the part of laboratories that agree.
 """
 
 import csv
@@ -21,8 +22,17 @@ DESIGNS, LABORATORIES = 24, 40
 # Every draw whose number is a multiple of this is one of those by which a run states its mass.
 OF_RUN = 5
 CASE = "cases/stanmore-force.toml"
-# One standard deviation of settings that a laboratory has in common for its specimens; crates/condyle-study/src/scatters.csv.
+# Standard deviations of crates/condyle-study/src/scatters.csv. Of a laboratory, as a part of the value:
 FRICTION, AXIAL_FORCE, AP_FORCE, SPRINGS, YOUNGS_MODULUS = 0.2, 0.02, 0.02, 0.05, 0.1
+# Of every set-up, around these values:
+SET_UP = {
+    "femur.flexion_deg": (0, 0.5),
+    "femur.external_rotation_deg": (0, 0.5),
+    "insert.posterior_slope_deg": (0, 0.5),
+    "insert.axial_rotation_deg": (0, 0.5),
+    "machine.vv_axis_medial_mm": (5, 0.5),
+    "machine.springs.free_play_mm": (2.5, 0.25),
+}
 
 
 def designs(draw):
@@ -67,8 +77,11 @@ def main():
     of_designs, of_laboratories = list(designs(draw)), list(laboratories(draw))
     with ThreadPoolExecutor(os.cpu_count()) as pool:
         stated = list(pool.map(lambda design: summary(condyle, design)["prediction"]["mass_loss_mg_by_draw"], of_designs))
-        tests = itertools.product(of_designs, of_laboratories)
-        masses = list(pool.map(lambda test: summary(condyle, test[0] + test[1])["mass_loss_mg"], tests))
+        tests = [
+            [*design, *laboratory, *(f"{key}={draw.gauss(*scatter):.3f}" for key, scatter in SET_UP.items())]
+            for design, laboratory in itertools.product(of_designs, of_laboratories)
+        ]
+        masses = list(pool.map(lambda test: summary(condyle, test)["mass_loss_mg"], tests))
     weighed = [masses[first : first + LABORATORIES] for first in range(0, len(masses), LABORATORIES)]
     bins = {}
     for a, b in itertools.combinations(range(DESIGNS), 2):

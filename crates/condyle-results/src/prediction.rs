@@ -18,6 +18,8 @@ pub const CALIBRATED_LAW: &str = "power-law";
 /// Deviation of the logarithm of the mass due to the scatter of a simulator's inputs: that of the default knee, by
 /// `condyle uncertainty`, as the book states it.
 const INPUTS_LOG_SD: f64 = 0.08;
+/// Factor by which the logistic function is within 0.01 of the normal distribution.
+const LOGISTIC: f64 = 1.702;
 /// The wear of conventional inserts in force-controlled knee simulators [haider-garvin2008]; [reinders2014] found 8.0 +/- 0.9.
 const MEASURED_KNEES: &str = "knee simulators have weighed 8.1 +/- 2.6 mg/Mc";
 /// The wear of conventional cups of 28 mm (not read) on a machine of ISO 14242-1 in two lubricants [kaddick2001].
@@ -179,16 +181,18 @@ impl Prediction {
     }
 
     /// Returns the part of laboratories in which this design wears less than another, 0 to 1: the same draws of the law for
-    /// both, with the laboratory's factor cancelled. None if the draws differ in number.
+    /// both, with the laboratory's factor cancelled, and the scatter of inputs between their tests. None if the draws differ in
+    /// number.
     pub fn part_below(&self, other: &Self) -> Option<f64> {
-        let pairs = self
-            .mass_loss_mg_by_draw
-            .iter()
-            .zip(&other.mass_loss_mg_by_draw);
-        let below = pairs.filter(|(own, other)| own < other).count();
+        let pairs = self.mass_loss_mg_by_draw.iter();
+        let pairs = pairs.zip(&other.mass_loss_mg_by_draw);
+        let below = pairs.map(|(own, other)| {
+            let deviations = (other / own).ln() / (std::f64::consts::SQRT_2 * INPUTS_LOG_SD);
+            1.0 / (1.0 + (-LOGISTIC * deviations).exp())
+        });
         let count = self.mass_loss_mg_by_draw.len();
         (count == other.mass_loss_mg_by_draw.len() && count > 0)
-            .then(|| below as f64 / count as f64)
+            .then(|| below.sum::<f64>() / count as f64)
     }
 
     /// Returns the factor within which the mass is known without the laboratory's part, which is the same for every run.
@@ -307,10 +311,16 @@ mod tests {
         };
         let (one, two) = (
             prediction(&[1.0, 2.0, 4.0, 8.0]),
-            prediction(&[1.1, 2.1, 4.1, 7.0]),
+            prediction(&[3.0, 6.0, 12.0, 4.0]),
         );
-        assert_eq!(one.part_below(&two), Some(0.75));
-        assert_eq!(two.part_below(&one), Some(0.25));
+        let near = |found: Option<f64>, exact: f64| (found.unwrap() - exact).abs() < 1e-3;
+        assert!(near(one.part_below(&two), 0.75) && near(two.part_below(&one), 0.25));
+        // Of equal designs, either wears less in half of the laboratories.
+        assert!(near(one.part_below(&one), 0.5));
+        // One deviation of the difference of two tests.
+        let more = 2f64.sqrt() * INPUTS_LOG_SD;
+        let part = prediction(&[1.0]).part_below(&prediction(&[more.exp()]));
+        assert!((part.unwrap() - 0.841).abs() < 0.01);
         assert_eq!(one.part_below(&prediction(&[1.0])), None);
     }
 

@@ -24,6 +24,7 @@ mod pressure_table;
 mod reader;
 mod renamed;
 mod rig;
+mod rig_joint;
 mod run_options;
 #[cfg(test)]
 mod tests;
@@ -34,7 +35,7 @@ mod wear;
 pub use self::{
     activity::*, assignment::*, build::*, contact::*, contents::*, drive::*, femur::*, frame::*,
     insert::*, ligament::*, machine::*, material::*, pressure_table::*, reader::*, rig::*,
-    run_options::*, wear::*,
+    rig_joint::*, run_options::*, wear::*,
 };
 
 #[cfg(feature = "file-system")]
