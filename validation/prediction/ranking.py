@@ -10,6 +10,7 @@ stated probabilities with the part of laboratories that agree.
 import csv
 import itertools
 import json
+import math
 import os
 import random
 import subprocess
@@ -22,6 +23,8 @@ DESIGNS, LABORATORIES = 24, 40
 # Every draw whose number is a multiple of this is one of those by which a run states its mass.
 OF_RUN = 5
 CASE = "cases/stanmore-force.toml"
+# Of the logarithm of the mass, by the inputs of a test; as in crates/condyle-results/src/prediction.rs.
+INPUTS_LOG_SD = 0.08
 # Standard deviations of crates/condyle-study/src/scatters.csv. Of a laboratory, as a part of the value:
 FRICTION, AXIAL_FORCE, AP_FORCE, SPRINGS, YOUNGS_MODULUS = 0.2, 0.02, 0.02, 0.05, 0.1
 # Of every set-up, around these values:
@@ -83,9 +86,15 @@ def main():
         ]
         masses = list(pool.map(lambda test: summary(condyle, test)["mass_loss_mg"], tests))
     weighed = [masses[first : first + LABORATORIES] for first in range(0, len(masses), LABORATORIES)]
+
+    def part_below(own, other):
+        """As `Prediction::part_below` of crates/condyle-results."""
+        parts = [1 / (1 + math.exp(-1.702 * math.log(y / x) / INPUTS_LOG_SD)) for x, y in zip(own, other, strict=True)]
+        return sum(parts) / len(parts)
+
     bins = {}
     for a, b in itertools.combinations(range(DESIGNS), 2):
-        own = sum(x < y for x, y in zip(stated[a], stated[b], strict=True)) / len(stated[a])
+        own = part_below(stated[a], stated[b])
         found = sum(x < y for x, y in zip(weighed[a], weighed[b], strict=True)) / LABORATORIES
         # The design that more laboratories are stated to prefer.
         own, found = (own, found) if own >= 0.5 else (1 - own, 1 - found)
