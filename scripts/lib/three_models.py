@@ -124,7 +124,7 @@ def pictures(out, folder):
             column[1].plot(percent, [row["contact_area_mm2"] for row in rows], **style)
         column[0].set(title=name, ylabel="peak pressure, MPa", ylim=(0, None))
         column[1].set(xlabel="gait cycle, %", ylabel="contact area, mm2", ylim=(0, None))
-    all_axes[0][0].legend(frameon=False, loc="upper right")
+    all_axes[1][0].legend(frameon=False, loc="upper right")
     save(figure, "cycle.svg")
 
     figure, all_axes = plt.subplots(1, 2, figsize=(9.2, 3.2), sharey=True)
