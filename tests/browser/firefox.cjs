@@ -2,19 +2,14 @@
 //
 // PAGE is the folder of the page; NODE has the summary.json that its program found in Node, whose numbers must be the same.
 const assert = require("node:assert");
-const { spawn } = require("node:child_process");
 const fs = require("node:fs");
 const path = require("node:path");
 const { pathToFileURL } = require("node:url");
 const puppeteer = require("puppeteer-core");
+const served = require("./served.cjs");
 
 const [executablePath, folder, report, node, pictures] = process.argv.slice(2);
 const PATIENCE_MS = 180_000;
-
-function served() {
-  const server = spawn(process.execPath, [path.join(__dirname, "../../web/serve.mjs"), folder, "0"], { stdio: ["ignore", "pipe", "inherit"] });
-  return new Promise((done) => server.stdout.once("data", (url) => done({ server, url: String(url).trim() })));
-}
 
 async function opened(browser, url) {
   const page = await browser.newPage();
@@ -62,7 +57,7 @@ async function useReport(browser) {
 }
 
 async function main() {
-  const { server, url } = await served();
+  const { server, url } = await served(folder);
   const browser = await puppeteer.launch({ browser: "firefox", executablePath, headless: false });
   try {
     await usePage(browser, url);
@@ -74,7 +69,4 @@ async function main() {
   }
 }
 
-main().catch((error) => {
-  console.error(error);
-  process.exit(1);
-});
+main();

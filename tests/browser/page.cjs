@@ -3,11 +3,11 @@
 // PAGE is the folder of the page, MADE has in `node` what its program found in Node, and gets what the page saves; BODIES has
 // a femoral component and an insert, femur.stl and insert.stl.
 const assert = require("node:assert");
-const { spawn } = require("node:child_process");
 const { createHash } = require("node:crypto");
 const fs = require("node:fs");
 const path = require("node:path");
 const { chromium } = require("playwright-core");
+const served = require("./served.cjs");
 
 const [executablePath, folder, made, bodies] = process.argv.slice(2);
 // A machine at other work is slow.
@@ -16,11 +16,6 @@ const args = ["--no-sandbox", "--use-angle=swiftshader", "--enable-unsafe-swifts
 // A case of a moment.
 const QUICK = "[insert]\nedge_mm = 3.0\nlayers = 1\n[march]\nupdates = 3\n[time]\nincrements = 40\n";
 const LARGEST_MB = 1.5;
-
-function served() {
-  const server = spawn(process.execPath, [path.join(__dirname, "../../web/serve.mjs"), folder, "0"], { stdio: ["ignore", "pipe", "inherit"] });
-  return new Promise((done) => server.stdout.once("data", (url) => done({ server, url: String(url).trim() })));
-}
 
 function watch(page, url, heard) {
   page.on("request", (request) => /^(data|blob):/.test(request.url()) || request.url().startsWith(url) || heard.push(request.url()));
@@ -309,7 +304,7 @@ async function offline(context, server, url) {
 }
 
 async function main() {
-  const { server, url } = await served();
+  const { server, url } = await served(folder);
   const browser = await chromium.launch({ executablePath, args });
   try {
     const context = await browser.newContext({ viewport: { width: 1280, height: 900 }, acceptDownloads: true });
@@ -343,7 +338,4 @@ async function main() {
   }
 }
 
-main().catch((error) => {
-  console.error(error);
-  process.exit(1);
-});
+main();

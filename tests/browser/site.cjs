@@ -2,20 +2,15 @@
 //
 // Every link within the site must lead to a file, and the page must run in a frame of a page from elsewhere.
 const assert = require("node:assert");
-const { spawn } = require("node:child_process");
 const fs = require("node:fs");
 const http = require("node:http");
 const path = require("node:path");
 const { chromium } = require("playwright-core");
+const served = require("./served.cjs");
 
 const [executablePath, site, pictures] = process.argv.slice(2);
 const PATIENCE_MS = 180_000;
 const args = ["--no-sandbox", "--use-angle=swiftshader", "--enable-unsafe-swiftshader"];
-
-function served() {
-  const server = spawn(process.execPath, [path.join(__dirname, "../../web/serve.mjs"), site, "0"], { stdio: ["ignore", "pipe", "inherit"] });
-  return new Promise((done) => server.stdout.once("data", (url) => done({ server, url: String(url).trim() })));
-}
 
 // Links to nowhere, of all pages; those of print.html are the same, those of 404.html lead from wherever it is shown.
 function broken() {
@@ -48,7 +43,7 @@ async function framed(browser, url) {
 
 async function main() {
   assert.deepStrictEqual(broken(), [], "links lead to nothing");
-  const { server, url } = await served();
+  const { server, url } = await served(site);
   const browser = await chromium.launch({ executablePath, args });
   try {
     await framed(browser, url);
@@ -65,7 +60,4 @@ async function main() {
   }
 }
 
-main().catch((error) => {
-  console.error(error);
-  process.exit(1);
-});
+main();
