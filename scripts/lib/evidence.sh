@@ -7,14 +7,15 @@ if ! git diff --quiet HEAD -- crates cases Cargo.toml Cargo.lock; then
     commit="$commit, with changes"
 fi
 
-# Puts a file between the lines `<!-- results -->` and `<!-- end of results -->` of a page.
+# Puts a file between the lines `<!-- results -->` and `<!-- end of results -->` of a page; a page with several such parts has
+# another name in place of `results`.
 put_into_page() {
-    local page=$1 file=$2 whole
+    local page=$1 file=$2 name=${3:-results} whole
     whole=$(mktemp)
-    awk -v file="$file" '
-        /<!-- end of results -->/ { skip = 0 }
+    awk -v file="$file" -v name="$name" '
+        $0 == "<!-- end of " name " -->" { skip = 0 }
         !skip { print }
-        /<!-- results -->/ { print ""; while ((getline line < file) > 0) print line; print ""; skip = 1 }
+        $0 == "<!-- " name " -->" { print ""; while ((getline line < file) > 0) print line; print ""; skip = 1 }
     ' "$page" > "$whole"
     cat "$whole" > "$page"
     rm "$whole"
