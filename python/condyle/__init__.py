@@ -20,6 +20,7 @@ from .laws import NodeCycle
 from .progress import Bar, Progress, StudyProgress
 from .result import Result
 from .run import open, run
+from .search import Search
 from .study import Study
 from .study_result import StudyResult, open_study
 from .table import Table
@@ -42,6 +43,7 @@ __all__ = [
     "Problem",
     "Progress",
     "Result",
+    "Search",
     "Study",
     "StudyInterrupted",
     "StudyProgress",

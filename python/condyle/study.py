@@ -14,6 +14,7 @@ from ._toml import document, value_text
 from ._workers import Cluster, Source, run_on
 from .case import Case
 from .progress import StudyProgress, listening
+from .search import Search
 from .study_result import StudyResult
 
 if TYPE_CHECKING:
@@ -104,8 +105,10 @@ class Study:
 
     def case(self, row: int, out: str | os.PathLike[str] | None = None) -> Case:
         """The case of test ``row``, counted from 0; tests of a search are read from the study's folder ``out``."""
+        return self._changed(self._raw.changes(row, None if out is None else os.fspath(out)))
+
+    def _changed(self, changes: Sequence[str]) -> Case:
         source = self._source
-        changes = self._raw.changes(row, None if out is None else os.fspath(out))
         path = os.fspath(self._raw.case_path)
         files = dict(source.files)
         text = files[path].decode() if path in files else _condyle.RawCase.read_text(path)
@@ -153,6 +156,14 @@ class Study:
             else:
                 run_on(executor, cluster, self._raw, self._source, os.fspath(out), tests_a_task, listener)
         return self.answered(out)
+
+    def search(self, out: str | os.PathLike[str]) -> Search:
+        """Opens the folder ``out`` for a search whose tests run elsewhere: the design's kind is ``optimise``.
+
+        Raises:
+            BadInput: a folder of another study or in use.
+        """
+        return Search(self, out)
 
     def merge(self, shards: Sequence[str | os.PathLike[str]], out: str | os.PathLike[str]) -> StudyResult:
         """Merges the tests of several folders of this study, such as those of ``--shard``, into the folder ``out``."""

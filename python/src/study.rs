@@ -25,6 +25,20 @@ pub enum Found {
     Outputs(Vec<f64>, String),
 }
 
+impl Found {
+    fn result(self) -> PyResult<TestResult> {
+        match self {
+            Self::Outputs(values, doubts) if values.len() == catalogue::outputs().count() => {
+                Ok(Ok(TestOutputs { values, doubts }))
+            }
+            Self::Outputs(..) => Err(errors::bad_input(
+                "a worker returned another number of outputs than a test has",
+            )),
+            Self::Reason(reason) => Ok(Err(reason)),
+        }
+    }
+}
+
 /// A checked study, and the bodies and caches that its tests share.
 #[pyclass(frozen, module = "condyle._condyle")]
 pub struct RawStudy {
@@ -48,6 +62,12 @@ pub struct RawStudy {
 
 #[pymethods]
 impl RawStudy {
+    /// The keys of the outputs of every test.
+    #[getter]
+    fn outputs(&self) -> Vec<&'static str> {
+        catalogue::outputs().map(|output| output.key).collect()
+    }
+
     /// Reads a study from `text` as if it stood in the file `path`. Files that it names are looked up in `files` first,
     /// then from the folder `base`.
     #[new]
@@ -154,6 +174,13 @@ impl RawStudy {
         let changes = self.plan.assignments(&test);
         Ok(changes.iter().map(Assignment::to_string).collect())
     }
+
+    /// The changes of the case in a test of a search with these values of the inputs.
+    fn changes_with(&self, values: Vec<f64>) -> PyResult<Vec<String>> {
+        let test = self.plan.test_with(0, &values);
+        let changes = self.plan.assignments(&test.map_err(errors::of_study)?);
+        Ok(changes.iter().map(Assignment::to_string).collect())
+    }
 }
 
 /// The locked folder of a study whose tests run elsewhere.
@@ -169,25 +196,38 @@ impl RawHeldStudy {
         self.with(|held| held.missing(&study.plan))
     }
 
+    /// The number of stored tests.
+    fn count(&self) -> PyResult<u64> {
+        self.with(Store::count)
+    }
+
     /// Stores results of tests in one transaction.
     fn keep(&self, study: &RawStudy, found: Vec<(u64, Found)>) -> PyResult<()> {
         let tested = |(row, found): (u64, Found)| {
-            let found: TestResult = match found {
-                Found::Outputs(values, doubts) if values.len() == catalogue::outputs().count() => {
-                    Ok(TestOutputs { values, doubts })
-                }
-                Found::Outputs(..) => {
-                    return Err(errors::bad_input(
-                        "a worker returned another number of outputs than a test has",
-                    ));
-                }
-                Found::Reason(reason) => Err(reason),
-            };
             let test = study.plan.row(row, None).map_err(errors::of_study)?;
-            Ok((test, found))
+            Ok((test, found.result()?))
         };
         let found: Vec<_> = found.into_iter().map(tested).collect::<PyResult<_>>()?;
         self.with(|held| held.keep(&study.plan, &found))
+    }
+
+    /// The values of the inputs of the next tests of a search, while the `pending` ones are under way; none at its end.
+    fn ask(
+        &self,
+        py: Python<'_>,
+        study: &RawStudy,
+        pending: Vec<Vec<f64>>,
+        count: usize,
+    ) -> PyResult<Vec<Vec<f64>>> {
+        py.detach(|| self.with(|held| held.ask(&study.plan, &pending, count)))
+    }
+
+    /// Stores results of tests of a search by the values of their inputs.
+    fn tell(&self, study: &RawStudy, found: Vec<(Vec<f64>, Found)>) -> PyResult<()> {
+        let told = found.into_iter();
+        let told = told.map(|(values, found)| Ok((values, found.result()?)));
+        let told = told.collect::<PyResult<Vec<_>>>()?;
+        self.with(|held| held.tell(&study.plan, told))
     }
 
     /// Unlocks the folder.

@@ -351,3 +351,50 @@ def test_notebooks_show_studies_and_their_answers(study: condyle.Study, done: co
     shown = done._repr_html_()
     assert "<td>mass loss</td><td>mg</td>" in shown and shown.count("<tr>") == 1 + len(done.answers["spreads"])
     assert not done["mass_loss_mg"].flags.writeable
+
+
+SEARCH: dict[str, Any] = {
+    "design": {"kind": "optimise", "size": 12, "seed": 2},
+    "vary": [
+        {"key": "contact.friction", "low": 0.03, "high": 0.1},
+        {"key": "insert.thickness_mm", "levels": [8, 9.5, 12]},
+    ],
+    "limit": [{"output": "peak_pressure_mpa", "most": 40.0}],
+}
+
+
+def test_a_search_told_from_outside_is_that_of_the_study(small: condyle.Case, tmp_path: Path) -> None:
+    study = condyle.Study.from_dict(SEARCH, case=small)
+    inside = study.run(tmp_path / "inside")
+    with study.search(tmp_path / "outside") as search:
+        designs = search.ask(6)
+        while designs:
+            assert search.pending == designs
+            search.tell(designs, [condyle.run(search.case(design), fields=False) for design in designs])
+            designs = search.ask(2)
+        assert search.told == 12 and search.pending == []
+        outside = search.answered()
+    assert table(outside) == table(inside) and outside.answers == inside.answers
+    assert set(outside["insert.thickness_mm"]) <= {8.0, 9.5, 12.0}
+
+
+def test_results_that_do_not_fit_a_search_are_errors(study: condyle.Study, small: condyle.Case, tmp_path: Path) -> None:
+    with condyle.Study.from_dict(SEARCH, case=small).search(tmp_path / "out") as search:
+        (design,) = search.ask()
+        for wrong, result, expected in [
+            (design, {"mass_loss_mg": 1.0}, "lack `peak_pressure_mpa`"),
+            (design, {"mass": 1.0}, "a test has no output 'mass'"),
+            ({"contact.friction": 0.05}, "failed", "a design has the inputs contact.friction, insert.thickness_mm"),
+            ({**design, "contact.friction": 0.3}, "failed", "`contact.friction = 0.3` is not within the range"),
+        ]:
+            with pytest.raises(condyle.BadInput, match=expected):
+                search.tell([wrong], [result])
+        assert search.told == 0 and search.pending == [design]
+        search.tell([design], [condyle.NotSolved("no equilibrium\nat 3 %")])
+        assert search.told == 1 and search.pending == []
+        assert search.answered().table["reason"].tolist() == ["no equilibrium"]
+    with (
+        study.search(tmp_path / "other") as search,
+        pytest.raises(condyle.BadInput, match="a latin-hypercube design has tests that are known in advance"),
+    ):
+        search.ask()

@@ -300,18 +300,18 @@ impl Store {
     /// Returns the result of a test; none if it is not stored.
     pub(crate) fn outputs(&self, row: u64, plan: &Plan) -> Result<Option<TestResult>, StudyError> {
         let (_, outputs) = plan.columns();
-        let query = select(&outputs, ", reason");
+        let query = select(&outputs, ", reason, status");
         self.first_row(&query, row as i64, |cells| {
-            let values = (0..outputs.len()).map(|place| cells.get(place));
-            let values: rusqlite::Result<Option<Vec<f64>>> = values.collect();
+            // An output that a test does not have, such as a motion of another joint, is empty.
+            let values = (0..outputs.len()).map(|place| cells.get::<_, Option<f64>>(place));
+            let values = values.map(|value| Ok(value?.unwrap_or(f64::NAN)));
+            let values = values.collect::<rusqlite::Result<Vec<f64>>>()?;
             let reason: Option<String> = cells.get(outputs.len())?;
-            let reason = reason.unwrap_or_default();
-            Ok(match values? {
-                Some(values) => Ok(TestOutputs {
-                    values,
-                    doubts: reason,
-                }),
-                None => Err(reason),
+            let doubts = reason.unwrap_or_default();
+            let is_done = cells.get_ref(outputs.len() + 1)?.as_str() == Ok("done");
+            Ok(match is_done {
+                true => Ok(TestOutputs { values, doubts }),
+                false => Err(doubts),
             })
         })
     }

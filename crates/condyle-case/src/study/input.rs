@@ -279,16 +279,21 @@ impl Variation {
     }
 }
 
+/// Returns the numbers among levels in ascending order.
+pub(super) fn sorted_numbers(levels: &Levels) -> Vec<f64> {
+    let numbers = levels.0.iter().filter_map(|level| match level {
+        Level::Number(number) => Some(*number),
+        Level::Word(_) => None,
+    });
+    let mut sorted: Vec<f64> = numbers.collect();
+    sorted.sort_by(f64::total_cmp);
+    sorted
+}
+
 impl EmpiricalKeys {
     /// Returns the values in ascending order.
     pub fn sorted(&self) -> Vec<f64> {
-        let numbers = self.values.0.iter().filter_map(|level| match level {
-            Level::Number(number) => Some(*number),
-            Level::Word(_) => None,
-        });
-        let mut sorted: Vec<f64> = numbers.collect();
-        sorted.sort_by(f64::total_cmp);
-        sorted
+        sorted_numbers(&self.values)
     }
 
     /// Replaces the file by its values; reports words, and fewer than two different values.

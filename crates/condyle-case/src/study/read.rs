@@ -8,7 +8,7 @@ use super::contents::{Alternative, Correlation, PARETO, Study};
 use super::declared::{
     AlternativeKeys, CorrelationKeys, Design, HeadingKeys, OptimiseKeys, Variation,
 };
-use super::input::{Input, check_count, read_rows};
+use super::input::{Input, check_count, read_rows, sorted_numbers};
 use crate::case::{Assignment, Case, CaseReader, ChangeError};
 use crate::config::*;
 use condyle_mesh::files::{Disk, Files};
@@ -359,11 +359,20 @@ fn unsearchable(input: &Input) -> Option<(String, &'static str)> {
             ))
         }
         _ if input.is_disturbance => None,
-        Variation::Uniform(_) if !input.is_whole => None,
+        Variation::Uniform(_) => None,
+        Variation::Levels(keys) if are_different_numbers(&keys.levels) => None,
         _ => {
-            let problem = format!("a search needs a range, and `{key}` has none");
-            let advice = "give `low` and `high` of a number that does not count, or `disturbance = true` for an input that scatters";
+            let problem = format!("a search needs a range or numbers, and `{key}` has none");
+            let advice = "give `low` and `high`, or two or more numbers as `levels`, or `disturbance = true` for an input that scatters; \
+                 compare words as `[[alternative]]` designs";
             Some((problem, advice))
         }
     }
+}
+
+/// Returns whether levels are two or more numbers, each given once.
+fn are_different_numbers(levels: &Levels) -> bool {
+    let mut sorted = sorted_numbers(levels);
+    sorted.dedup();
+    sorted.len() == levels.0.len() && sorted.len() > 1
 }

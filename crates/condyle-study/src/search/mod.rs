@@ -1,25 +1,24 @@
 //! A search for the optimum within limits: emulators of the outputs propose the tests.
 
+mod ask;
 mod observed;
 mod outlook;
+mod places;
 mod robust;
-
 mod worth;
 
-use condyle_case::{
-    config::Level,
-    study::{Bound, Design, Input, Study},
-};
+use condyle_case::study::{Bound, Design, Input, Study};
 use condyle_results::catalogue::Scalar;
 use serde::Serialize;
 
 pub(crate) use self::robust::{Comparison, Estimate, comparison};
 use self::{
     observed::{Observed, space_filling},
+    places::{along, levels, place_along},
     worth::{Emulators, SHARP, WIDE},
 };
 use crate::{
-    distribution::{Place, level_along, level_at_share},
+    distribution::{Place, level_at_share},
     plan::{Plan, Test, TestResult, output_value},
 };
 
@@ -46,20 +45,15 @@ pub(crate) fn next_tests(plan: &Plan, known: &[Known]) -> Option<Vec<Test>> {
     }
     let first = first_tests(axes);
     if known.len() < first {
-        let points = space_filling(0..first.min(size), axes, keys.seed);
-        let chosen = plan.study().chosen();
-        let mut places: Vec<Vec<Place>> = points.map(|point| filling(&point, chosen)).collect();
-        if is_case_inside(plan.study()) {
-            places[0] = vec![Place::OfCase; axes];
-        }
+        let mut places = first_places(plan.study(), keys.seed);
+        places.truncate(size);
         return Some(tests_at(plan, 0, places));
     }
     // A batch that was interrupted is proposed again from the tests before it.
     let whole = known.len() - (known.len() - first) % BATCH;
     let observed = observed(plan, &known[..whole]);
-    let points = observed.proposals(BATCH.min(size - whole), keys.seed)?;
-    let places = points.iter().map(|point| along_all(point));
-    Some(tests_at(plan, whole, places.collect()))
+    let points = observed.proposals(&[], BATCH.min(size - whole), keys.seed)?;
+    Some(tests_at(plan, whole, along_all(plan.study(), &points)))
 }
 
 /// Returns the number of first tests, which must not depend on the size, so that a search can grow.
@@ -67,15 +61,27 @@ fn first_tests(axes: usize) -> usize {
     (FIRST_TESTS_PER_INPUT * axes).max(6)
 }
 
-/// Returns the places of a space-filling point: along the ranges of chosen inputs, by the distributions of disturbances.
-fn filling(point: &[f64], chosen: usize) -> Vec<Place> {
-    let (design, disturbance) = point.split_at(chosen);
-    let shares = disturbance.iter().copied().map(Place::Share);
-    along_all(design).into_iter().chain(shares).collect()
+/// Returns the places of the first tests: the case itself if it lies within the ranges, and space-filling points, along the
+/// ranges of chosen inputs and by the distributions of disturbances.
+fn first_places(study: &Study, seed: u64) -> Vec<Vec<Place>> {
+    let (axes, chosen) = (study.inputs.len(), study.chosen());
+    let points = space_filling(0..first_tests(axes), axes, seed);
+    let place = |(axis, (input, part)): (usize, (&Input, f64))| match axis < chosen {
+        true => place_along(input, part),
+        false => Place::Share(part),
+    };
+    let places = |point| study.inputs.iter().zip(point).enumerate().map(place);
+    let mut all: Vec<Vec<Place>> = points.map(|point| places(point).collect()).collect();
+    if is_case_inside(study) {
+        all[0] = vec![Place::OfCase; axes];
+    }
+    all
 }
 
-fn along_all(point: &[f64]) -> Vec<Place> {
-    point.iter().copied().map(Place::Along).collect()
+fn along_all(study: &Study, points: &[Vec<f64>]) -> Vec<Vec<Place>> {
+    let along = |(input, part): (&Input, &f64)| place_along(input, *part);
+    let places = points.iter().map(|point| study.inputs.iter().zip(point));
+    places.map(|one| one.map(along).collect()).collect()
 }
 
 /// Returns tests at places, from row `first` on.
@@ -88,23 +94,17 @@ fn tests_at(plan: &Plan, first: usize, places: Vec<Vec<Place>>) -> Vec<Test> {
     (first as u64..).zip(places).map(test).collect()
 }
 
-/// Returns the place of a value in the range of its input, 0 to 1; beyond for rare values of an unbounded distribution.
-fn along(input: &Input, value: Option<&Level>) -> Option<f64> {
-    let ends = [0.0, 1.0].map(|end| level_along(input, end));
-    match (ends, value?) {
-        ([Level::Number(low), Level::Number(high)], Level::Number(value)) => {
-            Some((value - low) / (high - low))
-        }
-        _ => None,
-    }
-}
-
-/// Returns whether the case itself lies within the ranges.
+/// Returns whether the case itself lies within the ranges, and on the levels.
 fn is_case_inside(study: &Study) -> bool {
+    let is_level = |input: &Input, place: f64| {
+        let levels = levels(input);
+        levels.is_empty() || levels.iter().any(|one| (one - place).abs() < MIN_DISTANCE)
+    };
     let mut inputs = study.inputs.iter();
     inputs.all(|input| {
         let place = along(input, study.value_of_case(input).as_ref());
-        place.is_some_and(|place| input.is_disturbance || (0.0..=1.0).contains(&place))
+        let is_inside = |place| (0.0..=1.0).contains(&place) && is_level(input, place);
+        place.is_some_and(|place| input.is_disturbance || is_inside(place))
     })
 }
 
@@ -142,14 +142,16 @@ pub(crate) fn standing(plan: &Plan, known: &[Known]) -> Option<Standing> {
     })
 }
 
+/// Returns a test in the unit cube.
+fn point(study: &Study, test: &Test) -> Vec<f64> {
+    let values = study.inputs.iter().zip(&test.values);
+    let places = values.map(|(input, value)| along(input, value.as_ref()).unwrap_or(0.5));
+    places.collect()
+}
+
 /// Returns the stored tests of a search in the unit cube.
 fn observed(plan: &Plan, known: &[Known]) -> Observed {
     let study = plan.study();
-    let point = |(test, _): &Known| {
-        let values = study.inputs.iter().zip(&test.values);
-        let places = values.map(|(input, value)| along(input, value.as_ref()).unwrap_or(0.5));
-        places.collect()
-    };
     let values = |output: &Scalar| {
         let value = |(_, result): &Known| {
             let outputs = result.as_ref();
@@ -178,7 +180,8 @@ fn observed(plan: &Plan, known: &[Known]) -> Observed {
         disturbances: disturbances(plan, JUDGED, keys.seed),
         share: keys.percentile.map(|percentile| percentile / 100.0),
         kept: kept.collect(),
-        points: known.iter().map(point).collect(),
+        points: known.iter().map(|(test, _)| point(study, test)).collect(),
+        levels: study.inputs[..study.chosen()].iter().map(levels).collect(),
         minimised: study.objectives().into_iter().map(values).collect(),
         excess: excess.collect(),
     }
@@ -200,61 +203,75 @@ fn disturbances(plan: &Plan, count: usize, seed: u64) -> Vec<Vec<f64>> {
 
 impl Observed {
     /// Returns `count` points for the next tests: the optimum that the emulators predict, and the points at which an
-    /// improvement is likeliest, each as if the emulators had predicted those before it exactly (Ginsbourger, Le Riche and
-    /// Carraro 2010). Space-filling points without emulators, and once no improvement is expected; none if as many of these
-    /// as of the first tests did not change that.
-    fn proposals(&self, count: usize, seed: u64) -> Option<Vec<Vec<f64>>> {
-        let axes = self.points.first().map_or(0, Vec::len);
-        let filling = |row: usize| space_filling(row..row + 1, axes, seed).next();
-        let Some(mut emulators) = Emulators::new(self) else {
-            return (self.points.len()..self.points.len() + count)
-                .map(filling)
-                .collect();
-        };
-        let (mut points, mut proposals) = (self.points.clone(), Vec::new());
+    /// improvement is likeliest, each as if the emulators had predicted those before it and the `pending` ones exactly
+    /// (Ginsbourger, Le Riche and Carraro 2010). Space-filling points without emulators, and once no improvement is expected;
+    /// none if as many of these as of the first tests did not change that, and if every combination of levels is tested.
+    fn proposals(&self, pending: &[Vec<f64>], count: usize, seed: u64) -> Option<Vec<Vec<f64>>> {
+        let mut points = [&self.points[..], pending].concat();
+        let mut proposals = Vec::new();
+        let mut emulators = Emulators::new(self);
+        for point in pending {
+            emulators.as_mut().map(|all| all.believe(point));
+        }
         let mut is_end = false;
         for number in 0..count {
-            let explored = emulators.most_promising(self, WIDE, seed);
-            if let (0, false, Some((_, worth))) = (number, emulators.front.is_empty(), &explored) {
-                is_end = emulators.seen.is_exhausted(*worth);
-            }
+            let new = emulators.as_ref().map_or_else(Vec::new, |all| {
+                let explored = all.most_promising(self, WIDE, seed);
+                if let (0, false, Some((_, worth))) = (number, all.front.is_empty(), &explored) {
+                    is_end = all.seen.is_exhausted(*worth);
+                }
+                let predicted = (number == 0).then(|| all.most_promising(self, SHARP, seed));
+                let both = [predicted.flatten(), explored].into_iter().flatten();
+                both.map(|(design, _)| all.test_of(&design, self)).collect()
+            });
             if is_end && self.is_checked(seed) {
                 return None;
             }
-            let predicted = (number == 0).then(|| emulators.most_promising(self, SHARP, seed));
-            let new = [predicted.flatten(), explored].into_iter().flatten();
-            let new = new
-                .filter(|_| !is_end)
-                .map(|(design, _)| emulators.test_of(&design, self))
-                .find(|point| is_new(point, &points));
-            let other = || {
-                let filling = filling(points.len())?;
-                Some(emulators.test_of(&filling[..self.chosen()], self))
-            };
-            let point = new.or_else(other)?;
-            emulators = emulators.believing(&point)?;
+            let mut new = new.into_iter().filter(|_| !is_end);
+            let point = new.find(|point| is_new(point, &points));
+            let point = point.or_else(|| self.filling(&points, emulators.as_ref(), seed))?;
+            emulators
+                .as_mut()
+                .map_or(Some(()), |all| all.believe(&point))?;
             points.push(point.clone());
             proposals.push(point);
         }
         Some(proposals)
     }
 
-    /// Returns whether as many space-filling tests as a search begins with are at its end: an optimum of the emulators may be
-    /// a local one, and tests elsewhere show it.
+    /// Returns the first space-filling point from row `points.len()` on that is not among `points`.
+    fn filling(
+        &self,
+        points: &[Vec<f64>],
+        emulators: Option<&Emulators>,
+        seed: u64,
+    ) -> Option<Vec<f64>> {
+        let axes = points.first().map_or(0, Vec::len);
+        let mut filling = space_filling(points.len()..points.len() + FILLING_TRIES, axes, seed);
+        filling.find_map(|point| {
+            let point = self.snapped(&point);
+            let test = emulators.map(|all| all.test_of(&point[..self.chosen()], self));
+            Some(test.unwrap_or(point)).filter(|point| is_new(point, points))
+        })
+    }
+
+    /// Returns whether as many space-filling tests as a search begins with are at its end, in any order: an optimum of the
+    /// emulators may be a local one, and tests elsewhere show it.
     fn is_checked(&self, seed: u64) -> bool {
         let (axes, tests) = (self.points.first().map_or(0, Vec::len), self.points.len());
         let first = first_tests(axes);
-        let is_filling = |row: usize| {
-            let mut filling = space_filling(row..row + 1, axes, seed);
-            let is_own = |point: Vec<f64>| {
-                let design = point[..self.chosen()].to_vec();
-                !is_new(&design, &[self.design(row).to_vec()])
-            };
-            filling.next().is_some_and(is_own)
-        };
-        tests >= 2 * first && (tests - first..tests).all(is_filling)
+        if tests < 2 * first {
+            return false;
+        }
+        let filling = space_filling(0..tests + FILLING_TRIES, axes, seed);
+        let design = |point: Vec<f64>| self.snapped(&point[..self.chosen()]);
+        let filling: Vec<Vec<f64>> = filling.map(design).collect();
+        (tests - first..tests).all(|row| !is_new(self.design(row), &filling))
     }
 }
+
+/// Space-filling points of which the first new one is tested: without levels, each is new.
+const FILLING_TRIES: usize = 256;
 
 /// Points closer than this along every axis are the same test.
 const MIN_DISTANCE: f64 = 1e-5;
@@ -279,7 +296,21 @@ mod tests {
 
     /// Returns the best output within the limits, and the number of tests until the search ended.
     fn searched(problem: Problem, axes: usize, size: usize, seed: u64) -> (f64, usize) {
-        let mut observed = Observed::default();
+        searched_on(Vec::new(), problem, axes, size, seed)
+    }
+
+    /// The same with levels of the inputs.
+    fn searched_on(
+        levels: Vec<Vec<f64>>,
+        problem: Problem,
+        axes: usize,
+        size: usize,
+        seed: u64,
+    ) -> (f64, usize) {
+        let mut observed = Observed {
+            levels,
+            ..Observed::default()
+        };
         let test = |observed: &mut Observed, point: Vec<f64>| {
             let (value, excess) = problem(&point);
             observed.excess.resize(excess.len(), Vec::new());
@@ -292,11 +323,12 @@ mod tests {
             }
         };
         for point in space_filling(0..first_tests(axes), axes, seed) {
+            let point = observed.snapped(&point);
             test(&mut observed, point);
         }
         while observed.points.len() < size {
             let left = BATCH.min(size - observed.points.len());
-            let Some(points) = observed.proposals(left, seed) else {
+            let Some(points) = observed.proposals(&[], left, seed) else {
                 break;
             };
             points
@@ -422,6 +454,46 @@ mod tests {
     }
 
     #[test]
+    fn verify_optima_on_levels() {
+        // Against every level of one or both inputs and, along the other, a fine grid.
+        let places = |count: u32| (0..count).map(move |one| f64::from(one) / f64::from(count - 1));
+        let (coarse, fine): (Vec<f64>, Vec<f64>) = (places(8).collect(), places(2001).collect());
+        for (problem, levels) in [
+            (branin as Problem, vec![coarse.clone()]),
+            (branin, vec![coarse.clone(), coarse.clone()]),
+            (g24, vec![Vec::new(), coarse.clone()]),
+        ] {
+            let values = |axis: usize| match levels.get(axis) {
+                Some(levels) if !levels.is_empty() => levels,
+                _ => &fine,
+            };
+            let of = |x: &f64, y: &f64| {
+                let (value, excess) = problem(&[*x, *y]);
+                if excess.iter().all(|one| *one <= 0.0) {
+                    value
+                } else {
+                    f64::INFINITY
+                }
+            };
+            let rows = values(0)
+                .iter()
+                .map(|x| values(1).iter().map(move |y| of(x, y)));
+            let least = rows.flatten().fold(f64::INFINITY, f64::min);
+            for seed in 1..=3 {
+                let (found, tests) = searched_on(levels.clone(), problem, 2, 40, seed);
+                println!("seed {seed}: {found:.6} for {least:.6} after {tests} tests");
+                assert!(found < least + 2e-3, "{found} {least}, seed {seed}");
+            }
+        }
+        // A search ends when every combination is tested.
+        let corners = vec![vec![0.0, 1.0]; 2];
+        let (found, tests) = searched_on(corners, branin, 2, 40, 1);
+        assert!(tests <= 6, "{tests}");
+        let exact = [[0.0, 0.0], [0.0, 1.0], [1.0, 0.0], [1.0, 1.0]].map(|one| branin(&one).0);
+        assert_eq!(found, exact.into_iter().fold(f64::INFINITY, f64::min));
+    }
+
+    #[test]
     fn verify_the_front_of_two_bowls() {
         // Their front joins both bottoms, where (1 - sqrt(f))^2 = g for distances scaled by that of the bottoms.
         let bowl = |point: &[f64], at: f64| {
@@ -441,7 +513,7 @@ mod tests {
                     .collect()
             };
             observed.minimised = [0.2, 0.8].map(of).to_vec();
-            points = observed.proposals(BATCH, seed).unwrap();
+            points = observed.proposals(&[], BATCH, seed).unwrap();
         }
         let beaten = |points: &[Vec<f64>]| {
             let tests = points.iter().map(|one| (0, bowl(one, 0.2), bowl(one, 0.8)));

@@ -32,6 +32,8 @@ const MIN_ROBUST_IMPROVEMENT: f64 = 1e-3;
 pub(super) struct Observed {
     /// Chosen inputs, then disturbances.
     pub points: Vec<Vec<f64>>,
+    /// The places of the levels of each chosen input; none for a continuous one.
+    pub levels: Vec<Vec<f64>>,
     /// The disturbances under which a design is judged; none in a search that is not robust.
     pub disturbances: Vec<Vec<f64>>,
     /// The share of the disturbances below the percentile that is minimised; none for the mean.

@@ -206,7 +206,7 @@ mod tests {
             kept: vec![0.95],
             minimised: vec![Vec::new()],
             excess: vec![Vec::new()],
-            points: Vec::new(),
+            ..Observed::default()
         };
         let test = |observed: &mut Observed, point: Vec<f64>| {
             let (x, y, u) = (point[0], point[1], 4.0 * point[2] - 2.0);
@@ -219,7 +219,7 @@ mod tests {
             test(&mut observed, point);
         }
         while observed.points.len() < size
-            && let Some(points) = observed.proposals(BATCH, seed)
+            && let Some(points) = observed.proposals(&[], BATCH, seed)
         {
             points
                 .into_iter()

@@ -91,10 +91,12 @@ impl Emulators {
 
     /// Returns the logarithm of the worth of a test: its expected improvement of the best test (Jones, Schonlau and Welch
     /// 1998), or of the hypervolume of a front, times the probability that it keeps all limits (Schonlau, Welch and Jones
-    /// 1998); without a best test, the probability alone. `share` multiplies the standard deviations of all predictions.
+    /// 1998); without a best test, the probability alone. `share` multiplies the standard deviations of all predictions. Along
+    /// levels it is constant from one to the next, so that an ascent keeps the levels of its start.
     fn worth(&self, point: &[f64], share: f64) -> f64 {
+        let point = self.seen.snapped(point);
         let found = |outlook: &Outlook| {
-            let found = outlook.predict(point);
+            let found = outlook.predict(&point);
             let deviation = share * found.standard_deviation;
             (found.mean, deviation.max(f64::MIN_POSITIVE))
         };
@@ -153,7 +155,7 @@ impl Emulators {
             minimum(&worthless, DVector::from_vec(point), [&ends[0], &ends[1]])
         });
         let most = ascents.min_by(|one, other| one.1.total_cmp(&other.1))?;
-        Some((most.0.as_slice().to_vec(), -most.1))
+        Some((observed.snapped(most.0.as_slice()), -most.1))
     }
 
     /// Returns space-filling points and points around the best test, others after every test.
@@ -182,21 +184,15 @@ impl Emulators {
         (0..count).map(&mut around).collect()
     }
 
-    /// Returns the emulators after a test with the results that they predict.
-    pub fn believing(&self, point: &[f64]) -> Option<Self> {
-        let believing = |one: &Outlook| one.believing(point);
-        Some(Self {
-            minimised: self
-                .minimised
-                .iter()
-                .map(believing)
-                .collect::<Option<_>>()?,
-            limits: self.limits.iter().map(believing).collect::<Option<_>>()?,
-            front: self.front.clone(),
-            front_points: self.front_points.clone(),
-            worst: self.worst.clone(),
-            seen: self.seen.clone(),
-        })
+    /// Adds a test with the results that the emulators predict; none, without a change, if one of them cannot take it.
+    pub fn believe(&mut self, point: &[f64]) -> Option<()> {
+        let believing = |all: &[Outlook]| {
+            let all = all.iter().map(|one| one.believing(point));
+            all.collect::<Option<Vec<Outlook>>>()
+        };
+        let both = (believing(&self.minimised)?, believing(&self.limits)?);
+        (self.minimised, self.limits) = both;
+        Some(())
     }
 
     /// Returns a test of a design: under the disturbance that tells most about its outputs, and about limits that it may or
