@@ -11,6 +11,7 @@ Names of numbers end with their unit. The book lists the keys of a case; ``Case.
 from __future__ import annotations
 
 from ._condyle import VERSION
+from .answers import Answer, Answers
 from .case import Case
 from .check import Check
 from .emulator import Emulator
@@ -28,6 +29,8 @@ from .table import Table
 __version__ = VERSION
 
 __all__ = [
+    "Answer",
+    "Answers",
     "BadInput",
     "Bar",
     "Case",

@@ -7,9 +7,9 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from . import _html
 from ._condyle import unit_of
 from ._extras import extra
+from .answers import Answers
 from .emulator import Emulator, read
 from .errors import BadInput
 
@@ -30,7 +30,7 @@ class StudyResult:
 
     def __init__(self, folder: Path, answers: dict[str, Any]) -> None:
         """Use :meth:`Study.run` or :func:`open_study`."""
-        self._folder, self._answers = folder, answers
+        self._folder, self._answers = folder, Answers(answers)
         self._table: dict[str, NDArray[Any]] | None = None
 
     @property
@@ -39,8 +39,8 @@ class StudyResult:
         return self._folder
 
     @property
-    def answers(self) -> dict[str, Any]:
-        """The content of ``answers.json``: scatter, sensitivity, ranking, Pareto front, the best."""
+    def answers(self) -> Answers:
+        """The content of ``answers.json``: scatter, sensitivity, ranking, Pareto front, the best; ``answers.best.row`` and so on."""
         return self._answers
 
     @property
@@ -81,13 +81,7 @@ class StudyResult:
         self.to_pandas().to_parquet(path)
 
     def _repr_html_(self) -> str:
-        # 5 %, median and 95 % among the percentiles of the answers.
-        def row(spread: dict[str, Any]) -> list[object]:
-            name = " ".join(filter(None, [spread["title"], spread["design"]]))
-            return [name, spread["unit"], *(spread["percentiles"][place] for place in (1, 3, 5)), spread["tests"]]
-
-        head = ("output", "unit", "5 %", "median", "95 %", "tests")
-        return _html.table(repr(self), head, map(row, self._answers["spreads"]))
+        return self._answers._repr_html_()
 
     def __repr__(self) -> str:
         return f"<condyle.StudyResult of {self._answers['kept']} tests in {self._folder}>"

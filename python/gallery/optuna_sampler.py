@@ -70,9 +70,10 @@ def main() -> None:
         optuna.logging.set_verbosity(optuna.logging.WARNING)
         trials = optuna.create_study(sampler=CondyleSampler(search, ranges))
         trials.optimize(mass_loss_mg, n_trials=study.tests)
-        best = search.answered().answers["best"]
-        values = ", ".join(f"{one['name']} = {one['value']:.4g}" for one in best["inputs"])
-        print(f"{search.told} trials; the best within the limit: {best['outputs'][0]['value']:.2f} mg with {values}")
+        best = search.answered().answers.best
+        assert best is not None
+        values = ", ".join(f"{one.name} = {one.value:.4g}" for one in best.inputs)
+        print(f"{search.told} trials; the best within the limit: {best.outputs[0].value:.2f} mg with {values}")
 
 
 if __name__ == "__main__":

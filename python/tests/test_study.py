@@ -398,3 +398,19 @@ def test_results_that_do_not_fit_a_search_are_errors(study: condyle.Study, small
         pytest.raises(condyle.BadInput, match="a latin-hypercube design has tests that are known in advance"),
     ):
         search.ask()
+
+
+def test_answers_are_attributes_that_cannot_be_changed(done: condyle.StudyResult) -> None:
+    answers = done.answers
+    assert answers == condyle.Answers(json.loads((done.folder / "answers.json").read_text()))
+    assert answers.kept == answers["kept"] == 24 and answers.best is None and "spreads" in dir(answers)
+    spread = answers.spreads[0]
+    assert spread.output == "mass_loss_mg" and "percentiles" in dir(spread)
+    assert pickle.loads(pickle.dumps(answers)) == answers
+    with pytest.raises(AttributeError, match="the answer has no 'percentile'; it has output, title"):
+        spread.percentile  # noqa: B018
+    with pytest.raises(AttributeError, match="read-only: kept cannot be assigned"):
+        answers.kept = 3
+    with pytest.raises(TypeError):
+        answers["kept"] = 3  # type: ignore[index]
+    assert spread.title in spread._repr_html_() and "24 of 24 tests, latin-hypercube" in answers._repr_html_()

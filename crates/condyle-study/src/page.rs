@@ -51,7 +51,11 @@ pub fn write_answers(plan: &Plan, folder: &Path) -> Result<Answers, StudyError> 
     let title = Some(answers.title.as_str()).filter(|title| !title.is_empty());
     let doubts = answers.doubts().unwrap_or_default();
     let answer = answers.sentence().unwrap_or_default();
-    let lede = format!("{answer} {kept} tests of a {design} design; {end}. {doubts}");
+    let tests = match plan.is_search() {
+        true => format!("A search of {kept} tests"),
+        false => format!("{kept} tests, design {design}"),
+    };
+    let lede = format!("{answer} {tests}; {end}. {doubts}");
     let lede = lede.trim();
     let (tables, pictures) = (answers.tables(), pictures(&answers));
     write_study_page(folder, title.unwrap_or("A study"), lede, &tables, &pictures)?;
@@ -67,17 +71,24 @@ fn write_json(path: &Path, content: &impl Serialize) -> Result<(), StudyError> {
 type Picture = (&'static str, String, String);
 
 fn pictures(answers: &Answers) -> Vec<Picture> {
+    // The front is the answer of a search for it, and one more picture of other studies.
+    let of_front = |is_searched| {
+        let own = answers.front.as_ref();
+        own.filter(|own| own.is_searched == is_searched)
+            .and_then(front)
+    };
     let all = [
         answers.ranking.as_ref().map(ranking),
         answers.best.as_ref().and_then(progress),
         answers.robust.as_ref().map(robust),
+        of_front(true),
         indices(answers),
         elementary(answers),
         tornado(answers),
         distributions(answers),
         main_effects(answers),
         scatter(answers),
-        answers.front.as_ref().and_then(front),
+        of_front(false),
     ];
     all.into_iter().flatten().collect()
 }
@@ -317,22 +328,36 @@ fn front(front: &Front) -> Option<Picture> {
         x_title: format!("{}, {unit}", front.titles[0]),
         points: front.others.clone(),
         line: tests.map(|(_, one, other)| (*one, *other)).collect(),
+        reference: lines_to_knee(front).unwrap_or_default(),
         ..Plot::default()
+    };
+    let key = if front.knee.is_some() {
+        "ends and knee"
+    } else {
+        ""
     };
     let svg = plots_svg(
         "Pareto front",
         &[plot],
         1,
-        ["", "within limits", "the front"],
+        [key, "within limits", "the front"],
     );
     let mut caption =
-        "Tests within all limits; no test is better in both outputs than one on the line."
+        "Tests within all limits; no test is better in both outputs than one on the front."
             .to_owned();
     if let Some(part) = front.hypervolume {
         let percent = 100.0 * part;
         caption += &format!(
-            " The line beats {percent:.1} % of the rectangle from its best to the worst values (its hypervolume)."
+            " The front beats {percent:.1} % of the rectangle from its best to the worst values (its hypervolume)."
         );
     }
     Some(("pareto.svg", caption, svg))
+}
+
+/// Returns lines from the ends of a front to its knee.
+fn lines_to_knee(front: &Front) -> Option<Vec<(f64, f64)>> {
+    let knee = front.tests.get(front.place_of_knee()?);
+    let corners = [front.tests.first(), knee, front.tests.last()];
+    let corners = corners.into_iter().flatten();
+    Some(corners.map(|(_, one, other)| (*one, *other)).collect())
 }

@@ -345,7 +345,13 @@ fn a_search_for_a_front_grows_to_the_tests_of_a_larger_one() {
         front["tests"].as_array().is_some_and(|all| all.len() > 2),
         "{front}"
     );
-    assert!(said.out.contains("| row "), "{}", said.out);
+    let radius = &front["inputs"][0];
+    assert_eq!(radius["name"], "insert.sagittal_radius_mm");
+    let row = front["tests"][0][0].as_u64().unwrap() as usize;
+    let stored = String::from_utf8(table("out")).unwrap();
+    let cells: Vec<&str> = stored.lines().nth(1 + row).unwrap().split(',').collect();
+    assert_eq!(cells[3].parse().ok(), radius["values"][0].as_f64());
+    assert!(said.out.starts_with("| row "), "{}", said.out);
 }
 
 #[test]

@@ -210,18 +210,18 @@ impl Answers {
     /// Tables with their headings; the first row of each is its head.
     pub(crate) fn tables(&self) -> Vec<(String, Vec<Vec<String>>)> {
         let tables = [
-            ("Outputs", self.table_of_spreads()),
-            ("Ranking", self.table_of_designs()),
-            ("Emulators", self.table_of_emulators()),
-            ("Sobol indices", self.table_of_indices()),
-            ("Elementary effects of Morris", self.table_of_elementary()),
-            ("Effects of inputs", self.table_of_effects()),
             ("Best", self.table_of_best()),
             (
                 "Robust optimum",
                 self.robust.as_ref().map(Robust::table).unwrap_or_default(),
             ),
             ("Pareto front", self.table_of_front()),
+            ("Outputs", self.table_of_spreads()),
+            ("Ranking", self.table_of_designs()),
+            ("Emulators", self.table_of_emulators()),
+            ("Sobol indices", self.table_of_indices()),
+            ("Elementary effects of Morris", self.table_of_elementary()),
+            ("Effects of inputs", self.table_of_effects()),
         ];
         let filled = tables.into_iter().filter(|(_, rows)| !rows.is_empty());
         filled.map(|(name, rows)| (name.to_owned(), rows)).collect()
@@ -244,7 +244,12 @@ impl Answers {
             let [_, p5, _, p50, _, p95, _] = spread.percentiles;
             let beyond = spread.beyond.iter().map(|beyond| {
                 let [low, high] = beyond.interval.map(percent);
-                format!("{} ({low} to {high})", percents(beyond.share))
+                let share = percents(beyond.share);
+                // The share of tests that a search has chosen is no probability and has no interval.
+                match spread.is_sample {
+                    true => format!("{share} ({low} to {high})"),
+                    false => share,
+                }
             });
             let (least, most) = (spread.least, spread.most);
             let numbers = [
@@ -384,16 +389,27 @@ impl Answers {
         let Some(front) = self.front.as_ref().filter(|front| front.is_searched) else {
             return Vec::new();
         };
-        let [one, other] =
-            [0, 1].map(|place| format!("{}, {}", front.titles[place], front.units[place]));
-        table(
-            &["row", &one, &other, ""],
-            &front.tests,
-            |(row, one, other)| {
-                let note = if Some(*row) == front.knee { "knee" } else { "" };
-                vec![row.to_string(), shown(*one), shown(*other), note.to_owned()]
-            },
-        )
+        let titles = front.titles.iter().zip(front.units);
+        let titles = titles.map(|(title, unit)| format!("{title}, {unit}"));
+        let names = front.inputs.iter().map(|input| input.name.clone());
+        let head: Vec<String> = ["row".to_owned()]
+            .into_iter()
+            .chain(titles)
+            .chain(names)
+            .collect();
+        let row = |(place, (row, one, other)): (usize, &(u64, f64, f64))| {
+            let note = if Some(*row) == front.knee {
+                " knee"
+            } else {
+                ""
+            };
+            let inputs = front.inputs.iter().map(|input| shown(input.values[place]));
+            let outputs = [one, other].map(|value| shown(*value));
+            let row = [format!("{row}{note}")].into_iter().chain(outputs);
+            row.chain(inputs).collect::<Vec<_>>()
+        };
+        let rows = front.tests.iter().enumerate().map(row);
+        std::iter::once(head).chain(rows).collect()
     }
 
     fn table_of_best(&self) -> Vec<Vec<String>> {
@@ -422,13 +438,26 @@ impl Answers {
     }
 }
 
+/// Returns the ends and the knee of a front in a sentence, the knee with its design; none for a study that did not search for
+/// it.
 fn sentence_of_front(front: &Front) -> Option<String> {
-    let knee = front.tests.iter().find(|test| Some(test.0) == front.knee);
-    let (row, one, other) = knee.filter(|_| front.is_searched)?;
+    let ends = front.tests.first().zip(front.tests.last());
+    let (low, high) = ends.filter(|_| front.is_searched)?;
     let ([name, other_name], [unit, other_unit]) = (front.titles, front.units);
-    let (one, other, count) = (shown(*one), shown(*other), front.tests.len());
+    let [from, to] = [low, high].map(|test| {
+        let (one, other) = (shown(test.1), shown(test.2));
+        format!("{name} {one} {unit} at {other_name} {other} {other_unit}")
+    });
+    let knee = front.place_of_knee().map_or_else(String::new, |place| {
+        let (row, one, other) = &front.tests[place];
+        let [one, other] = [one, other].map(|value| shown(*value));
+        let design = front.inputs.iter();
+        let design = design.map(|input| format!("{} {}", input.name, shown(input.values[place])));
+        let design = design.collect::<Vec<_>>().join(", ");
+        format!("; its knee, row {row}, has {one} {unit} and {other} {other_unit} with {design}")
+    });
     Some(format!(
-        "{count} tests are on the Pareto front; its knee, row {row}, has {name} {one} {unit} and {other_name} {other} {other_unit}."
+        "The best compromises go from {from} to {to}{knee}."
     ))
 }
 

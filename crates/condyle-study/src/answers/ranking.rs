@@ -1,6 +1,6 @@
 //! Comparison of designs, the optimum of a search, and the Pareto front.
 
-use condyle_case::study::Bound;
+use condyle_case::study::{Bound, Input};
 use condyle_results::catalogue::{self, Scalar};
 use serde::Serialize;
 
@@ -10,7 +10,7 @@ use crate::{
     plan::designs,
     search::{Standing, standing},
     statistics::{extent, mean, standard_deviation, wilson_interval},
-    store::Store,
+    store::{Column, Store},
 };
 
 /// A comparison of designs, each tested under the same disturbances.
@@ -286,9 +286,18 @@ pub(crate) struct Front {
     pub knee: Option<u64>,
     /// True if the study searched for the front.
     pub is_searched: bool,
+    /// The inputs of its tests; only of a search, whose inputs are numbers.
+    pub inputs: Vec<InputOfFront>,
     /// Tests within the limits, for a picture; of many, some.
     #[serde(skip)]
     pub others: Vec<(f64, f64)>,
+}
+
+/// The values of an input in the tests of a front, in their order.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub(crate) struct InputOfFront {
+    pub name: String,
+    pub values: Vec<f64>,
 }
 
 const MAX_POINTS: usize = 1000;
@@ -314,16 +323,34 @@ impl Front {
             extent(tests.iter().map(|test| test.2))[1],
         ];
         let front = undominated(tests.clone());
+        let is_searched = data.plan.study().objectives().len() > 1;
+        let inputs = data.plan.study().inputs.iter().zip(&data.inputs);
+        let input = |(input, column): (&Input, &Column)| {
+            let values = front.iter().map(|test| column.values[test.0 as usize]);
+            InputOfFront {
+                name: input.name.clone(),
+                values: values.collect(),
+            }
+        };
         Ok(Some(Self {
+            inputs: inputs.filter(|_| is_searched).map(input).collect(),
             outputs: outputs.map(|output| output.key),
             titles: outputs.map(|output| output.label),
             units: outputs.map(Scalar::unit),
             others: shown.map(|(_, one, other)| (*one, *other)).collect(),
-            is_searched: data.plan.study().objectives().len() > 1,
+            is_searched,
             hypervolume: hypervolume(&front, worst),
             knee: knee(&front),
             tests: front,
         }))
+    }
+}
+
+impl Front {
+    /// Returns the place of the knee among the tests.
+    pub fn place_of_knee(&self) -> Option<usize> {
+        let mut tests = self.tests.iter();
+        tests.position(|test| Some(test.0) == self.knee)
     }
 }
 
