@@ -86,11 +86,17 @@ impl Bound {
         })
     }
 
+    /// Returns the limits, each with the sign of the direction beyond it: a value exceeds it by sign (value - limit).
+    pub fn sides(&self) -> impl Iterator<Item = (f64, f64)> {
+        let least = self.least.map(|least| (-1.0, least));
+        let most = self.most.map(|most| (1.0, most));
+        [least, most].into_iter().flatten()
+    }
+
     /// Returns the distance of a value beyond the limits; 0 within them.
     pub fn excess(&self, value: f64) -> f64 {
-        let above = self.most.map_or(0.0, |most| value - most);
-        let below = self.least.map_or(0.0, |least| least - value);
-        above.max(below).max(0.0)
+        let excess = self.sides().map(|(sign, limit)| sign * (value - limit));
+        excess.fold(0.0, f64::max)
     }
 }
 

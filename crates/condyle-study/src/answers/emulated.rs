@@ -246,16 +246,10 @@ fn chance(data: &Data<'_>, axes: &[Axis<'_>], emulator: &Emulator, bound: &Bound
         let found = emulator.predict(&point.collect::<Vec<f64>>());
         let deviation = found.standard_deviation.hypot(noise);
         let deviation = deviation.max(f64::MIN_POSITIVE);
-        let sides = [
-            bound.least.map(|least| least - found.mean),
-            bound.most.map(|most| found.mean - most),
-        ];
+        let sides = bound.sides();
+        let excess = sides.map(|(sign, limit)| sign * (found.mean - limit));
         // At most one of two limits is likely to be exceeded.
-        let excess = sides
-            .into_iter()
-            .flatten()
-            .fold(f64::NEG_INFINITY, f64::max)
-            / deviation;
+        let excess = excess.fold(f64::NEG_INFINITY, f64::max) / deviation;
         middle += normal_share(excess);
         low += f64::from(excess > NORMAL_95);
         high += f64::from(excess > -NORMAL_95);

@@ -127,14 +127,11 @@ impl Robust {
 /// Returns both sides of a limit in words.
 fn limits(bound: &Bound) -> impl Iterator<Item = String> {
     let (label, unit) = (bound.output.label, bound.output.unit());
-    let side = move |(side, limit): (&str, f64)| {
-        format!("{label} {side} {limit} {unit}")
-            .trim_end()
-            .to_owned()
-    };
-    let least = bound.least.map(|least| ("at least", least));
-    let most = bound.most.map(|most| ("at most", most));
-    [least, most].into_iter().flatten().map(side)
+    bound.sides().map(move |(sign, limit)| {
+        let side = if sign > 0.0 { "at most" } else { "at least" };
+        let words = format!("{label} {side} {limit} {unit}");
+        words.trim_end().to_owned()
+    })
 }
 
 fn in_words(estimate: &Estimate) -> String {

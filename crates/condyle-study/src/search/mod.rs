@@ -7,7 +7,7 @@ mod places;
 mod robust;
 mod worth;
 
-use condyle_case::study::{Bound, Design, Input, Study};
+use condyle_case::study::{Design, Input, Study};
 use condyle_results::catalogue::Scalar;
 use serde::Serialize;
 
@@ -159,27 +159,21 @@ fn observed(plan: &Plan, known: &[Known]) -> Observed {
         };
         known.iter().map(value).collect::<Vec<f64>>()
     };
-    let sides = |bound: &Bound| {
-        let least = bound.least.map(|least| (bound.output, -1.0, least));
-        let most = bound.most.map(|most| (bound.output, 1.0, most));
-        [least, most].into_iter().flatten()
+    let sides = || {
+        let bounds = study.answers.bounds.iter();
+        bounds.flat_map(|bound| bound.sides().map(move |side| (bound, side)))
     };
-    let sides = study.answers.bounds.iter().flat_map(sides);
-    let excess = sides.map(|(output, sign, limit)| {
-        let values = values(output).into_iter();
+    let excess = sides().map(|(bound, (sign, limit))| {
+        let values = values(bound.output).into_iter();
         values.map(|value| sign * (value - limit)).collect()
     });
     let Design::Optimise(keys) = &study.design else {
         return Observed::default();
     };
-    let kept = study.answers.bounds.iter().flat_map(|bound| {
-        let sides = bound.least.iter().chain(&bound.most);
-        sides.map(|_| bound.probability)
-    });
     Observed {
         disturbances: disturbances(plan, JUDGED, keys.seed),
         share: keys.percentile.map(|percentile| percentile / 100.0),
-        kept: kept.collect(),
+        kept: sides().map(|(bound, _)| bound.probability).collect(),
         points: known.iter().map(|(test, _)| point(study, test)).collect(),
         levels: study.inputs[..study.chosen()].iter().map(levels).collect(),
         minimised: study.objectives().into_iter().map(values).collect(),
