@@ -3,34 +3,6 @@
 //! Lengths are in the unit of the mesh, and forces and moduli in consistent units; condyle uses millimetre, newton
 //! and MPa.
 //!
-//! The top of a block of two bricks, pressed down by a tenth of its height; the layer between follows:
-//!
-//! ```
-//! use condyle_fem::{HexMesh, InteriorFollower, Vec3};
-//!
-//! let corners = [[0., 0.], [1., 0.], [1., 1.], [0., 1.]];
-//! let layer = |z: f64| corners.map(|[x, y]| Vec3::new(x, y, z));
-//! let mut mesh = HexMesh {
-//!     nodes: [layer(0.0), layer(1.0), layer(2.0)].concat(),
-//!     hexes: vec![[0, 1, 2, 3, 4, 5, 6, 7], [4, 5, 6, 7, 8, 9, 10, 11]].into(),
-//! };
-//! assert_eq!(mesh.volume(), 2.0);
-//!
-//! let (bottom, top) = (0..4, 8..12);
-//! let follower = InteriorFollower::new(&mesh, bottom.chain(top.clone()));
-//! let mut displacement = vec![Vec3::zeros(); mesh.nodes.len()];
-//! for node in top {
-//!     displacement[node as usize].z = -0.2;
-//! }
-//! follower.follow(&mut displacement);
-//! for (node, moved) in mesh.nodes.iter_mut().zip(&displacement) {
-//!     *node += moved;
-//! }
-//! assert!((mesh.volume() - 1.8).abs() < 1e-12);
-//! assert!((mesh.nodes[4].z - 0.9).abs() < 1e-3);
-//! assert!(mesh.worst_quality() > 0.99);
-//! ```
-//!
 //! A block of polyethylene that is held below, under a force on a node of its top:
 //!
 //! ```
@@ -60,7 +32,6 @@ mod compliance;
 mod eigenstrain;
 mod elastic;
 mod element;
-mod follow;
 mod mesh;
 mod plastic;
 mod solid;
@@ -72,8 +43,7 @@ mod tests;
 pub use compliance::HalfSolved;
 pub use eigenstrain::{ElementMean, YieldingElement};
 pub use elastic::{Elastic, ElasticError, Strain, Stress};
-pub use follow::InteriorFollower;
-pub use mesh::{HEX_FACES, HexMesh, trilinear_volume, volume_below};
+pub use mesh::{HEX_EDGES, HEX_FACES, HexMesh, trilinear_volume, volume_below};
 pub use plastic::{
     ElasticPlastic, Hardening, HardeningError, Material, MaterialPoint, PlasticPoint,
 };

@@ -95,8 +95,8 @@ fn sorted(mut quad: [u32; 4]) -> [u32; 4] {
     quad
 }
 
-/// Edges of a hexahedron in VTK's numbering.
-pub(crate) const HEX_EDGES: [[usize; 2]; 12] = [
+/// The edges of a hexahedron as corners in VTK order.
+pub const HEX_EDGES: [[usize; 2]; 12] = [
     [0, 1],
     [1, 2],
     [2, 3],

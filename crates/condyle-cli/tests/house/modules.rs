@@ -10,7 +10,6 @@ use crate::source::{Edge, Sources, made_up};
 /// each of its outermost modules.
 const MAY_USE: &[(&str, &[&str])] = &[
     ("condyle_fem::mesh", &[]),
-    ("condyle_fem::follow", &["condyle_fem::mesh"]),
     ("condyle_fem::elastic", &[]),
     ("condyle_fem::plastic", &["condyle_fem::elastic"]),
     ("condyle_fem::element", &["condyle_fem::elastic"]),

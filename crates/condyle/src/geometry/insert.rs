@@ -219,19 +219,22 @@ impl Insert {
     /// Moves every surface node inwards along its normal, or along its wall at the rim, and the mesh
     /// below with it.
     ///
+    /// The nodes of a column move in proportion to their height, so that its hexahedra thin by the same ratio and do
+    /// not invert before it is worn through.
+    ///
     /// `depth_mm`: one per surface node, 0 or more. The thickness shrinks by as much.
     pub fn wear_down(&mut self, surface: &ArticulatingSurface, depth_mm: &[f64]) {
-        let mut displacement = self.as_before(surface, depth_mm);
+        let mut displacement = Vec::with_capacity(depth_mm.len());
         for (i, &node) in self.unworn.surface_nodes.iter().enumerate() {
-            displacement[node as usize] = -self.outwards(i, &surface.normals[i]) * depth_mm[i];
+            displacement.push(-self.outwards(i, &surface.normals[i]) * depth_mm[i]);
+            self.mesh.nodes[node as usize] += displacement[i];
             self.worn_mm[i] += depth_mm[i];
         }
-        self.find_thickness();
-        // The prescribed motion of the surface propagates into the mesh; the boundary elsewhere is fixed.
-        self.unworn.follower.follow(&mut displacement);
-        for (node, step) in self.mesh.nodes.iter_mut().zip(&displacement) {
-            *node += step;
+        for follower in &self.unworn.followers {
+            let above = displacement[follower.surface_node as usize];
+            self.mesh.nodes[follower.node as usize] += above * follower.part;
         }
+        self.find_thickness();
     }
 
     /// Returns the displacement of a surface node for which the surface around it rises by a unit.
@@ -239,22 +242,6 @@ impl Insert {
         let wall = self.unworn.walls[node].filter(|_| self.rim_along_walls);
         let wall = wall.filter(|wall| wall.dot(normal) > MIN_COSINE_OF_WALL);
         wall.map_or(*normal, |wall| wall / wall.dot(normal))
-    }
-
-    /// Predicts the displacement of every mesh node as proportional to its displacement so far, so that the
-    /// inside is found in few iterations.
-    fn as_before(&self, surface: &ArticulatingSurface, depth_mm: &[f64]) -> Vec<Vec3> {
-        let moved = |node: usize| self.mesh.nodes[node] - self.unworn.nodes[node];
-        let (mut along, mut whole) = (0.0, 0.0);
-        for (i, &node) in self.unworn.surface_nodes.iter().enumerate() {
-            let so_far = moved(node as usize);
-            along -= so_far.dot(&surface.normals[i]) * depth_mm[i];
-            whole += so_far.norm_squared();
-        }
-        // Least squares over the surface nodes: the part of the motion so far that fits this step best.
-        let share = if whole > 0.0 { along / whole } else { 0.0 };
-        let nodes = 0..self.mesh.nodes.len();
-        nodes.map(|node| moved(node) * share).collect()
     }
 
     /// Restores a stored state: all mesh nodes, and the depth worn so far at each surface node.
@@ -380,6 +367,22 @@ mod tests {
         assert!(unworn.thickness_mm().iter().all(|left| *left == 5.0));
         assert!(Arc::ptr_eq(&unworn.unworn, &worn.unworn));
         assert!(Arc::ptr_eq(&unworn.mesh.hexes, &worn.mesh.hexes));
+    }
+
+    #[test]
+    fn verify_layers_of_any_thickness_thin_by_the_same_ratio() {
+        let graded = Meshing {
+            edge_mm: 0.5,
+            layers: 3,
+        };
+        let mut insert = flat_insert((4.0, 6.0), 5.0, graded).unwrap();
+        let surface = insert.surface();
+        insert.wear_down(&surface, &vec![4.5; surface.positions.len()]);
+        let bottom = insert.mesh().nodes[insert.backside_nodes()[0] as usize].y;
+        for (node, unworn) in insert.mesh().nodes.iter().zip(insert.unworn_nodes()) {
+            assert!((node.y - bottom - 0.1 * (unworn.y - bottom)).abs() < 1e-12);
+        }
+        assert!(insert.mesh().worst_quality() > 0.99);
     }
 
     #[test]

@@ -1,6 +1,6 @@
 //! The state of an insert as it was made, which wear does not change.
 
-use condyle_fem::{HexMesh, InteriorFollower};
+use condyle_fem::{HEX_EDGES, HexMesh};
 use condyle_mesh::{
     bounds,
     columns::{ColumnError, TooManyNodes},
@@ -61,7 +61,15 @@ pub(super) struct UnwornInsert {
     pub deviation_mm: Vec<f64>,
     /// Unit direction of the side wall below each surface node on the rim, upwards.
     pub walls: Vec<Option<Vec3>>,
-    pub follower: InteriorFollower,
+    pub followers: Vec<Follower>,
+}
+
+/// A node inside the mesh, which moves with the surface node at the top of its column.
+pub(super) struct Follower {
+    pub node: u32,
+    pub surface_node: u32,
+    /// The part of the displacement that it takes: its height above the bottom of the column over that of the surface node.
+    pub part: f64,
 }
 
 impl UnwornInsert {
@@ -84,9 +92,7 @@ impl UnwornInsert {
             return Err(InsertError::BadElement { hex, quality });
         }
         let (surface_nodes, faces) = numbered(articulating);
-        // Sides and backside stay in place: only the articulating surface wears.
         let boundary = mesh.boundary_quads();
-        let follower = InteriorFollower::new(mesh, boundary.iter().flatten().copied());
         let faces_around = FacesAround::new(surface_nodes.len(), &faces);
         let positions = mesh.positions(&surface_nodes).collect();
         let surface = ArticulatingSurface::new(positions, &faces_around);
@@ -95,6 +101,7 @@ impl UnwornInsert {
             thickness_mm: thickness_at_nodes(&surface, mesh, backside)?,
             deviation_mm: Vec::new(),
             walls: walls(mesh, &boundary, &surface_nodes),
+            followers: followers(mesh, &surface_nodes),
             node_blocks: node_blocks(&faces, &faces_around),
             nodes: mesh.nodes.clone(),
             boundary,
@@ -102,7 +109,6 @@ impl UnwornInsert {
             backside_nodes: numbered(backside).0,
             faces,
             faces_around,
-            follower,
         })
     }
 
@@ -138,6 +144,57 @@ fn walls(mesh: &HexMesh, boundary: &[[u32; 4]], surface_nodes: &[u32]) -> Vec<Op
         }
     };
     below.into_iter().enumerate().map(direction).collect()
+}
+
+/// Returns the nodes below the articulating surface that follow it, ascending.
+///
+/// Starting at the surface, every layer of hexahedra with a face on the nodes reached so far leads to the nodes at the
+/// other ends of its edges.
+fn followers(mesh: &HexMesh, surface_nodes: &[u32]) -> Vec<Follower> {
+    let mut top: Vec<Option<u32>> = vec![None; mesh.nodes.len()];
+    let mut depth_mm = vec![0.0; mesh.nodes.len()];
+    for (i, &node) in surface_nodes.iter().enumerate() {
+        top[node as usize] = Some(i as u32);
+    }
+    let mut front = surface_nodes.to_vec();
+    let mut left: Vec<&[u32; 8]> = mesh.hexes.iter().collect();
+    let mut column_mm = vec![0.0; surface_nodes.len()];
+    while !front.is_empty() {
+        let mut is_front = vec![false; mesh.nodes.len()];
+        for &node in &front {
+            is_front[node as usize] = true;
+        }
+        front.clear();
+        left.retain(|hex| {
+            let on_front = hex.map(|node| is_front[node as usize]);
+            if on_front.iter().filter(|on_front| **on_front).count() != 4 {
+                return true;
+            }
+            for [a, b] in HEX_EDGES.into_iter().flat_map(|[a, b]| [[a, b], [b, a]]) {
+                let (from, to) = (hex[a] as usize, hex[b] as usize);
+                if let (true, false, None, Some(above)) =
+                    (on_front[a], on_front[b], top[to], top[from])
+                {
+                    top[to] = Some(above);
+                    depth_mm[to] = depth_mm[from] + (mesh.nodes[from] - mesh.nodes[to]).norm();
+                    column_mm[above as usize] = depth_mm[to];
+                    front.push(hex[b]);
+                }
+            }
+            false
+        });
+    }
+    let follower = |(node, (top, depth_mm)): (usize, (Option<u32>, f64))| {
+        let surface_node = top?;
+        let part = 1.0 - depth_mm / column_mm[surface_node as usize];
+        (part > 0.0 && depth_mm > 0.0).then_some(Follower {
+            node: node as u32,
+            surface_node,
+            part,
+        })
+    };
+    let nodes = top.into_iter().zip(depth_mm).enumerate();
+    nodes.filter_map(follower).collect()
 }
 
 /// Returns the nodes of quads, ascending, and the quads in numbers of these nodes.
