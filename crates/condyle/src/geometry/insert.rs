@@ -29,7 +29,6 @@ const MIN_COSINE_OF_WALL: f64 = 0.5;
 pub struct Insert {
     unworn: Arc<UnwornInsert>,
     regions: Arc<SurfaceRegions>,
-    rim_along_walls: bool,
     mesh: HexMesh,
     /// Depth worn so far. The thickness is always computed from it, so that an insert worn step by
     /// step and a restored one agree to the last bit.
@@ -63,7 +62,6 @@ impl Insert {
             worn_mm: vec![0.0; unworn.thickness_mm.len()],
             thickness_mm: unworn.thickness_mm.clone(),
             regions: Arc::new(regions),
-            rim_along_walls: false,
             unworn: Arc::new(unworn),
             mesh,
         })
@@ -100,7 +98,7 @@ impl Insert {
         let (columns, holes) = column_mesh(surface, is_closed, thickness_mm, meshing)?;
         let insert = Self::new(columns.mesh, &columns.articulating, &columns.backside)?;
         let insert = insert.with_deviation_mm(columns.deviation_mm);
-        Ok((insert.with_rim_along_walls(), holes))
+        Ok((insert, holes))
     }
 
     /// Replaces the regions of the articulating surface by a single one, for a bearing without sides.
@@ -189,17 +187,6 @@ impl Insert {
         ArticulatingSurface::new(positions, &self.unworn.faces_around)
     }
 
-    /// Makes the rim wear down along its side wall.
-    ///
-    /// A rim that moves along its normal leaves the plane of the wall below it, so that the volume changes by another
-    /// amount than depth times area.
-    pub(crate) fn with_rim_along_walls(self) -> Self {
-        Self {
-            rim_along_walls: true,
-            ..self
-        }
-    }
-
     /// Sets the distance between smooth surface and triangles at every surface node, mm.
     pub(super) fn with_deviation_mm(mut self, deviation_mm: Vec<f64>) -> Self {
         let unworn = Arc::get_mut(&mut self.unworn).expect("a new insert shares nothing");
@@ -238,9 +225,11 @@ impl Insert {
     }
 
     /// Returns the displacement of a surface node for which the surface around it rises by a unit.
+    ///
+    /// The rim moves along the side wall below it: if it left the plane of the wall, the volume would change by another amount
+    /// than depth times area.
     fn outwards(&self, node: usize, normal: &Vec3) -> Vec3 {
-        let wall = self.unworn.walls[node].filter(|_| self.rim_along_walls);
-        let wall = wall.filter(|wall| wall.dot(normal) > MIN_COSINE_OF_WALL);
+        let wall = self.unworn.walls[node].filter(|wall| wall.dot(normal) > MIN_COSINE_OF_WALL);
         wall.map_or(*normal, |wall| wall / wall.dot(normal))
     }
 
@@ -395,8 +384,7 @@ mod tests {
         let quads = mesh.boundary_quads();
         let on_top = |quad: &[u32; 4]| quad.iter().all(|node| top.contains(node));
         let (above, rest): (Vec<[u32; 4]>, Vec<[u32; 4]>) = quads.into_iter().partition(on_top);
-        let insert = Insert::new(mesh, &above, &rest).unwrap();
-        let mut insert = insert.with_rim_along_walls();
+        let mut insert = Insert::new(mesh, &above, &rest).unwrap();
         let (surface, before) = (insert.surface(), insert.volume_mm3());
         insert.wear_down(&surface, &vec![0.1; surface.positions.len()]);
         let lost = (before - insert.volume_mm3()) / (0.1 * surface.area_mm2());
