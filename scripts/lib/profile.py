@@ -34,7 +34,6 @@ PARTS = [
         r"contact/history|condyle/src/wear/|evolve/(rates|step|step_rules|next_step|comparison_laws|accumulated_error)|record .*machine/simulator",
     ),
     ("surface: normals, areas and averages", r"geometry/(articulating_surface|share|connectivity)"),
-    ("mesh: the inside follows", r"condyle-fem/src/follow"),
     ("mesh: quality and volume", r"condyle-fem/src/"),
     ("insert: made, worn, its thickness", r"geometry/|condyle-mesh/|condyle-case/"),
     ("Newton's method, machine and chain", r"condyle/src/machine/"),

@@ -47,10 +47,18 @@ def write_stl(path, triangles):
 
 
 def cases(folder):
-    """Names and texts of cases that take some tenths of a second, each with its updates."""
+    """Names and texts of cases of every model, each of some updates and of some tenths of a second or a few seconds."""
     balls = [triangle for z in (-23.0, 23.0) for triangle in sphere(20.0, z)]
     write_stl(folder / "balls.stl", balls)
     insert = "[insert]\nedge_mm = 2.0\n"
+    deformable = '[insert]\nedge_mm = 3.0\nlayers = 2\n[march]\nupdates = 4\n[contact]\nmodel = "deformable"\n'
+    waveforms = ("axial_force", "flexion", "ap_force", "ie_torque")
+    activities = "".join(
+        f'[[activity]]\nname = "{kind}"\nshare = {share}\n'
+        + "".join(f'[activity.{waveform}]\nwaveform = "{kind}-like"\n' for waveform in waveforms)
+        for kind, share in (("iso", 0.8), ("stairs", 0.2))
+    )
+    creep = '[creep]\nlaw = "lee-pienkowski"\n'
     return {
         "force": insert + "[march]\nupdates = 12\n",
         "displacement": '[machine]\npreset = "stanmore-displacement"\n' + insert + "[march]\nupdates = 12\n",
@@ -58,6 +66,16 @@ def cases(folder):
         "mesh, with cache": '[femur]\nshape = "mesh"\nfile = "balls.stl"\nflexion_axis_mm = [0.0, 0.0]\n'
         + insert
         + "[march]\nupdates = 8\n",
+        "explicit": "[insert]\nedge_mm = 1.5\n[march]\ncycles = 1_000_000\nupdates = 4\n[contact]\nfriction = 0.02\n"
+        '[time]\nintegrator = "explicit"\nincrements = 100\n',
+        "creep, activities": insert + "[march]\nupdates = 6\n" + creep + activities,
+        "hip, creep": '[femur]\nshape = "sphere"\nradius_mm = 14.0\n[insert]\nshape = "cup"\nradius_mm = 14.1\nedge_mm = 2.0\n'
+        '[machine]\npreset = "iso-14242-1-like"\n[march]\nupdates = 6\n' + creep,
+        "deformable": deformable,
+        "yields": deformable + '[contact.deformable]\nplasticity = "j2"\n',
+        "rests": deformable + '[contact.deformable]\nbackside = "resting"\n',
+        "sticks and slips": deformable + '[contact.deformable]\nfriction_model = "stick-slip"\n',
+        "deformable, creep, activities": deformable + creep + activities,
     }
 
 

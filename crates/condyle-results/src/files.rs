@@ -1,7 +1,7 @@
 //! Files of a results folder: atomic replacement, the hashes by which damaged meshes are detected, and the lock.
 //!
-//! A mesh does not change once it is written, so its hash is written with it, before the checkpoint that refers to
-//! it. Each line of `checksums` has the format of `b3sum`: `b3sum --check checksums` verifies all of them.
+//! The hash of a mesh is written after it, before the checkpoint that refers to it. The last mesh is written again after the
+//! final cycle; its hash is removed before. Each line of `checksums` has the format of `b3sum`: `b3sum --check checksums` verifies all of them.
 
 use std::{
     fs::{self, File, OpenOptions, TryLockError},
@@ -126,12 +126,16 @@ pub(super) fn is_listed(name: &str) -> bool {
     is_mesh && !name.contains('/')
 }
 
-/// Writes the hash of a file's bytes, which replaces an earlier one.
-pub(super) fn write_checksum(folder: &Path, name: &str, bytes: &[u8]) -> io::Result<()> {
-    let mut lines = listed(folder);
+/// Writes the hash of a file's bytes, which replaces an earlier one; without bytes, removes it.
+pub(super) fn write_checksum(folder: &Path, name: &str, bytes: Option<&[u8]>) -> io::Result<()> {
+    let before = listed(folder);
+    let mut lines = before.clone();
     lines.retain(|(_, other)| other != name);
-    lines.push((blake3::hash(bytes).to_hex().to_string(), name.to_owned()));
+    lines.extend(bytes.map(|bytes| (blake3::hash(bytes).to_hex().to_string(), name.to_owned())));
     lines.sort_by(|a, b| a.1.cmp(&b.1));
+    if lines == before {
+        return Ok(());
+    }
     let lines = lines
         .iter()
         .map(|(hash, name)| format!("{hash}{GAP}{name}\n"));
@@ -212,14 +216,14 @@ mod tests {
         let file = folder.path().join("insert_0001.vtu");
         fs::write(&file, b"mesh").expect("it can be written");
         check_file(&file).expect("nothing is known of it");
-        write_checksum(folder.path(), "insert_0001.vtu", b"mess").expect("it can be written");
+        write_checksum(folder.path(), "insert_0001.vtu", Some(b"mess")).expect("it can be written");
         let said = check_file(&file).expect_err("it differs").to_string();
         assert!(
             said.contains("insert_0001.vtu: the file is damaged"),
             "{said}"
         );
         assert!(check_all(folder.path()).is_err());
-        write_checksum(folder.path(), "insert_0001.vtu", b"mesh").expect("it can be written");
+        write_checksum(folder.path(), "insert_0001.vtu", Some(b"mesh")).expect("it can be written");
         check_all(folder.path()).expect("it is as it was written");
         fs::remove_file(&file).expect("it is there");
         let said = check_all(folder.path())

@@ -385,12 +385,15 @@ impl ResultsFolder {
 
     fn replace(&self, name: &str, bytes: &[u8]) -> Result<(), ResultsError> {
         let file = self.file(name);
-        replace_file(&file, bytes).map_err(refused(&file))?;
-        // After the file: a run that is stopped between them writes both again when it resumes.
-        if is_listed(name) {
-            write_checksum(&self.path, name, bytes).map_err(refused(&file))?;
-        }
-        Ok(())
+        let write_hash = |bytes| match is_listed(name) {
+            true => write_checksum(&self.path, name, bytes),
+            false => Ok(()),
+        };
+        // A run that is killed at any time leaves a file with its own hash or with none, and writes both again when it resumes.
+        write_hash(None)
+            .and_then(|()| replace_file(&file, bytes))
+            .and_then(|()| write_hash(Some(bytes)))
+            .map_err(refused(&file))
     }
 
     fn file(&self, name: &str) -> PathBuf {
@@ -415,5 +418,28 @@ pub(super) fn remove(file: &Path) -> Result<(), ResultsError> {
     match fs::remove_file(file) {
         Err(source) if source.kind() != io::ErrorKind::NotFound => Err(refused(file)(source)),
         Ok(()) | Err(_) => Ok(()),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::files::{check_all, part_file};
+
+    #[test]
+    fn a_mesh_of_a_run_killed_before_it_wrote_the_hash_is_not_damaged() {
+        let temporary = tempfile::tempdir().expect("a folder can be made");
+        let folder = ResultsFolder::existing(temporary.path());
+        let (name, file) = ("insert_0012.vtu", temporary.path().join("insert_0012.vtu"));
+        folder
+            .replace(name, b"of the last update")
+            .expect("it can be written");
+        // A folder in place of the part file ends the replacement before the file.
+        std::fs::create_dir(part_file(&file)).expect("it can be made");
+        folder
+            .replace(name, b"of the final cycle")
+            .expect_err("the part file is in the way");
+        std::fs::write(&file, b"of the final cycle").expect("it can be written");
+        check_all(temporary.path()).expect("the file has no hash");
     }
 }

@@ -65,13 +65,14 @@ impl Meshing {
     /// are as accurate as six of equal thickness.
     fn depths(&self, thickness_mm: f64) -> Vec<f64> {
         let (mut low, mut high) = (1.0, MAX_GROWTH);
+        let mut middle = 0.5 * (low + high);
         // The bisection ends at the resolution of numbers.
-        while low < 0.5 * (low + high) && 0.5 * (low + high) < high {
-            let middle = 0.5 * (low + high);
+        while low < middle && middle < high {
             match self.edge_mm * in_top_layers(middle, self.layers) < thickness_mm {
                 true => low = middle,
                 false => high = middle,
             }
+            middle = 0.5 * (low + high);
         }
         let all = in_top_layers(low, self.layers);
         let bounds = (0..=self.layers).rev();

@@ -174,9 +174,9 @@ fn axis_ahead_mm(flexion_axis_mm: (f64, f64), flexion_rad: f64) -> f64 {
     axis.x * cosine - axis.y * sine
 }
 
-/// Number of triangles for a femur that is not a mesh, as in Knight 2007: they lie within a hundredth of a millimetre
-/// of its surface.
-pub const FEMUR_TRIANGLES: f64 = 25_000.0;
+/// Number of triangles for a femur that is not a mesh: they lie within a few hundredths of a millimetre of its surface, less
+/// than a pixel of a picture of it.
+pub const FEMUR_TRIANGLES: f64 = 8_000.0;
 
 impl Case {
     /// Returns the surface of the femur of `test`, which this case built, in the femoral frame of a right knee, mm;
