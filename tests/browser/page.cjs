@@ -105,6 +105,31 @@ async function sliders(page) {
   return solved_ms;
 }
 
+// A point of the insert is dragged, with the new value next to it; the test is solved when it is dropped.
+async function dragged(page) {
+  await picture(page);
+  const box = await page.locator(".stage canvas").boundingBox();
+  const words = () => page.locator(".stage [aria-live]").innerText();
+  const at = async (x, y) => {
+    await page.mouse.move(box.x + x * box.width, box.y + y * box.height);
+    return (await words()).startsWith("Thickness");
+  };
+  const places = Array.from({ length: 600 }, (_, i) => [0.25 + 0.01 * (i % 30), 0.6 + 0.02 * Math.floor(i / 30)]);
+  let found;
+  for (const place of places) if (!found && (await at(...place))) found = place;
+  assert(found, "no point for the thickness");
+  const before = await page.locator("#case-text").inputValue();
+  await at(...found);
+  await page.mouse.down();
+  await at(found[0], found[1] + 0.02);
+  const said = await words();
+  assert.strictEqual(await page.locator("#case-text").inputValue(), before, "the case changes before the point is dropped");
+  await ran(page, () => page.mouse.up());
+  const [, thickness] = (await page.locator("#case-text").inputValue()).match(/thickness_mm = ([\d.]+)/);
+  assert(Number(thickness) > 9, "a backside dragged down makes a thinner insert");
+  assert.strictEqual(said, `Thickness ${Number(thickness)} mm`);
+}
+
 // Coarse numbers come first, and the report is of the run that is shown: nothing is solved again.
 async function previewed(page) {
   await page.evaluate(() => {
@@ -315,6 +340,7 @@ async function main() {
     const summary = await sameAsInNode(page);
     await numbers(page, summary);
     const solved_ms = await sliders(page);
+    await dragged(page);
     await previewed(page);
     await freshStart(page);
     await remembered(page);

@@ -101,6 +101,13 @@ def refined(case):
     return finer
 
 
+def perturbed(case):
+    """The same design with a Young's modulus that is larger by 1e-12 of it."""
+    material = case["material"]
+    modulus_mpa = material["youngs_modulus_mpa"] * (1 + 1e-12)
+    return case | {"material": material | {"youngs_modulus_mpa": modulus_mpa}}
+
+
 def toml(case):
     """The text of a case file. Numbers and lists are written by Python as TOML writes them."""
     lines = []

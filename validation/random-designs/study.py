@@ -1,6 +1,6 @@
 """Runs random designs, judges each from its files, and writes the table of how they ended.
 
-    study.py CONDYLE DATA OUT [--designs 1000] [--first 0] [--refine-every 10]
+    study.py CONDYLE DATA OUT [--designs 1000] [--first 0] [--refine-every 10] [--perturb-every 10]
 
 DATA is the folder of the real implants. OUT gets results.csv, a row a design, and results.md. Ends with 1 if a design
 is silently wrong, did not end, or ended in a way that the command does not have.
@@ -20,13 +20,15 @@ from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, field
 from pathlib import Path
 
-from designs import design, refined, toml
+from designs import design, perturbed, refined, toml
 from judge import judge, silent
 
 LONGEST_S = 300
 # A refined run may differ from a coarse one by this many stated errors, and by a little more for its own error.
 STATED_ERRORS = 1.5
 REFINED_RUN_S_OWN_PERCENT = 0.5
+# A perturbation of 1e-12 may change a number by this part of it.
+MAX_CHANGE_BY_PERTURBATION = 1e-6
 GOOD, DOUBTFUL = "good", "good, with a warning"
 ENDS = {2: "error: bad input", 3: "error: the physics could not be solved"}
 
@@ -53,6 +55,7 @@ class Ended:
     silent: list = field(default_factory=list)
     refined_mass_percent: float = None
     refined_depth_percent: float = None
+    perturbed_change: float = None
 
     @property
     def wrong(self):
@@ -71,7 +74,7 @@ def run(condyle, case, folder):
     return done.returncode, done.stderr
 
 
-def try_design(condyle, data, number, also_refined):
+def try_design(condyle, data, number, also_refined, also_perturbed):
     """Runs and judges one design."""
     case = design(number, data)
     with tempfile.TemporaryDirectory() as name:
@@ -83,6 +86,9 @@ def try_design(condyle, data, number, also_refined):
         if also_refined:
             shutil.rmtree(folder / "results")
             _hold_against_refined(ended, condyle, refined(case), folder)
+        if also_perturbed:
+            shutil.rmtree(folder / "results", ignore_errors=True)
+            _compare_with_perturbed(ended, condyle, perturbed(case), folder)
     return ended
 
 
@@ -120,34 +126,46 @@ def _hold_against_refined(ended, condyle, case, folder):
             ended.silent.append(f"stated error of {key} {stated:.2g} %, refined {change:+.2g} %")
 
 
+def _compare_with_perturbed(ended, condyle, case, folder):
+    """The largest change of a number by a perturbation that is far below what anybody can measure."""
+    code, said = run(condyle, case, folder)
+    if code != 0:
+        ended.silent.append(f"not solved with a perturbation of 1e-12: {_error(said)}")
+        return
+    other = json.loads((folder / "results" / "summary.json").read_text())
+    changes = {key: abs(other[key] / ended.summary[key] - 1) for key in NUMBERS if ended.summary[key]}
+    key = max(changes, key=changes.get)
+    ended.perturbed_change = changes[key]
+    if changes[key] > MAX_CHANGE_BY_PERTURBATION:
+        ended.silent.append(f"a perturbation of 1e-12 changes {key} by {changes[key]:.2g}")
+
+
 def _error(said):
     """What an error says is wrong: its first sentence, without the box that shows the place."""
     found = re.search(r"^ *(?:error:|[x\u00d7]) (.*(?:\n +[|│] .*)*)", said, re.MULTILINE)
     return re.sub(r"\s*\n +[|│] ", " ", found.group(1)).split("; what was computed")[0] if found else ""
 
 
+NUMBERS = ["mass_loss_mg", "max_depth_mm", "peak_pressure_mpa", "ap_range_mm", "ie_range_deg"]
 COLUMNS = [
     "design",
     "ended",
-    "mass_loss_mg",
-    "max_depth_mm",
-    "peak_pressure_mpa",
-    "ap_range_mm",
-    "ie_range_deg",
+    *NUMBERS,
     "told",
     "findings",
     "silently_wrong",
     "refined_mass_percent",
     "refined_depth_percent",
+    "perturbed_change",
     "message",
 ]
 
 
 def row(ended):
     """A row of results.csv."""
-    numbers = [ended.summary.get(key) for key in COLUMNS[2:7]]
+    numbers = [ended.summary.get(key) for key in NUMBERS]
     told = " ".join(warning["check"] for warning in ended.summary.get("plausibility", []))
-    refined_percents = [ended.refined_mass_percent, ended.refined_depth_percent]
+    changes = [ended.refined_mass_percent, ended.refined_depth_percent, ended.perturbed_change]
     return [
         ended.number,
         ended.how,
@@ -155,7 +173,7 @@ def row(ended):
         told,
         "; ".join(ended.findings),
         "; ".join(ended.silent),
-        *map(_short, refined_percents),
+        *map(_short, changes),
         ended.message,
     ]
 
@@ -176,7 +194,10 @@ def table(all_ended):
     lines += [f"| {what} | {count} | {unsaid[what]} |" for what, count in found.most_common()]
     held = [ended for ended in all_ended if ended.refined_mass_percent is not None]
     beyond = sum(any("stated error" in what for what in ended.silent) for ended in held)
-    lines += [f"| stated error, compared with a refined run ({len(held)} tried) | {beyond} | {beyond} |", ""]
+    lines += [f"| stated error, compared with a refined run ({len(held)} tried) | {beyond} | {beyond} |"]
+    tried = [ended for ended in all_ended if ended.perturbed_change is not None]
+    moved = sum(ended.perturbed_change > MAX_CHANGE_BY_PERTURBATION for ended in tried)
+    lines += [f"| changed by more than 1e-6 by a perturbation of 1e-12 ({len(tried)} tried) | {moved} | {moved} |", ""]
     lines += ["| reported by condyle | designs |", "| --- | ---: |"]
     told = Counter(warning["check"] for ended in all_ended for warning in ended.summary.get("plausibility", []))
     lines += [f"| `{check}` | {count} |" for check, count in told.most_common()]
@@ -191,11 +212,15 @@ def main():
     arguments.add_argument("--designs", type=int, default=1000)
     arguments.add_argument("--first", type=int, default=0)
     arguments.add_argument("--refine-every", type=int, default=10)
+    arguments.add_argument("--perturb-every", type=int, default=10)
     given = arguments.parse_args()
     numbers = range(given.first, given.first + given.designs)
 
     def one(number):
-        return try_design(given.condyle, given.data.resolve(), number, number % given.refine_every == 0)
+        also_refined = number % given.refine_every == 0
+        # Not the refined ones: those take long enough.
+        also_perturbed = number % given.perturb_every == given.perturb_every - 1
+        return try_design(given.condyle, given.data.resolve(), number, also_refined, also_perturbed)
 
     with ThreadPoolExecutor(os.cpu_count()) as pool:
         all_ended = list(pool.map(one, numbers))

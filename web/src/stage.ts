@@ -28,6 +28,7 @@ import type { ColourMap, Range } from "./colours";
 import { element } from "./dom";
 import { FlatStage } from "./flat_stage";
 import type { Body } from "./glb";
+import { Grips, type Grip } from "./grips";
 import { Matter } from "./matter";
 import type { Pose, Scene } from "./scene";
 
@@ -100,6 +101,7 @@ export class Stage {
   private readonly names: { box: HTMLElement; at: Vector3 }[];
   private readonly bounds = new Box3();
   private readonly arrows: ArrowHelper[] = [];
+  private grips: Grips | undefined;
   private readonly unworn: Float32Array;
   private readonly neutral = new Matrix4();
   private readonly isSlow: boolean;
@@ -239,12 +241,30 @@ export class Stage {
     this.controls.update();
   }
 
-  // Marks and returns the node of the surface nearest to a point on the screen; none outside of the surface.
-  pick(event: PointerEvent): number | undefined {
+  // Shows points that can be dragged.
+  grip(grips: Grip[]): void {
+    this.grips = new Grips(grips, {
+      host: this.host,
+      canvas: this.canvas,
+      world: this.world,
+      rayTo: (event) => this.rayTo(event),
+      placeOf: (at) => this.placeOf(at),
+      moved: () => this.ask(),
+      signal: this.end.signal,
+    });
+  }
+
+  private rayTo(event: PointerEvent): Raycaster {
     const { left, top, width, height } = this.canvas.getBoundingClientRect();
     const place = new Vector2((2 * (event.clientX - left)) / width - 1, 1 - (2 * (event.clientY - top)) / height);
     const ray = new Raycaster();
     ray.setFromCamera(place, this.camera);
+    return ray;
+  }
+
+  // Marks and returns the node of the surface nearest to a point on the screen; none outside of the surface.
+  pick(event: PointerEvent): number | undefined {
+    const ray = this.rayTo(event);
     this.surface.geometry.computeBoundingSphere();
     const { x = Infinity, z = Infinity } = this.sections;
     const hit = ray.intersectObject(this.surface).find(({ point }) => point.x <= x && point.z <= z);
@@ -274,7 +294,9 @@ export class Stage {
 
   // The present view with at least `height` pixels from top to bottom; the next drawing is as before.
   shot(height: number): Shot {
+    this.grips?.show(false);
     this.drawWith(Math.max(1, height / this.host.clientHeight));
+    this.grips?.show(true);
     const { clientWidth, clientHeight } = this.host;
     const names = this.names.map(({ box, at }) => ({ words: box.textContent ?? "", ...this.placeOf(at) }));
     const { width } = this.scale.getBoundingClientRect();

@@ -7,6 +7,7 @@ import { save, saveText } from "../save";
 import viewStyle from "../style.css";
 import schema from "../../../cases/condyle.schema.json";
 import { Compared } from "./compared";
+import { gripsOf } from "./dimensions";
 import { take, takeDropped, type Bodies } from "./dropped";
 import { Editor } from "./editor";
 import { EXAMPLES } from "./examples";
@@ -173,6 +174,8 @@ class Page {
     this.say(`${inDigits(summary.cycles / 1e6)} million cycles, solved in ${inDigits(solved)} s on this machine`);
     await nextFrame();
     this.shown.show(found);
+    const stage = this.shown.viewer?.stage;
+    if (stage && !stage.isFlat) stage.grip(gripsOf(found, (places, value) => this.sliders.set(places, value)));
     await nextFrame();
     this.compared.show(found, this.shown.viewer);
     // Meshes are in no address: with them, the case would not run elsewhere.

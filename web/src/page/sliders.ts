@@ -118,11 +118,19 @@ export class Sliders {
 
   private move(moved: Moved, value: number): void {
     const times = moved.times ?? 1;
+    if (times === 1) this.set([moved], value);
+    else this.write([moved], String(Number((value * times).toPrecision(12))));
+  }
+
+  // Sets the keys at some places to one number.
+  set(places: Place[], value: number): void {
     // Steps are decimal: without rounding noise in the text.
-    const written = Number((value * times).toPrecision(12));
-    const isWhole = times !== 1;
-    const text = isWhole ? String(written) : Number.isInteger(written) ? written.toFixed(1) : String(written);
-    this.changed(withValue(this.text(), moved, text));
+    const written = Number(value.toPrecision(12));
+    this.write(places, Number.isInteger(written) ? written.toFixed(1) : String(written));
+  }
+
+  private write(places: Place[], written: string): void {
+    this.changed(places.reduce((text, place) => withValue(text, place, written), this.text()));
     this.show();
   }
 }

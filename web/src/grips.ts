@@ -1,0 +1,113 @@
+// Points of the bodies that can be dragged along lines.
+
+import { Group, Mesh, MeshBasicMaterial, SphereGeometry, type Object3D, type Raycaster, type Vector3 } from "three";
+import { element } from "./dom";
+
+// Radius of a grip, and of the place around it where it is taken, mm.
+const GRIP_MM = 1.3;
+const GRASP_MM = 3;
+
+export interface Grip {
+  at: Vector3;
+  // Unit vector.
+  along: Vector3;
+  // Says what a motion by some mm does.
+  words: (mm: number) => string;
+  dropped: (mm: number) => void;
+}
+
+// The picture in which the grips are.
+interface Picture {
+  host: HTMLElement;
+  canvas: HTMLCanvasElement;
+  world: Object3D;
+  rayTo: (event: PointerEvent) => Raycaster;
+  // The place of a point on the host, px.
+  placeOf: (point: Vector3) => { x: number; y: number };
+  moved: () => void;
+  signal: AbortSignal;
+}
+
+// A motion has words next to it, and takes effect when the grip is dropped.
+export class Grips {
+  private readonly balls = new Group();
+  private readonly words = element("span", { class: "direction", "aria-live": "polite" });
+
+  constructor(
+    private readonly grips: Grip[],
+    private readonly picture: Picture,
+  ) {
+    for (const { at } of grips) {
+      const ball = new Mesh(new SphereGeometry(GRIP_MM, 16, 12), new MeshBasicMaterial({ color: 0x2f6db5, depthTest: false }));
+      ball.renderOrder = 2;
+      ball.position.copy(at);
+      this.balls.add(ball);
+    }
+    const { host, world, signal } = picture;
+    world.add(this.balls);
+    host.append(this.words);
+    // Before the canvas has the event, which would turn the view.
+    host.addEventListener("pointerdown", (event) => this.take(event), { capture: true, signal });
+    host.addEventListener("pointermove", (event) => this.hover(event), { signal });
+    signal.addEventListener("abort", () => this.words.remove());
+    picture.moved();
+  }
+
+  show(isShown: boolean): void {
+    this.balls.visible = isShown;
+  }
+
+  private hover(event: PointerEvent): void {
+    if (event.buttons) return;
+    const grip = this.near(event);
+    this.picture.canvas.style.cursor = grip ? "grab" : "";
+    this.say(grip, 0);
+  }
+
+  private take(event: PointerEvent): void {
+    const grip = this.near(event);
+    if (!grip || event.button !== 0) return;
+    event.stopPropagation();
+    const { canvas } = this.picture;
+    canvas.setPointerCapture(event.pointerId);
+    const ball = this.balls.children[this.grips.indexOf(grip)]!;
+    const [start, drag] = [this.along(event, grip), new AbortController()];
+    let mm = 0;
+    const move = (next: PointerEvent) => {
+      mm = this.along(next, grip) - start;
+      ball.position.copy(grip.at).addScaledVector(grip.along, mm);
+      this.say(grip, mm);
+      this.picture.moved();
+    };
+    const drop = () => {
+      drag.abort();
+      this.say(undefined, 0);
+      if (mm !== 0) grip.dropped(mm);
+    };
+    const { signal } = drag;
+    canvas.addEventListener("pointermove", move, { signal });
+    for (const end of ["pointerup", "pointercancel"]) canvas.addEventListener(end, drop, { signal });
+  }
+
+  private near(event: PointerEvent): Grip | undefined {
+    const { ray } = this.picture.rayTo(event);
+    const away = ({ at }: Grip) => ray.distanceToPoint(at);
+    const near = this.grips.filter((grip) => away(grip) < GRASP_MM);
+    return near.sort((one, two) => away(one) - away(two))[0];
+  }
+
+  // The place on the line of a grip that is nearest to a point on the screen, mm from the grip.
+  private along(event: PointerEvent, { at, along }: Grip): number {
+    const { origin, direction } = this.picture.rayTo(event).ray;
+    const [apart, across] = [at.clone().sub(origin), along.dot(direction)];
+    // Where the eye looks along the line, both are parallel.
+    return (across * apart.dot(direction) - apart.dot(along)) / Math.max(1 - across * across, 1e-3);
+  }
+
+  private say(grip: Grip | undefined, mm: number): void {
+    this.words.textContent = grip?.words(mm) ?? "";
+    if (!grip) return;
+    const { x, y } = this.picture.placeOf(grip.at.clone().addScaledVector(grip.along, mm));
+    this.words.style.transform = `translate(-50%,-220%) translate(${x.toFixed(1)}px,${y.toFixed(1)}px)`;
+  }
+}
