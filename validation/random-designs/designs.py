@@ -22,6 +22,8 @@ REAL_IMPLANTS = {
 }
 # Designs from this number on vary the models too.
 FIRST_WITH_MODELS = 1000
+# Designs from this number on are hips, discs, ankles and pins.
+FIRST_OF_OTHER_JOINTS = 10_000
 AXIAL_FORCE = [(0, 0.1), (3, 1.126), (7, 0.7), (13, 1.55), (25, 0.5), (45, 1.45), (60, 0.1), (80, 0.1), (97, 0.194)]
 FLEXION_DEG = [(0, 0), (15, 16), (40, 5), (70, 58)]
 AP_FORCE = [(0, 0), (5, -0.3), (15, 0.125), (50, -0.19), (60, 0)]
@@ -53,6 +55,9 @@ def design(number, data):
     """The case of one design, as tables of keys and values; the same for the same number, on any machine."""
     draw = Draw(number)
     case = {"": {"title": f"design {number}"}}
+    if number >= FIRST_OF_OTHER_JOINTS:
+        _other_joint(draw, case)
+        return case
     if draw.random() < 0.1:
         _real_implant(draw, case, data)
     else:
@@ -63,6 +68,39 @@ def design(number, data):
     if number >= FIRST_WITH_MODELS:
         _models(draw, case)
     return case
+
+
+def _other_joint(draw, case):
+    """A hip, a disc, an ankle or a pin, with the models of the knees."""
+    preset = draw.choice(
+        ["iso-14242-1-like", "iso-14242-3-like", "iso-14242-4-like"] * 2
+        + ["iso-18192-1-lumbar-like", "iso-18192-1-cervical-like", "iso-22622-like", "pin-on-disc"]
+    )
+    case["machine"] = {"preset": preset}
+    if preset == "pin-on-disc":
+        case["femur"] = {"shape": "plane"}
+        case["insert"] = {"shape": "pin", "radius_mm": draw.between(1.5, 8), "thickness_mm": draw.between(3, 15)}
+    elif preset == "iso-22622-like":
+        radius_mm = draw.between(15, 32)
+        case["femur"] = {"shape": "cylinder", "radius_mm": radius_mm}
+        case["insert"] = {"shape": "trough", "radius_mm": round(radius_mm + 0.5 * draw.factor(10), 4)}
+    else:
+        is_hip = preset.startswith("iso-14242")
+        radius_mm = draw.between(11, 24) if is_hip else draw.between(7, 18)
+        case["femur"] = {"shape": "sphere", "radius_mm": radius_mm}
+        case["insert"] = {
+            "shape": "cup",
+            "radius_mm": round(radius_mm + 0.1 * draw.factor(8), 4),
+            "thickness_mm": draw.between(3, 14),
+            "inclination_deg": draw.between(0, 65) if is_hip else 0.0,
+        }
+        if not is_hip:
+            case["insert"]["opening_deg"] = draw.between(50, 88)
+    case["insert"]["edge_mm"] = draw.between(0.8, 2.2)
+    case["insert"]["layers"] = draw.randint(1, 5)
+    _contact_and_material(draw, case)
+    _march(draw, case)
+    _models(draw, case)
 
 
 def _models(draw, case):

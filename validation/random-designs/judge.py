@@ -49,11 +49,10 @@ def judge(folder):
         *_inverted(meshes),
         *_rim(meshes[0], meshes[-1]),
         *_volumes(summary, meshes),
-        *_thickness(meshes[-1]),
         *_pressure(summary, motion),
-        *_motion(motion),
-        *_loads(motion),
     ]
+    if "ap_mm" in motion:
+        findings += [*_thickness(meshes[-1]), *_motion(motion), *_loads(motion)]
     return list(dict.fromkeys(findings))
 
 
