@@ -13,6 +13,7 @@ const TYPES = {
   ".svg": "image/svg+xml",
   ".png": "image/png",
   ".woff2": "font/woff2",
+  ".zz": "application/octet-stream",
 };
 const PACKED = [
   ["br", ".br"],

@@ -133,7 +133,7 @@ def _compare_with_perturbed(ended, condyle, case, folder):
         ended.silent.append(f"not solved with a perturbation of 1e-12: {_error(said)}")
         return
     other = json.loads((folder / "results" / "summary.json").read_text())
-    changes = {key: abs(other[key] / ended.summary[key] - 1) for key in NUMBERS if ended.summary[key]}
+    changes = {key: abs(other[key] / ended.summary[key] - 1) for key in NUMBERS if ended.summary.get(key)}
     key = max(changes, key=changes.get)
     ended.perturbed_change = changes[key]
     if changes[key] > MAX_CHANGE_BY_PERTURBATION:

@@ -1,14 +1,23 @@
 //! The interactive part of a page: the program, the scenes that it shows, and the policy that permits no other script.
 
-use std::io::Write;
+use std::{borrow::Cow, io::Write};
 
 use base64::{Engine, engine::general_purpose::STANDARD};
 use flate2::{Compression, write::ZlibEncoder};
 
 use crate::scene::Scene;
 
-/// The program: `web/src/report.ts`, bundled and deflated by `web/build.mjs`.
-const PROGRAM: &[u8] = include_bytes!("page/moving.js.zz");
+/// Returns the program: `web/src/report.ts`, bundled and deflated by `web/build.mjs`.
+///
+/// In a browser it is a file, which the web page loads only when a report is saved; `None` if that is missing.
+fn program() -> Option<Cow<'static, [u8]>> {
+    if cfg!(target_family = "wasm") {
+        std::fs::read("moving.js.zz").ok().map(Cow::Owned)
+    } else {
+        Some(Cow::Borrowed(include_bytes!("page/moving.js.zz")))
+    }
+}
+
 /// The licences of the packages in the program.
 const LICENCES: &str = include_str!("page/moving.licences.txt");
 /// The script that starts the program.
@@ -31,13 +40,13 @@ pub(crate) fn policy(has_program: bool) -> String {
 }
 
 /// Returns the program and the scenes that it shows as HTML: scene 0 in the element with `data-scene="scene-0"`, and so on.
-/// `None` if a scene is empty.
+/// `None` if a scene is empty or there is no program.
 pub(crate) fn moving(scenes: &[&Scene]) -> Option<String> {
     let mut html = String::new();
     for (number, scene) in scenes.iter().enumerate() {
         html += &data(&format!("scene-{number}"), &packed(scene)?);
     }
-    html += &data("program", &STANDARD.encode(PROGRAM));
+    html += &data("program", &STANDARD.encode(program()?));
     html += &data("licences", LICENCES);
     html += &format!("<script>{LOADER}</script>\n");
     Some(html)

@@ -11,6 +11,8 @@ import type { Bodies } from "./dropped";
 const [CASE, RESULTS, SCENE] = ["case.toml", "results", "scene"] as const;
 const SUMMARY = `${RESULTS}/summary.json`;
 export const REPORT = `${RESULTS}/report.html`;
+// The interactive part of a report, which is large and needed only for a report that is saved.
+const PROGRAM = "moving.js.zz";
 // All keys of a case have defaults, but a text that was deleted is not meant to be one.
 const EMPTY = 'error: the case is empty\n\nWrite at least one key, such as `title = "Defaults"`, or go back to the case before.';
 // Pause after a change before a run starts, ms: a moving slider starts none.
@@ -96,7 +98,12 @@ export class Laboratory {
   // The results folder of the run that is shown, as the command writes it; undefined if that was stopped.
   async kept(): Promise<Files | undefined> {
     if (!this.folder[SUMMARY]) return undefined;
-    if (!this.folder[REPORT]) this.folder = (await this.call(["report", RESULTS], this.folder, [RESULTS])) ?? this.folder;
+    if (!this.folder[REPORT]) {
+      const program = await loaded(PROGRAM);
+      if (!program) this.listener.failed({ message: `error: ${PROGRAM} cannot be loaded: the saved report has no 3-D view`, problems: [] });
+      const files = program ? { ...this.folder, [PROGRAM]: program } : this.folder;
+      this.folder = (await this.call(["report", RESULTS], files, [RESULTS])) ?? this.folder;
+    }
     return this.folder[REPORT] && this.folder;
   }
 
@@ -110,6 +117,11 @@ export class Laboratory {
     const text = new TextEncoder().encode(this.text);
     return { ...this.bodies, [CASE]: text };
   }
+}
+
+async function loaded(name: string): Promise<Uint8Array | undefined> {
+  const response = await fetch(name).catch(() => undefined);
+  return response?.ok ? new Uint8Array(await response.arrayBuffer()) : undefined;
 }
 
 function summaryOf(files: Files): Summary {

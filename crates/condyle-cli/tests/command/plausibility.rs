@@ -192,7 +192,7 @@ fn steps_that_overshoot_in_a_conforming_cup_are_reported() {
              [machine]\npreset = \"iso-14242-3-like\"\n[march]\nupdates = {updates}\n[accuracy]\nestimate = false\n"
         )
     };
-    for (updates, overshoots) in [(8, true), (24, false)] {
+    for (updates, overshoots) in [(2, true), (8, true), (24, false)] {
         let bench = Bench::with_case(&case(updates));
         bench.run_into("out");
         let found = checks(&bench, "out");

@@ -71,11 +71,6 @@ pub trait ContactLaw: Debug + Send + Sync {
     /// flattens the pressure.
     fn stiffness_mpa_per_mm(&self, insert: &Insert, node: usize) -> f64;
 
-    /// Returns whether the pressure at a node depends on the overclosure there alone.
-    fn is_local(&self) -> bool {
-        true
-    }
-
     /// Estimates the memory that the law keeps for an insert in addition to that of a contact, bytes, from the number
     /// of nodes that come near the counterface.
     fn memory_bytes(&self, _insert: &Insert, _nodes_near: f64) -> f64 {

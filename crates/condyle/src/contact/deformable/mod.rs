@@ -325,10 +325,6 @@ impl ContactLaw for Deformable {
 
     /// Returns the stiffness of a node of an elastic half-space: what deflects along with a node alone is no deeper
     /// than its share is wide.
-    fn is_local(&self) -> bool {
-        false
-    }
-
     fn stiffness_mpa_per_mm(&self, insert: &Insert, node: usize) -> f64 {
         let ratio = self.elastic.poissons_ratio;
         let contact_modulus_mpa = self.elastic.youngs_modulus / (1.0 - ratio * ratio);
