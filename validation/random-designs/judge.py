@@ -6,7 +6,6 @@ with a finding of which nothing was said is silently wrong.
 
 import csv
 import json
-import tomllib
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -28,8 +27,8 @@ MAX_IE_DEG = 36.0
 THINNEST_MM = 5.9
 YIELD_UNDER_A_BALL_MPA = 1.65 * 14.0
 
-# Presets of bearings that wear up to their rim: a worn cup embraces its head, and a pin touches with its whole end.
-EMBRACED = ("iso-14242", "pin-on-disc")
+# Bearings that wear up to their rim: a worn cup embraces its head, and a pin touches with its whole end.
+TOUCHED_WHOLE = ("hip", "specimen")
 
 RIM_CHECKS = ("wear_at_rim", "pressure_at_rim", "femur_beyond_rim")
 
@@ -54,10 +53,9 @@ def judge(folder):
         *_volumes(summary, meshes),
         *_pressure(summary, motion),
     ]
-    preset = tomllib.loads((folder / "case.toml").read_text())["machine"]["preset"]
-    if not preset.startswith(EMBRACED):
+    if summary["joint"] not in TOUCHED_WHOLE:
         findings += _rim(meshes[0], meshes[-1])
-    if preset.startswith("stanmore"):
+    if summary["joint"] == "knee":
         findings += [*_thickness(meshes[-1]), *_motion(motion), *_loads(motion)]
     return list(dict.fromkeys(findings))
 

@@ -152,7 +152,7 @@ pub fn warn(warnings: impl IntoIterator<Item = impl Display>) {
     }
 }
 
-/// Writes a file that a command was asked for; an existing one is kept unless `force` replaces it.
+/// Writes a file requested from a command; an existing one is kept unless `force` replaces it.
 pub fn write_file(path: &Path, bytes: &[u8], force: bool) -> Result<(), Unwritten> {
     let write = if force { replace_file } else { create_file };
     write(path, bytes).map_err(|error| Unwritten::new(path, &error))
@@ -172,7 +172,7 @@ pub fn print(text: &str) -> Done {
     ended(write(text), "")
 }
 
-/// Prints `text`, of which more is kept in `folder`.
+/// Prints `text`, an extract of the results in `folder`.
 pub fn print_with_folder(text: &str, folder: &Path) -> Done {
     let kept = format!("; the results are kept in {}", folder.display());
     ended(write(text), &kept)

@@ -94,6 +94,8 @@ impl Material for ElasticPlastic {
         relative.von_mises() / self.hardening.yield_stress(before.accumulated)
     }
 
+    /// Returns the state after the plastic flow of a strain, by the radial return.
+    ///
     /// With the trial stress $s$ and $\xi = s - \beta$, $q = \sqrt{3/2} |\xi|$, the step $\Delta p$ solves
     /// $q - (3 G + H_k) \Delta p = \sigma_y(p + \Delta p)$.
     fn flow(&self, strain: &Strain, before: &PlasticPoint) -> PlasticPoint {

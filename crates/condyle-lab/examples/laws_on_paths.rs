@@ -1,4 +1,4 @@
-//! What every wear law wears on paths given on standard input, as JSON on standard output.
+//! Prints the wear by every wear law on paths given on standard input, as JSON on standard output.
 //!
 //! In: `{"name": [[pressure_mpa, anterior_mm, lateral_mm], ...], ...}`, a step each, by a place that presses with all of
 //! its share. Out, for each path: its length, pressure times slip, cross-shear, and by law the depth and what part of it

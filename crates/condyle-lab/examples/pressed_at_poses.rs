@@ -30,7 +30,7 @@ use condyle_case::{
 
 /// Increments of pressing.
 const INCREMENTS: u32 = 10;
-/// How far above the pose the first of them begins, mm: more than the bodies overlap.
+/// Distance above the pose at which the first of them begins, mm: more than the overlap of the bodies.
 const LIFT_MM: f64 = 0.5;
 
 fn main() -> Result<(), Box<dyn Error>> {
@@ -84,7 +84,7 @@ fn unyielding(case: &Case) -> Option<Case> {
     Some(elastic)
 }
 
-/// What condyle finds at a pose.
+/// The result of condyle at a pose.
 struct Answer {
     /// Force on the insert, N.
     force_n: Vec3,

@@ -15,7 +15,7 @@ use super::Keep;
 const FORMAT: &str = "4";
 /// Length of the hash that guards a file's content.
 const HASH_LENGTH: usize = 32;
-/// Ending of the files that are kept; no other is ever removed.
+/// Extension of the cached files; files with another extension are never removed.
 const ENDING: &str = "kept";
 /// Limits of the number of files and of their bytes; the newest are kept. A file has about 3 MB for a mesh femur and
 /// 5 to 40 MB for a deformable insert, and a study over many of them must not fill the disk.

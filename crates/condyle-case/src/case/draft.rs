@@ -390,7 +390,7 @@ impl Alone {
         let parts = self.shell.left_out.len();
         if parts > 0 {
             remarks.push(format!(
-                "  The file has {parts} more parts, below the insert or beside it: they are left out."
+                "  The file has {parts} more parts, below or next to the insert: they are left out."
             ));
         }
         match &self.underside {

@@ -1,6 +1,6 @@
 //! Problems as text: the place, a caret under it, and what to do.
 //!
-//! What a file contains cannot steer the terminal that it is shown on.
+//! The contents of a file cannot control the terminal on which they are shown.
 
 use std::fmt;
 use std::ops::Range;

@@ -258,7 +258,7 @@ fn a_femur_that_falls_off_in_the_cycle_is_physics() {
     said.assert_refused(
         3,
         &[
-            "update 1: the counterface touches the insert nowhere",
+            "update 1: the counterface never touches the insert",
             "it was lowered at x ",
             "ends at AP ",
             " mm, ML ",

@@ -1,4 +1,4 @@
-//! How many instructions each piece of work may take, as recorded in `benches/budgets.toml`.
+//! The maximum number of instructions of each piece of work, as recorded in `benches/budgets.toml`.
 
 use std::{collections::BTreeMap, fmt::Write, fs, path::PathBuf};
 
@@ -13,7 +13,7 @@ const HEADER: &str = "\
 # Recorded by `scripts/test.d/35-budget --record`.
 ";
 
-/// How a count stands beside its budget.
+/// The result of the comparison of a count with its budget.
 #[derive(PartialEq)]
 pub enum Verdict {
     Within,

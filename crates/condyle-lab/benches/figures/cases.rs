@@ -79,7 +79,7 @@ pub fn marched(test: WearTest) -> MarchState {
     updated(test, usize::MAX).state().clone()
 }
 
-/// Its first `updates`, or all if there are fewer.
+/// Solves the first `updates` of a test, or all if there are fewer.
 pub fn updated(test: WearTest, updates: usize) -> March {
     let mut march = March::start(test).expect("a shipped case settles");
     while !march.is_done() && march.state().updates.len() < updates {

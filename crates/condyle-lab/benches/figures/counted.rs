@@ -11,7 +11,7 @@ use crate::{
     gait::{Asked, Gait, SECOND, Updates},
 };
 
-/// What is counted: its name in the budgets, and its function here.
+/// The counted pieces of work: the name of each in the budgets, and its function here.
 pub const COUNTED: [(&str, &str); 3] = [
     ("contact_evaluation", "counted_contact_evaluations"),
     ("increment", "counted_increments"),

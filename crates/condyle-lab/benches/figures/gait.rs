@@ -1,4 +1,4 @@
-//! What the machine asks of the contact in one gait cycle.
+//! The contact evaluations that the machine requests in one gait cycle.
 
 use std::ops::ControlFlow;
 
@@ -15,18 +15,18 @@ use condyle_case::case::Case;
 
 use crate::cases;
 
-/// An evaluation that was asked for.
+/// A requested evaluation.
 #[derive(Clone, Copy)]
 pub struct Asked {
     pub motion: RelativeMotion,
-    /// Of which increment of the cycle it is.
+    /// Number of its increment in the cycle.
     pub increment: usize,
-    /// Whether it is the first of its increment: the femur has moved on, and what has come near is
-    /// looked for.
+    /// True if it is the first of its increment: the femur has moved on, and new candidates for contact are
+    /// searched.
     pub is_first: bool,
 }
 
-/// A contact that writes down what it is asked.
+/// A contact that records the requested evaluations.
 struct Recorder<'a> {
     contact: Box<dyn ContactModel + 'a>,
     asked: Vec<Asked>,
@@ -129,7 +129,7 @@ impl<'a> Gait<'a> {
 pub struct Updates {
     /// About to solve each of them.
     marches: Vec<March>,
-    /// What each of them asks for.
+    /// The requested evaluations of each update.
     asked: Vec<Vec<Asked>>,
 }
 
@@ -157,12 +157,12 @@ impl Updates {
         Gait::of(&self.marches[update])
     }
 
-    /// What it asks for.
+    /// Returns the requested evaluations of an update.
     pub fn asked(&self, update: usize) -> &[Asked] {
         &self.asked[update]
     }
 
-    /// What its contact knows after all those before have asked for theirs.
+    /// Returns the cache of its contact after the evaluations of all earlier updates.
     pub fn cache(&self, update: usize) -> ContactCache {
         let mut cache = ContactCache::default();
         for (before, asked) in self.asked[..update].iter().enumerate() {

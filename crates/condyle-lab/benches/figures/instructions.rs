@@ -14,7 +14,7 @@ use crate::{
     readable,
 };
 
-/// Prints counts beside their budgets; fails where one is above.
+/// Prints counts and their budgets; fails if a count exceeds its budget.
 pub fn hold() -> ExitCode {
     let (counts, budgets) = (counts(), budgets::read());
     let mut is_above = false;
@@ -63,7 +63,7 @@ fn each(counts: &Counts) -> impl Iterator<Item = (&str, &str, u64)> {
     })
 }
 
-/// Of every case whose data are there; all at once.
+/// Returns the counts of every case whose data exist; all cases run at once.
 fn counts() -> Counts {
     let small = SMALL.iter().map(|(name, _)| *name);
     let names = [GENERIC, REAL].into_iter().chain(small);

@@ -1,5 +1,5 @@
-//! The figures that condyle holds itself to: times beside their targets, and instruction counts
-//! beside their budgets. `scripts/figures` and `scripts/test budget` run it.
+//! Measures the performance of condyle: times compared with their targets, and instruction counts compared with
+//! their budgets. `scripts/figures` and `scripts/test budget` run it.
 
 mod budgets;
 mod cases;

@@ -11,7 +11,7 @@ use std::{
     process::Command,
 };
 
-/// What the linker puts between functions.
+/// The byte with which the linker fills the space between functions.
 const PADDING: u8 = 0xCC;
 /// A jump to a distance of 32 bits: its opcode and its length.
 const JUMP: u8 = 0xE9;
@@ -51,7 +51,7 @@ impl Instruction {
         }
     }
 
-    /// Whether it does the same at another address.
+    /// Returns whether the instruction has the same effect at another address.
     fn may_move(&self) -> bool {
         let goes_on = !["j", "call", "ret", "loop", "bnd", "notrack"]
             .iter()
@@ -59,7 +59,7 @@ impl Instruction {
         goes_on && !self.text.contains("(%rip)")
     }
 
-    /// Where it jumps to, if it says so.
+    /// Returns the target of a jump, if the text contains it.
     fn target(&self) -> Option<usize> {
         let place = self.text.strip_prefix('j')?.split_whitespace().nth(1)?;
         usize::from_str_radix(place, 16).ok()
@@ -136,7 +136,7 @@ fn listing(program: &Path) -> String {
     String::from_utf8_lossy(&told.stdout).into_owned()
 }
 
-/// How far addresses are ahead of places in the file: the first line `address <name> (File Offset: 0xplace):`.
+/// Returns the offset of addresses from file positions, from the first line `address <name> (File Offset: 0xplace):`.
 fn ahead_of_file(listing: &str) -> usize {
     let number = |text: &str| usize::from_str_radix(text, 16).ok();
     let ahead = |line: &str| {

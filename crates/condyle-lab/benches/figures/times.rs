@@ -1,4 +1,4 @@
-//! Times beside their targets.
+//! Times compared with their targets.
 //!
 //! A time is the least of several: whatever else a machine does makes it longer, never shorter.
 
@@ -72,7 +72,7 @@ pub fn print(condyle: Option<&Path>) {
     }
 }
 
-/// The time of a whole test with every wear law in one pass, over that with Archard's alone.
+/// Prints the time of a whole test with every wear law in one pass, relative to that with Archard's law alone.
 pub fn print_laws() {
     let case = cases::read(GENERIC).expect("a shipped case is read");
     let alone = || {
@@ -93,8 +93,8 @@ pub fn print_laws() {
     );
 }
 
-/// The figures of a real implant; those of the femur are told from the insert's by a test with the
-/// same femur and an insert that takes no time.
+/// Prints the figures of a real implant. A test with the same femur and an insert that takes no time separates the
+/// time of the femur from that of the insert.
 fn print_real(real: &Case, generic: &Case) {
     let mut femur_only = real.clone();
     femur_only.insert = generic.insert.clone();
@@ -170,7 +170,7 @@ fn kept_s(case: &Case) -> f64 {
     least_s(ROUNDS, build)
 }
 
-/// How much work the march of a case does, from which its time comes.
+/// Prints the amount of work in the march of a case, which determines its time.
 fn print_work(name: &str, case: &Case) {
     let state = solved(case);
     let updates = Updates::of(case, SECOND + 1, |_| ());
@@ -211,7 +211,7 @@ fn mean_pressing(updates: &Updates) -> f64 {
     asked.iter().map(pressing).sum::<usize>() as f64 / asked.len() as f64
 }
 
-/// Solves a case again and again, and says how long each took.
+/// Solves a case repeatedly, and prints the time of each solution.
 pub fn solve(name: &str, times: usize) {
     let case = cases::read(name).expect("the case is read");
     for _ in 0..times {
@@ -219,7 +219,7 @@ pub fn solve(name: &str, times: usize) {
     }
 }
 
-/// From the parsed case to the last update.
+/// Solves a parsed case up to its last update.
 fn solved(case: &Case) -> MarchState {
     marched(built(case))
 }

@@ -49,7 +49,7 @@ impl CompareError {
     /// Creates the error for a run that ends before the weighings.
     pub(crate) fn run_too_short(weighings: usize) -> Self {
         Self::NotComparable(format!(
-            "the run ends before the second weighing that counts: it reaches {weighings} of them, of which two are \
+            "the run ends before the second weighing that counts: it reaches {weighings} such weighings, and two are \
              needed; run more cycles ([march] cycles), or lower fit_from_cycles"
         ))
     }

@@ -22,8 +22,8 @@ const YIELD_MPA: f64 = 14.0;
 /// Ratio of the peak pressure under a ball to the yield stress at which the material first yields, below the middle
 /// of the contact [johnson1985].
 const FIRST_YIELD: f64 = 1.6;
-/// A ball has sunk into material that flows all round it when the mean pressure is 2.8 times the yield stress; the
-/// peak of an elastic contact is 1.5 times its mean [johnson1985].
+/// Ratio of the peak pressure to the yield stress at full plasticity: the mean pressure is then 2.8 times the yield
+/// stress, and the peak of an elastic contact is 1.5 times its mean [johnson1985].
 const FULL_FLOW: f64 = 1.5 * 2.8;
 /// Lift off the tray beyond which an insert rocks, mm: twice the deflection of the polyethylene under a knee's load.
 const MAX_LIFT_MM: f64 = 0.3;
@@ -57,8 +57,8 @@ pub(crate) fn wear_at_rim(finished: &Finished<'_>) -> Option<PlausibilityWarning
         "{percent:.1} % of the worn volume lies within {NEAR_RIM_MM} mm of the rim of the articulating surface; up to \
              {MAX_AT_RIM_PERCENT:.0} % is acceptable"
     );
-    let advice = "The counterface rides on an edge, where the pressure of an elastic model is not to be believed: look at the placement \
-                 of the bodies, their axes and sides, and at where the outline of the insert was cut.";
+    let advice = "The counterface bears on an edge, where the pressure of an elastic model is unreliable: check the placement \
+                 of the bodies, their axes and sides, and the place where the outline of the insert was cut.";
     let value = (percent, MAX_AT_RIM_PERCENT, "%");
     (percent > MAX_AT_RIM_PERCENT).then(|| warning("wear_at_rim", value, message, advice))
 }
@@ -86,7 +86,7 @@ pub(crate) fn pressure_at_rim(finished: &Finished<'_>) -> Option<PlausibilityWar
         place.x, place.z
     );
     let advice =
-        "The counterface rides on an edge: see the placement of the bodies, their axes and sides.";
+        "The counterface bears on an edge: check the placement, axes and sides of the bodies.";
     let value = (from_rim_mm, NEAR_RIM_MM, "mm");
     Some(warning("pressure_at_rim", value, message, advice))
 }
@@ -106,18 +106,18 @@ pub(crate) fn pressure_beyond_flow(finished: &Finished<'_>) -> Option<Plausibili
     let limit = FULL_FLOW * YIELD_MPA;
     let peak = finished.summary[&PEAK_PRESSURE_MPA];
     let message = format!(
-        "the highest pressure is {peak:.1} MPa, after {:.0} cycles; from about {limit:.0} MPa polyethylene flows, and this \
+        "the highest pressure is {peak:.1} MPa, after {:.0} cycles; polyethylene flows from about {limit:.0} MPa, so this \
              pressure is not physical",
         finished.summary[&PEAK_PRESSURE_CYCLE]
     );
-    let advice = "See that the sizes and units of both bodies, their axes, sides and placement are right, and the load: the \
-                 contact is far smaller than that of a knee.";
+    let advice = "Check the sizes, units, axes, sides and placement of both bodies, and the load: the contact is far smaller \
+                 than that of a knee.";
     let value = (peak, limit, "MPa");
     (peak > limit).then(|| warning("pressure_beyond_flow", value, message, advice))
 }
 
 /// The error of the pressure of a foundation by the linear law (`docs/src/three-models.md`).
-const FOUNDATION_PEAK: &str = " A linear foundation overestimates it as well: that of three unworn knees by 18 to 40 %. \
+const FOUNDATION_PEAK: &str = " A linear foundation also overestimates it, by 18 to 40 % in three unworn knees. \
                                --set contact.model=deformable computes it.";
 
 /// Warns of pressure at which polyethylene would yield below the surface, for an insert that is modelled without
@@ -138,8 +138,8 @@ pub(crate) fn pressure_beyond_yield(finished: &Finished<'_>) -> Option<Plausibil
     let is_solid = finished.march.state().under_surface.is_some();
     let foundation = if is_solid { "" } else { FOUNDATION_PEAK };
     let advice = format!(
-        "Local yield, as in ordinary knees, which this insert does not model: with it the default knee has 0.1 % less mass \
-         and 2 % less depth. The pressure there is an upper bound.{foundation}"
+        "This insert does not model the local yield that occurs in ordinary knees; yield lowers the mass of the default knee by \
+         0.1 % and the depth by 2 %. The pressure there is an upper bound.{foundation}"
     );
     let value = (peak, limit, "MPa");
     (peak > limit && !yields).then(|| warning("pressure_beyond_yield", value, message, &advice))
@@ -163,11 +163,11 @@ fn extent(finished: &Finished<'_>, cycle: &str, pressures: &[f64], limit_mpa: f6
 pub(crate) fn insert_rocks(finished: &Finished<'_>) -> Option<PlausibilityWarning> {
     let lift_mm = finished.summary.get(&BACKSIDE_LIFT_MM)?;
     let message = format!(
-        "the insert lifts off its tray by {lift_mm:.2} mm: it rocks, as under a load beside the flat part of its backside, and \
+        "the insert lifts off its tray by {lift_mm:.2} mm: it rocks, as under a load outside the flat part of its backside, and \
              nothing in the model holds it down"
     );
-    let advice = "A tray's lock would: see whether the load bears above the tray, and take [contact.deformable] backside = \"bonded\" where \
-                 the insert is held down.";
+    let advice = "The lock of a real tray would: check whether the load lies within the tray, and set [contact.deformable] \
+                 backside = \"bonded\" if the insert is held down.";
     let value = (lift_mm, MAX_LIFT_MM, "mm");
     (lift_mm > MAX_LIFT_MM).then(|| warning("insert_rocks", value, message, advice))
 }
@@ -181,10 +181,9 @@ pub(crate) fn thin_polyethylene(finished: &Finished<'_>) -> Option<PlausibilityW
     let thinnest = under_scar.map(|node| fields.thickness_mm[node]);
     let thinnest = thinnest.fold(f64::INFINITY, f64::min);
     let message = format!(
-        "under the scar {thinnest:.2} mm of polyethylene are left at the thinnest; below {MIN_THICKNESS_MM:.0} mm stresses \
-             rise steeply"
+        "the thinnest polyethylene under the scar is {thinnest:.2} mm; stresses rise steeply below {MIN_THICKNESS_MM:.0} mm"
     );
-    let advice = "Check that the insert's mesh reaches down to its tray and that its `unit` in the case is right.";
+    let advice = "Check that the insert's mesh reaches down to its tray and that its `length_unit` in the case is right.";
     let value = (thinnest, MIN_THICKNESS_MM, "mm");
     (thinnest < MIN_THICKNESS_MM).then(|| warning("thin_polyethylene", value, message, advice))
 }
@@ -262,8 +261,8 @@ fn rough(
     }
     let percent = 100.0 * doubtful / whole.max(f64::MIN_POSITIVE);
     let message = format!(
-        "{percent:.0} % of the contact is where the smooth surface of the {body} is more than {limit_mm} mm from the triangles of \
-             its mesh, up to {largest_mm:.3} mm; up to {MAX_ROUGH_PERCENT:.0} % is acceptable"
+        "in {percent:.0} % of the contact, the smooth surface of the {body} is more than {limit_mm} mm \
+             (at most {largest_mm:.3} mm) from the triangles of its mesh; up to {MAX_ROUGH_PERCENT:.0} % is acceptable"
     );
     let value = (percent, MAX_ROUGH_PERCENT, "%");
     (percent > MAX_ROUGH_PERCENT).then(|| warning(check, value, message, advice))
@@ -289,8 +288,8 @@ pub(crate) fn femur_beyond_rim(finished: &Finished<'_>) -> Option<PlausibilityWa
     let message = format!(
         "for {percent:.0} % of the {cycle} cycle the {side} condyle is on or beyond the rim of the articulating surface"
     );
-    let advice = "The counterface rides off the insert: look at the placement of the bodies (start_mm, axes, sides), the sizes of \
-                    both, loads and springs, and at where the outline of the insert was cut.";
+    let advice = "The counterface moves off the insert: check the placement of the bodies (start_mm, axes, sides), their sizes, \
+                    loads and springs, and the place where the outline of the insert was cut.";
     let value = (percent, MAX_BEYOND_PERCENT, "%");
     Some(warning("femur_beyond_rim", value, message, advice))
 }

@@ -76,11 +76,11 @@ pub(crate) fn not_reached(finished: &Finished<'_>) -> Vec<PlausibilityWarning> {
         let (percent, cycle, name) = (worst.percent, worst.cycle, applied.name);
         let within_percent = 100.0 * applied.within;
         let message = format!(
-            "for {percent:.0} % of the {cycle} cycle contact and springs leave over {within_percent:.0} % of the {name}: up to \
-                {most:.1} {unit} of {load:.1} {unit}, which inertia and damping take"
+            "for {percent:.0} % of the {cycle} cycle, more than {within_percent:.0} % of the {name} is not balanced by contact and \
+                springs: up to {most:.1} {unit} of {load:.1} {unit}, which inertia and damping carry"
         );
-        let advice = "The counterface leaves the insert, or is thrown or dragged about: see that the load does not jump, the \
-                    frequency, and inertia and damping of the machine.";
+        let advice = "The counterface leaves the insert, or inertia or damping dominates its motion: check the load for jumps, the \
+                    frequency, and the inertia and damping of the machine.";
         let value = (percent, applied.most_percent, "%");
         (percent > applied.most_percent)
             .then(|| warning("load_not_reached", value, message, advice))
@@ -185,10 +185,10 @@ fn far(pulled: Pulled) -> PlausibilityWarning {
         cycle,
     } = pulled;
     let message = format!(
-        "a spring is {beyond_mm:.1} mm beyond its free play and holds with {force_n:.0} N, at {at_percent:.0} % of the \
-            {cycle} cycle; the model's springs have no end, a machine's come to theirs after some {FARTHEST_MM:.0} mm"
+        "a spring is deflected {beyond_mm:.1} mm beyond its free play and exerts {force_n:.0} N, at {at_percent:.0} % of the \
+            {cycle} cycle; springs of the model have no stop, those of a machine reach theirs after about {FARTHEST_MM:.0} mm"
     );
-    let advice = "See the loads with their signs, and stiffness and free play of the springs.";
+    let advice = "Check the loads and their signs, and the stiffness and free play of the springs.";
     let value = (beyond_mm, FARTHEST_MM, "mm");
     warning("springs_far", value, message, advice)
 }
@@ -227,7 +227,7 @@ fn range(finished: &Finished<'_>, (joint, most): MostMotion) -> Option<Plausibil
         "{} moves by {range:.1} {unit} in the {cycle} cycle; the limit is {most:.0}",
         description.symbol
     );
-    let advice = "See the loads, the springs and their free play, and whether the dishes hold the counterface at all.";
+    let advice = "Check the loads, the springs and their free play, and whether the dishes constrain the counterface.";
     let (check, value) = (format!("{}_range", description.name), (range, most, unit));
     (range > most).then(|| warning(&check, value, message, advice))
 }
@@ -243,10 +243,10 @@ pub(crate) fn lift_off(finished: &Finished<'_>) -> Option<PlausibilityWarning> {
     let most = lifted.max_by(|a, b| a.0.total_cmp(&b.0));
     let (percent, cycle) = most.filter(|(percent, _)| *percent > MAX_LIFTED_PERCENT)?;
     let message = format!(
-        "for {percent:.0} % of the {cycle} cycle one side carries nothing while the joint is loaded; up to \
+        "for {percent:.0} % of the {cycle} cycle one side carries no load while the joint is loaded; up to \
             {MAX_LIFTED_PERCENT:.0} % is acceptable"
     );
-    let advice = "See vv_axis_medial_mm, which splits the load between the sides, start_mm, and whether both bodies are of \
+    let advice = "Check vv_axis_medial_mm, which divides the load between the sides, start_mm, and whether both bodies are of \
                     the same side.";
     let value = (percent, MAX_LIFTED_PERCENT, "%");
     Some(warning("lift_off", value, message, advice))

@@ -1,8 +1,8 @@
 //! Plausibility checks of a finished run: each with its number, its limit and a remedy.
 //!
 //! A small discretisation error shows that the model was solved well, not that the model is right. These checks find
-//! causes of wrong numbers that look right: wear at the rim, polyethylene pressed beyond yield, a mesh about to
-//! fold, two counts of one volume that differ.
+//! causes of wrong numbers that look right: wear at the rim, pressure beyond yield, nearly inverted elements, and
+//! different values of the worn volume from two computations.
 
 pub(crate) mod bodies;
 pub(crate) mod finished;
@@ -113,8 +113,8 @@ pub(crate) fn mesh_quality(finished: &Finished<'_>) -> Option<PlausibilityWarnin
     let message = format!(
         "the worst element is nearly flat: its scaled Jacobian is {quality:.3}, and at least {MIN_QUALITY} is acceptable"
     );
-    let advice = "Fewer layers or a larger edge_mm at the outline; where the wear itself folds them, more updates or fewer \
-                 cycles.";
+    let advice = "Use fewer layers, or a larger edge_mm if the element is at the outline; if the wear itself distorts it, use more \
+                 updates or fewer cycles.";
     (quality < MIN_QUALITY)
         .then(|| warning("mesh_quality", (quality, MIN_QUALITY, ""), message, advice))
 }
@@ -137,7 +137,7 @@ fn large_error(
         "the {} has a discretisation error of {percent:.1} %",
         scalar.label
     );
-    let advice = "The parts of the error say what to refine: increments, updates, edge_mm or slip tolerance.";
+    let advice = "Refine the setting with the largest part of the error: increments, updates, edge_mm or slip tolerance.";
     (percent > MAX_ERROR_PERCENT)
         .then(|| warning(check, (percent, MAX_ERROR_PERCENT, "%"), message, advice))
 }
@@ -149,7 +149,7 @@ pub(crate) fn error_incomplete(finished: &Finished<'_>) -> Option<PlausibilityWa
     let missing = parts.filter(|(_, percent)| percent.is_none());
     let missing: Vec<&str> = missing.map(|(part, _)| part.name()).collect();
     let message = format!(
-        "the discretisation error of the mass loss is incomplete, without its part from {}: the error is larger than stated",
+        "the discretisation error of the mass loss is incomplete, since it lacks the part from {}: the error is larger than stated",
         missing.join(", ").replace('_', " ")
     );
     let advice = "The warnings at the end state the reason. Refine the part that is missing, and compare both runs.";
@@ -170,9 +170,9 @@ pub(crate) fn interval_too_wide(finished: &Finished<'_>) -> Option<PlausibilityW
         unit: String::new(),
         message: format!(
             "law, inputs and discretisation leave the mass uncertain by a factor of {factor:.1} either way; up to \
-             {MAX_FACTOR_OF_RUN} would be useful"
+             {MAX_FACTOR_OF_RUN} is acceptable"
         ),
-        advice: "The largest of the sources of the interval says why: the law is far from the tests that it was fitted to, \
+        advice: "The largest source of the interval shows the cause: the test is far from those that the law was fitted to, \
                  or the run is discretised too coarsely."
             .to_owned(),
     })
@@ -185,8 +185,8 @@ pub(crate) fn single_update(finished: &Finished<'_>) -> Option<PlausibilityWarni
     let step = state.last_step.as_ref()?;
     let relaxed = step.relaxation_per_cycle * step.interval;
     let message = format!(
-        "one update digs the scar of the first cycle for all cycles, {relaxed:.1} times as deep as would even out the \
-             pressure at its bottom; what that costs is not known, and not in the error stated"
+        "the single update applies the wear of the first cycle for all cycles, {relaxed:.1} times the depth that would equalise \
+             the pressure at the bottom of the scar; the resulting error is unknown and not part of the stated error"
     );
     let advice = "Take more updates, or update = \"auto\".";
     (state.updates.len() == 1 && relaxed > MAX_RELAXED)
@@ -226,7 +226,7 @@ pub(crate) fn updates_too_few(finished: &Finished<'_>) -> Option<PlausibilityWar
     let error = finished.summary.error.as_ref()?;
     let percent = error.of(&MAX_DEPTH_MM).percent.updates?.abs();
     let message = format!(
-        "so few updates cost {percent:.1} % of the deepest wear by the estimate; with steps as long as that the error stated \
+        "the estimated error of the deepest wear due to updates is {percent:.1} %; with such long steps, the stated error \
              of mass and depth may be several times too small"
     );
     let advice = "Take more updates, or update = \"auto\".";
@@ -237,8 +237,8 @@ pub(crate) fn updates_too_few(finished: &Finished<'_>) -> Option<PlausibilityWar
 pub(crate) fn added_inertia(finished: &Finished<'_>) -> Option<PlausibilityWarning> {
     let added = finished.summary.get(&ADDED_INERTIA)?;
     let message = format!(
-        "the explicit steps asked for are stable only with up to {added:.0} times the machine's inertia added to it, and \
-             that moves otherwise than the machine"
+        "the requested explicit steps are stable only with up to {added:.0} times the machine's inertia added to it, which \
+             changes the motion of the machine"
     );
     let advice = "Set a shorter explicit_step_s (0 takes the longest stable step), a larger slip_tolerance_mm_per_s, or \
                  integrator = \"implicit\".";
@@ -249,7 +249,7 @@ pub(crate) fn added_inertia(finished: &Finished<'_>) -> Option<PlausibilityWarni
 pub(crate) fn cycles_not_repeating(finished: &Finished<'_>) -> Option<PlausibilityWarning> {
     let count = finished.summary[&CYCLES_NOT_REPEATING];
     let message = format!("in {count} updates no cycle repeated within the tolerance");
-    let advice = "The motion still changes from cycle to cycle: more cycles an update, or a machine with more \
+    let advice = "The motion still changes from cycle to cycle: use more cycles per update, or a machine with more \
                  damping or stiffer springs.";
     (count > 0.0).then(|| warning("cycles_not_repeating", (count, 0.0, ""), message, advice))
 }

@@ -73,7 +73,7 @@ pub enum ColumnError {
     /// A part of the insert in which no cell of the grid fits.
     #[error(
         "the insert is too narrow for an edge of {edge_mm} mm around x {x_mm:.1}, z {z_mm:.1} mm; use a smaller edge_mm, or delete \
-         what lies there if it is no part of the insert"
+         the geometry there if it is not part of the insert"
     )]
     TooCoarse { edge_mm: f64, x_mm: f64, z_mm: f64 },
     /// More nodes than can be numbered.

@@ -14,8 +14,8 @@ use crate::{
     triangle_mesh::{TriangleMesh, bounds},
 };
 
-/// Length of the longest loop of a piece over that of the piece, corner to corner, above which it is the rim of the
-/// piece and not a hole.
+/// Ratio of the diagonal of the longest loop of a piece to the diagonal of the piece, above which the loop is the rim
+/// of the piece and not a hole.
 const RIM: f64 = 1.0 / 3.0;
 
 /// Judges all holes, and closes those where nothing touches, flat from edge to edge.

@@ -67,13 +67,13 @@ pub struct Scalar {
     pub decimals: usize,
     /// The places that show it.
     pub prominence: Prominence,
-    /// The way in which its error is found.
+    /// The method that estimates its error.
     pub error: ErrorMethod,
     /// The only joints that have it; empty for all.
     pub joints: &'static [TestedJoint],
-    /// True of a whole number.
+    /// True for a whole number.
     pub is_count: bool,
-    /// True of a part of one, which is shown in %.
+    /// True for a fraction, which is shown in %.
     pub is_share: bool,
     /// True if the terminal shows it on the line of the number before it.
     pub is_continued: bool,

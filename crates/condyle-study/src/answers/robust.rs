@@ -14,7 +14,7 @@ use crate::{
     store::Store,
 };
 
-/// The robust optimum beside the design of the first test.
+/// The robust optimum compared with the design of the first test.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub(crate) struct Robust {
     pub minimised: &'static str,

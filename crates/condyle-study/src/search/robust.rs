@@ -1,4 +1,4 @@
-//! The robust optimum beside the starting design, by joint draws from the emulators.
+//! Compares the robust optimum with the starting design, by joint draws from the emulators.
 
 use nalgebra::DVector;
 use serde::Serialize;

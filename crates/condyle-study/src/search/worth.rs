@@ -21,7 +21,7 @@ pub(super) const SHARP: f64 = 0.1;
 /// Factor of all standard deviations where the search explores: with few tests, those of the emulators are too small
 /// far from all tests, and a search that trusts them ends too early.
 pub(super) const WIDE: f64 = 2.0;
-/// Points of which the most promising are starts, for each input, and around the best test.
+/// Number of candidate points for each input and around the best test; the most promising become starting points.
 const CANDIDATES_PER_INPUT: usize = 64;
 const CANDIDATES_AROUND: usize = 64;
 const STARTS: usize = 6;

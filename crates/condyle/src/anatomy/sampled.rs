@@ -179,7 +179,7 @@ impl Sampled {
         }
     }
 
-    /// Returns the sphere of which most of the surface is part, as its radius, negative where the surface is hollow, and
+    /// Returns the sphere that contains most of the surface, as its radius, which is negative for a hollow surface, and
     /// the covered share of the sphere; `area` is that of the whole surface.
     pub(super) fn sphere(&self, area: f64) -> Option<(f64, f64)> {
         /// Smallest radius, as a share of the extent: smaller spheres cannot make up a body.

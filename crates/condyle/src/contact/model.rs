@@ -77,14 +77,14 @@ pub enum Settled {
 pub enum NotBorne {
     /// The material yields, and no equilibrium is found.
     #[error(
-        "presses the insert flat: where plastic strain has reached {plastic_strain:.2} it finds no balance; check the load, and \
+        "presses the insert flat: no equilibrium is found, with a plastic strain of {plastic_strain:.2}; check the load, and \
          [contact.deformable] yield_stress_mpa and its hardening, or take plasticity = \"none\""
     )]
     Flattened { plastic_strain: f64 },
     /// The insert rests on its tray and tips off it.
     #[error(
-        "tips the insert off its tray: its backside finds no rest, and had moved by {moved_mm:.2e} mm when the search was given \
-         up; check whether the load lies within the tray, or take [contact.deformable] backside = \"bonded\""
+        "tips the insert off its tray: its backside finds no equilibrium, and had moved by {moved_mm:.2e} mm when the search \
+         ended; check whether the load lies within the tray, or set [contact.deformable] backside = \"bonded\""
     )]
     Tipped { moved_mm: f64 },
 }

@@ -30,9 +30,9 @@ pub enum MarchError {
     },
     /// The counterface left the insert.
     #[error(
-        "update {update}: the counterface touches the insert nowhere in the whole cycle; it was lowered at x {:.1}, z \
-         {:.1} mm and ends at {readings}; where a translation is far, check start_mm, axes and sides, the loads and \
-         their signs, and the springs that hold it; where a rotation is, the point of its axis (vv_axis_medial_mm or point_mm)",
+        "update {update}: the counterface never touches the insert during the cycle; it was lowered at x {:.1}, z \
+         {:.1} mm and ends at {readings}; check, if a translation is large, start_mm, axes and sides, the loads and \
+         their signs, and the springs that hold it; if a rotation is large, the point of its axis (vv_axis_medial_mm or point_mm)",
         start_mm.0,
         start_mm.1
     )]
@@ -43,9 +43,9 @@ pub enum MarchError {
     },
     /// Inertia that was added to stabilise explicit steps threw the counterface off.
     #[error(
-        "update {update}: the counterface touches the insert nowhere in the whole cycle: the steps of explicit_step_s are stable \
-         only with {added_inertia:.0} times the machine's inertia added to it, so steeply does friction rise with the speed, and \
-         that much throws the counterface off; set a shorter explicit_step_s (0 takes the longest stable step), a larger \
+        "update {update}: the counterface never touches the insert during the cycle: friction rises so steeply with the speed that \
+         the steps of explicit_step_s are stable only with {added_inertia:.0} times the machine's inertia added to it, and this \
+         inertia throws the counterface off; set a shorter explicit_step_s (0 takes the longest stable step), a larger \
          slip_tolerance_mm_per_s, or integrator = \"implicit\""
     )]
     ThrownOff { update: usize, added_inertia: f64 },
@@ -131,7 +131,7 @@ pub enum PlacementError {
     },
     /// The counterface slides off or tips over.
     #[error(
-        "the counterface does not settle on the insert under the axial load: {residual_n:.3e} N are left over at \
+        "the counterface does not settle on the insert under the axial load: {residual_n:.3e} N remain unbalanced at \
          {readings}; check axes and start_mm"
     )]
     NotSettled { residual_n: f64, readings: String },
@@ -148,7 +148,7 @@ pub enum PlacementError {
     /// The counterface rests where the force jumps.
     #[error(
         "the counterface does not settle on the insert under the axial load: it rests at {readings}, but there the force jumps by \
-         some {residual_n:.1} N as it moves by {moved_mm:.3} mm; the load rests on few nodes, each of which feels at once \
+         some {residual_n:.1} N as it moves by {moved_mm:.3} mm; few nodes carry the load, and the force on each jumps \
          where the counterface's curvature changes: take a smaller edge_mm"
     )]
     Unsteady {

@@ -233,13 +233,13 @@ mod tests {
         assert_eq!(extrapolated(&rates_of(&[5.0, 2.0]), None, 3.0), [15.0, 6.0]);
     }
 
-    /// How fast the rate of a node falls as it is worn more than the counterface sinks.
+    /// Rate at which the wear rate of a node falls as the node wears faster than the counterface sinks.
     const RELAXATION: f64 = 1.0;
 
     /// Nodes of equal areas that wear as the counterface sinks on them: r = k (sunk - worn).
     struct Bed<S: Fn(usize, f64, f64) -> f64> {
         nodes: usize,
-        /// How far the counterface has sunk at a node after so many cycles and so much mean depth, mm.
+        /// Sinking of the counterface at a node, by numbers of cycles and mean depth, mm.
         sunk_mm: S,
     }
 

@@ -240,7 +240,7 @@ pub(crate) const HEAVY: f64 = 1.0;
 pub enum CycleError {
     /// An increment that does not converge even in the smallest steps.
     #[error(
-        "the machine finds no balance at {percent:.2} % of the cycle: {residual_n:.3e} N are left over at {readings}; \
+        "the machine finds no equilibrium at {percent:.2} % of the cycle: {residual_n:.3e} N remain unbalanced at {readings}; \
          check loads and springs there, or use more increments"
     )]
     NotConverged {
@@ -251,8 +251,8 @@ pub enum CycleError {
     /// Explicit steps that exceed all bounds or make energy.
     #[error(
         "explicit steps {how} at {percent:.2} % of the cycle, past {readings}{}; where friction rises steeply \
-         with the speed or the load jumps no step is short enough: take a larger slip_tolerance_mm_per_s, a shorter explicit_step_s, or \
-         integrator = \"implicit\"",
+         with the speed or the load jumps, no step is short enough: use a larger slip_tolerance_mm_per_s, a shorter explicit_step_s, \
+         or integrator = \"implicit\"",
         if *added_inertia > HEAVY {
             format!(", with {added_inertia:.0} times the machine's inertia added to it so that explicit_step_s is stable")
         } else {
@@ -270,7 +270,7 @@ pub enum CycleError {
     NotBorne { percent: f64, why: NotBorne },
     /// A load under which the insert continues to flow or slip however often the step is solved.
     #[error(
-        "load and insert do not settle at {percent:.2} % of the cycle, even in the smallest steps: each of {turns} turns \
+        "load and insert do not settle at {percent:.2} % of the cycle, even in the smallest steps: each of {turns} iterations \
          moved the surface again; use more increments, or check the load there"
     )]
     Unsettled { percent: f64, turns: u32 },

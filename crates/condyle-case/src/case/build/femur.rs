@@ -160,7 +160,7 @@ fn on_the_right([x, z]: [f64; 2], side: Side) -> (f64, f64) {
 
 /// Returns the place of the frame for which the centre of the distal arc is over x = 0.
 ///
-/// That centre lies (distal - posterior radius) from the origin, opposite to the transition.
+/// The centre lies (distal - posterior radius) from the origin, opposite to the transition.
 fn over_the_dish(shape: &GenericFemurShape, flexion_rad: f64) -> (f64, f64) {
     let to_centre_mm = shape.distal_radius_mm - shape.posterior_radius_mm;
     let anterior_rad = shape.transition_deg.to_radians() - flexion_rad;

@@ -198,7 +198,7 @@ fn noise(mesh: &TriangleMesh) -> Option<String> {
     (MAX_SCATTER_MM..MAX_NOISE_MM).contains(&scatter_mm).then(|| {
         format!(
             "its vertices scatter by about {scatter_mm:.3} mm about a smooth surface, as by the noise of a scan or by decimation, \
-             and up to {MAX_SCATTER_MM} mm is acceptable; the highest pressure is not to be believed: smooth it, or take the \
+             and up to {MAX_SCATTER_MM} mm is acceptable; the highest pressure is unreliable: smooth the mesh, or use the \
              body from CAD"
         )
     })
@@ -281,7 +281,7 @@ fn faces_up(mesh: &TriangleMesh) -> bool {
     sum > 0.0
 }
 
-/// p' = R p + t
+/// A rigid motion, p' = R p + t.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct RigidMotion {
     pub rotation: Mat3,

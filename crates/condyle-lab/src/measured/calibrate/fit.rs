@@ -140,7 +140,7 @@ impl<'a> Search<'a> {
         Ok(search)
     }
 
-    /// Rates, or differences of them, relative to the measured ones, times the root of their weights.
+    /// Returns rates, or their differences, relative to the measured ones, times the root of their weights.
     fn weighed(&self, rates: &[f64]) -> DVector<f64> {
         let all = rates.iter().zip(self.observations);
         let weighed = all.map(|(rate, of)| of.weight.sqrt() * rate / of.rate);

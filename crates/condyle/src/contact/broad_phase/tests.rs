@@ -1,5 +1,5 @@
-//! What is no candidate is apart: compared with a search over all blocks, and the gaps at all corners
-//! of their shares.
+//! Tests that blocks that are not candidates are not in contact, by comparison with a search over all blocks and with
+//! the gaps at all corners of their shares.
 
 use super::separations::{BlockPlaces, BlockWear, LastWear, SeparationBound, Separations};
 use crate::{

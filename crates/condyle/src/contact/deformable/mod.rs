@@ -13,7 +13,7 @@
 //! | `friction`, `stick_slip` | stick and slip along the surface, and the solver for its loads |
 //! | `backside` | a backside that rests on its tray |
 //!
-//! Loads and histories are solved in turns, accelerated by Anderson's mixing, until they agree.
+//! Loads and histories are solved alternately, accelerated by Anderson mixing, until they are consistent.
 
 mod backside;
 mod changed_factor;
@@ -59,7 +59,8 @@ pub enum FrictionModel {
     /// Friction mu N v / sqrt(v^2 + v0^2) at the sliding speed v; it does not displace the surface along itself.
     #[default]
     Regularised,
-    /// The surface deflects along itself, and each node sticks or slides: a node that carries less than mu N does not slide.
+    /// The surface deflects tangentially, and each node sticks or slides: a node that carries less than mu N
+    /// does not slide.
     /// The loads along the surface are carried from increment to increment.
     StickSlip,
 }
@@ -83,17 +84,17 @@ pub enum Backside {
 /// The law of an elastic insert under a rigid counterface.
 ///
 /// Small displacements: the surface deflects along its inward normals by the normal compliance C of the insert,
-/// computed by finite elements. The loads N at the nodes hold the bodies just in touch where they are in contact,
+/// computed by finite elements. The loads N at the nodes are those for which the bodies touch without overlap,
 ///
 /// $$ N \ge 0, \quad g + C N \ge 0, \quad N \cdot (g + C N) = 0, $$
 ///
-/// with the gaps g of the bodies at rest: nothing is tuned. Every node's share of the surface is under a pressure along the
-/// counterface's normal and under Coulomb friction, regularised or with stick and slip. Wear goes into the gap; C is that of the
-/// unworn insert, and recomputed once an insert has become thinner by more than a twentieth. An insert of a material that
-/// yields flows below its surface, and the permanent set of that goes into the gap; the stiffness stays.
+/// with the gaps g of the undeformed bodies; no constant is tuned. The share of every node carries a pressure along the
+/// counterface's normal and Coulomb friction, regularised or with stick and slip. Wear is added to the gap. C is that
+/// of the unworn insert, and is recomputed once the insert has become thinner by more than a twentieth. If the material
+/// yields, the permanent set due to the flow below the surface is added to the gap; the stiffness does not change.
 ///
-/// Limits: loads along the surface do not move it along its normal, nor do normal loads move it along itself; the tray is
-/// rigid. An insert that rests on its tray neither yields nor sticks and slips on its surface.
+/// Limits: tangential loads cause no normal deflection, and normal loads no tangential deflection; the tray is rigid.
+/// An insert that rests on its tray neither yields nor sticks and slips on its surface.
 #[derive(Clone, Debug)]
 pub struct Deformable {
     elastic: Elastic,
@@ -136,7 +137,7 @@ impl Deformable {
     /// insert.
     ///
     /// # Errors
-    /// An insert of which a part is not held by that.
+    /// Fails if the support leaves a part of the insert unsupported.
     pub fn with_backside(
         mut self,
         backside: Backside,

@@ -36,7 +36,8 @@ pub enum InsertError {
     BadElement { hex: usize, quality: f64 },
     /// A node of the articulating surface with no backside below it.
     #[error(
-        "the backside lies nowhere below the articulating surface at ({:.2}, {:.2}, {:.2}) mm; check which surface is the backside",
+        "no part of the backside lies below the articulating surface at ({:.2}, {:.2}, {:.2}) mm; \
+         check which surface is the backside",
         place_mm.x, place_mm.y, place_mm.z
     )]
     NoThickness { place_mm: Vec3 },

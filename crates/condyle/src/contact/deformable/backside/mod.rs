@@ -41,9 +41,9 @@ const CYCLE_FIELD: &str = "backside_lift_mm_lifted_part_slip_mm_lock_n_lock_nmm"
 
 /// An elastic insert whose backside rests on its tray with friction.
 ///
-/// The loads of an increment and the equilibrium of the backside depend on each other. They are found in turns until the
-/// surface stays: the loads with the backside in its trial position, then the equilibrium under these loads. The first
-/// trial extrapolates the two increments before.
+/// The loads of an increment and the equilibrium of the backside depend on each other. They are solved alternately
+/// until the surface no longer moves: the loads with the backside in its trial position, then the equilibrium under
+/// these loads. The first trial extrapolates the two previous increments.
 pub(crate) struct RestingInsert {
     surface: Arc<ElasticSurface>,
     tray: Arc<Tray>,

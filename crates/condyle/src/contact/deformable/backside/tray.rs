@@ -152,7 +152,7 @@ impl Tray {
     /// R_t = -\mu R_n \frac{q_t - q_t^0}{|q_t - q_t^0|} \quad \text{where it slips}, \qquad R = S q - b. $$
     ///
     /// Douglas-Rachford splitting [eckstein-bertsekas1992]: the projection of each point alone, pulled by a spring, onto
-    /// its conditions, and the motion of the whole with the springs of all points, in turns, accelerated by Anderson's
+    /// its conditions, and the motion of the whole with the springs of all points, alternately, accelerated by Anderson
     /// mixing.
     ///
     /// # Errors

@@ -111,9 +111,9 @@ impl<M: Material + Clone + Debug + Send + Sync + 'static> InsertMaterial for M {
 
 /// An elastic insert whose material yields.
 ///
-/// The loads of an increment and the flow under them depend on each other. They are found in turns until the permanent set
-/// stays: the loads with the set of the flow found last, then the flow under these loads. The loads on the surface are
-/// normal ones; friction is neglected in the flow as it is in the gap.
+/// The loads of an increment and the flow under them depend on each other. They are solved alternately until the
+/// permanent set no longer changes: the loads with the set of the last flow, then the flow under these loads. The loads
+/// on the surface are normal ones; friction is neglected in the flow as it is in the gap.
 struct PlasticInsert<M: Material> {
     surface: Arc<ElasticSurface>,
     material: M,
@@ -375,8 +375,8 @@ impl<M: Material> PlasticInsert<M> {
 
     /// Finds the flow of elements, and returns its forces by the tiles of mesh nodes.
     ///
-    /// The displacements under the flow and the flow under the displacements are found in turns, accelerated by Anderson's
-    /// mixing of the plastic strains.
+    /// The displacements due to the flow and the flow due to the displacements are solved alternately, accelerated by
+    /// Anderson mixing of the plastic strains.
     fn sweep(&mut self, elements: &[u32]) -> Result<ByTile, NotBorne> {
         let hexes = &self.surface.solid.mesh().hexes;
         let nodes = elements.iter().flat_map(|&element| hexes[element as usize]);
