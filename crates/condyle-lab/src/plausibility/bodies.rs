@@ -11,7 +11,10 @@ use condyle_results::{
     },
 };
 
-use super::finished::{Finished, SolvedCycle, warning};
+use super::{
+    finished::{Finished, SolvedCycle, warning},
+    percent_of,
+};
 
 /// Distance from the rim, mm, within which a foundation over-estimates pressure and the pressure of an elastic body
 /// is unbounded: about the reach of the neighbours that are missing there.
@@ -48,11 +51,7 @@ pub(crate) fn wear_at_rim(finished: &Finished<'_>) -> Option<PlausibilityWarning
             at_rim += volume_mm3;
         }
     }
-    let percent = if whole > 0.0 {
-        100.0 * at_rim / whole
-    } else {
-        0.0
-    };
+    let percent = percent_of(at_rim, whole);
     let message = format!(
         "{percent:.1} % of the worn volume lies within {NEAR_RIM_MM} mm of the rim of the articulating surface; up to \
              {MAX_AT_RIM_PERCENT:.0} % is acceptable"

@@ -193,6 +193,15 @@ pub(crate) fn single_update(finished: &Finished<'_>) -> Option<PlausibilityWarni
         .then(|| warning("single_update", (relaxed, MAX_RELAXED, ""), message, advice))
 }
 
+/// Returns a part of a whole in %; 0 of nothing.
+fn percent_of(part: f64, whole: f64) -> f64 {
+    if whole > 0.0 {
+        100.0 * part / whole
+    } else {
+        0.0
+    }
+}
+
 /// Warns of steps beyond the stability of the march: a place that lies too deep carries so little that the next step leaves it
 /// too high, and the other way round. The error by the updates is estimated from sums over the surface, which hardly change.
 pub(crate) fn updates_overshoot(finished: &Finished<'_>) -> Option<PlausibilityWarning> {
@@ -204,12 +213,8 @@ pub(crate) fn updates_overshoot(finished: &Finished<'_>) -> Option<PlausibilityW
         changed += area_mm2 * (now - before).abs();
         sum += area_mm2 * (now + before);
     }
-    // Of nodes that wear in turns, all of the sum changes.
-    let percent = if sum > 0.0 {
-        100.0 * changed / sum
-    } else {
-        0.0
-    };
+    // Where nodes alternately wear and rest, all of the sum changes.
+    let percent = percent_of(changed, sum);
     let message = format!(
         "the last step of {:.0} cycles changes the wear rates of the nodes by {percent:.0} % of their sum: steps as long as that \
              overshoot, and the error stated does not show it",

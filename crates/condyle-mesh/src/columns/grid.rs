@@ -219,6 +219,15 @@ pub(super) fn neighbours(
 }
 
 impl Plan {
+    /// Returns the area of all quads, mm2.
+    pub fn area_mm2(&self) -> f64 {
+        let area = |quad: &[u32; 4]| {
+            let [a, b, c, d] = quad.map(|place| self.places_mm[place as usize]);
+            ((c - a).perp(&(d - b)) / 2.0).abs()
+        };
+        self.quads.iter().map(area).sum()
+    }
+
     /// Fills the space over every quad with hexahedra in layers that grow with the depth; `columns`: one per place.
     pub fn hexahedra(&self, columns: &[Column], meshing: Meshing) -> ColumnMesh {
         let thickness_mm = columns.iter().map(|(low, high)| high - low).sum::<f64>();

@@ -125,13 +125,8 @@ impl TroughShape {
 /// Too many nodes, and the errors of [`Insert::new`] for dimensions that are not positive.
 pub fn pin(radius_mm: f64, height_mm: f64, meshing: Meshing) -> Result<Insert, InsertError> {
     let plan = disc_plan(meshing.edge_mm / radius_mm, meshing.layers)?;
-    let area = |&[a, b, c, d]: &[u32; 4]| {
-        let [a, b, c, d] = [a, b, c, d].map(|place| plan.places_mm[place as usize]);
-        ((c - a).perp(&(d - b)) / 2.0).abs()
-    };
     // The rim is a polygon, which is made as large as the circle: otherwise the pressure of a coarse pin is too high.
-    let area: f64 = plan.quads.iter().map(area).sum();
-    let rim_mm = radius_mm * (PI / area).sqrt();
+    let rim_mm = radius_mm * (PI / plan.area_mm2()).sqrt();
     round_bearing(radius_mm, height_mm, meshing, |disc, down| {
         Vec3::new(disc.x * rim_mm, -down * height_mm, disc.y * rim_mm)
     })

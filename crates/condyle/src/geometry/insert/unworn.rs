@@ -161,10 +161,7 @@ fn followers(mesh: &HexMesh, surface_nodes: &[u32]) -> Vec<Follower> {
     let mut left: Vec<&[u32; 8]> = mesh.hexes.iter().collect();
     let mut column_mm = vec![0.0; surface_nodes.len()];
     while !front.is_empty() {
-        let mut is_front = vec![false; mesh.nodes.len()];
-        for &node in &front {
-            is_front[node as usize] = true;
-        }
+        let is_front = marked(&front, mesh.nodes.len());
         front.clear();
         left.retain(|hex| {
             let on_front = hex.map(|node| is_front[node as usize]);
@@ -196,6 +193,15 @@ fn followers(mesh: &HexMesh, surface_nodes: &[u32]) -> Vec<Follower> {
     };
     let nodes = top.into_iter().zip(depth_mm).enumerate();
     nodes.filter_map(follower).collect()
+}
+
+/// Returns whether each of `count` nodes is one of `nodes`.
+fn marked(nodes: &[u32], count: usize) -> Vec<bool> {
+    let mut is_marked = vec![false; count];
+    for &node in nodes {
+        is_marked[node as usize] = true;
+    }
+    is_marked
 }
 
 /// Returns the nodes of quads, ascending, and the quads in numbers of these nodes.
