@@ -435,11 +435,11 @@ mod tests {
             .replace(name, b"of the last update")
             .expect("it can be written");
         // A folder in place of the part file ends the replacement before the file.
-        std::fs::create_dir(part_file(&file)).expect("it can be made");
+        fs::create_dir(part_file(&file)).expect("it can be made");
         folder
             .replace(name, b"of the final cycle")
             .expect_err("the part file is in the way");
-        std::fs::write(&file, b"of the final cycle").expect("it can be written");
+        fs::write(&file, b"of the final cycle").expect("it can be written");
         check_all(temporary.path()).expect("the file has no hash");
     }
 }
