@@ -11,10 +11,7 @@ use condyle_results::{
     },
 };
 
-use super::{
-    finished::{Finished, SolvedCycle, warning},
-    percent_of,
-};
+use super::finished::{Finished, SolvedCycle, percent_of, warning};
 
 /// Distance from the rim, mm, within which a foundation over-estimates pressure and the pressure of an elastic body
 /// is unbounded: about the reach of the neighbours that are missing there.

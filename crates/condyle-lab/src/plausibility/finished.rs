@@ -121,3 +121,12 @@ pub(crate) fn rim_of(insert: &Insert) -> Vec<[u32; 2]> {
     let at_end = faces_at.into_iter().filter(|(_, faces)| *faces == 1);
     at_end.map(|(edge, _)| edge).collect()
 }
+
+/// Returns a part of a whole in %; 0 of nothing.
+pub(super) fn percent_of(part: f64, whole: f64) -> f64 {
+    if whole > 0.0 {
+        100.0 * part / whole
+    } else {
+        0.0
+    }
+}

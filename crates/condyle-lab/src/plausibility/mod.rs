@@ -17,7 +17,7 @@ use condyle_results::{
     },
 };
 
-use finished::{Finished, warning};
+use finished::{Finished, percent_of, warning};
 
 /// A check of one number; none if the run is plausible.
 type Check = fn(&Finished<'_>) -> Option<PlausibilityWarning>;
@@ -191,15 +191,6 @@ pub(crate) fn single_update(finished: &Finished<'_>) -> Option<PlausibilityWarni
     let advice = "Take more updates, or update = \"auto\".";
     (state.updates.len() == 1 && relaxed > MAX_RELAXED)
         .then(|| warning("single_update", (relaxed, MAX_RELAXED, ""), message, advice))
-}
-
-/// Returns a part of a whole in %; 0 of nothing.
-fn percent_of(part: f64, whole: f64) -> f64 {
-    if whole > 0.0 {
-        100.0 * part / whole
-    } else {
-        0.0
-    }
 }
 
 /// Warns of steps beyond the stability of the march: a place that lies too deep carries so little that the next step leaves it
