@@ -100,9 +100,9 @@ export class Laboratory {
     if (!this.folder[SUMMARY]) return undefined;
     if (!this.folder[REPORT]) {
       const program = await loaded(PROGRAM);
-      if (!program) this.listener.failed({ message: `error: ${PROGRAM} cannot be loaded: the saved report has no 3-D view`, problems: [] });
       const files = program ? { ...this.folder, [PROGRAM]: program } : this.folder;
       this.folder = (await this.call(["report", RESULTS], files, [RESULTS])) ?? this.folder;
+      if (!program) this.listener.failed({ message: `error: ${PROGRAM} cannot be loaded: the saved report has no 3-D view`, problems: [] });
     }
     return this.folder[REPORT] && this.folder;
   }
