@@ -49,6 +49,8 @@ impl Insert {
     /// Creates an insert from its mesh, the outward quads of its articulating surface, and those of its backside; its
     /// regions are its medial and its lateral side.
     ///
+    /// The hexahedra are to stand in columns below the articulating surface: nodes outside of columns stay in place as it wears.
+    ///
     /// # Errors
     /// An empty mesh or surface, an inverted element, or a node without thickness below it.
     pub fn new(
