@@ -37,6 +37,7 @@ ENDS = {2: "error: bad input", 3: "error: the physics could not be solved"}
 DOUBT_THE_ERROR = (
     "single_update",
     "updates_too_few",
+    "updates_overshoot",
     "cycles_not_repeating",
     "wear_at_rim",
     "pressure_at_rim",
