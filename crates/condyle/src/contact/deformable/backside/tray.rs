@@ -23,6 +23,10 @@ const LOCK_N_PER_MM: f64 = 1e5;
 /// inserts of the cases. It changes the path to the equilibrium, not the equilibrium.
 const SEARCH_STIFFNESS: f64 = 0.5;
 
+/// Smallest spacing of the points, in edges of the floor: points that are closer move the same nodes, and the search for the
+/// equilibrium takes 50 times as many steps.
+const MIN_EDGES_APART: f64 = 1.5;
+
 /// The equilibrium is found once the motion under the forces and the admissible motion agree within this, mm: a hundredth
 /// of the agreement that is required of loads and backside.
 const AT_REST_MM: f64 = 1e-7;
@@ -51,8 +55,11 @@ pub(crate) struct Tray {
 }
 
 impl Tray {
-    /// Creates the tray of a solid that is held by the floor of its backside and whose surface has `tiles` tiles.
+    /// Creates the tray of a solid that is held by the floor of its backside and whose surface has `tiles` tiles; its points are
+    /// about `spacing_mm` apart, or farther on a coarse mesh.
     pub fn new(solid: &ElasticSolid, floor: &Floor, spacing_mm: f64, tiles: usize) -> Self {
+        let edge_mm = (floor.share_mm2.iter().sum::<f64>() / floor.nodes.len() as f64).sqrt();
+        let spacing_mm = spacing_mm.max(MIN_EDGES_APART * edge_mm);
         let groups = tray_points(solid.mesh(), floor, spacing_mm);
         let motions_of = |point: &TrayPoint| {
             point.frame.map(|along| {
