@@ -24,7 +24,7 @@ Design = Mapping[str, float]
 class Search:
     """A search that proposes designs and takes the results of their tests, which may run anywhere and end in any order.
 
-    It holds the folder of its study until it is closed; use it in a ``with`` statement. The tests are stored as they are told,
+    It holds the folder of its study until it is closed; use it in a ``with`` statement. Each result is stored at once,
     so that another search, :meth:`Study.run` or the command continues from them.
 
     >>> import tempfile
@@ -55,7 +55,7 @@ class Search:
 
     @property
     def pending(self) -> list[dict[str, float]]:
-        """The designs that were asked for and whose results were not told yet."""
+        """The proposed designs without a result."""
         return list(self._pending)
 
     def ask(self, count: int = 1) -> list[dict[str, float]]:
@@ -97,7 +97,7 @@ class Search:
         self._pending = [design for design in self._pending if design not in told]
 
     def answered(self) -> StudyResult:
-        """Evaluates the tests that were told so far; rewrites table, answers and page."""
+        """Evaluates the stored tests; rewrites table, answers and page."""
         return self._study.answered(self._out)
 
     def close(self) -> None:

@@ -1,7 +1,8 @@
 //! Files of a results folder: atomic replacement, the hashes by which damaged meshes are detected, and the lock.
 //!
 //! The hash of a mesh is written after it, before the checkpoint that refers to it. The last mesh is written again after the
-//! final cycle; its hash is removed before. Each line of `checksums` has the format of `b3sum`: `b3sum --check checksums` verifies all of them.
+//! final cycle; its hash is removed before. Each line of `checksums` has the format of `b3sum`: `b3sum --check checksums`
+//! verifies all of them.
 
 use std::{
     fs::{self, File, OpenOptions, TryLockError},

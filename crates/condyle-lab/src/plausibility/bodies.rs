@@ -255,7 +255,7 @@ fn rough(
             largest_mm = largest_mm.max(deviation_mm);
         }
     }
-    let percent = 100.0 * doubtful / whole.max(f64::MIN_POSITIVE);
+    let percent = percent_of(doubtful, whole);
     let message = format!(
         "in {percent:.0} % of the contact, the smooth surface of the {body} is more than {limit_mm} mm \
              (at most {largest_mm:.3} mm) from the triangles of its mesh; up to {MAX_ROUGH_PERCENT:.0} % is acceptable"
