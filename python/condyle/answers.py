@@ -77,7 +77,7 @@ class Answers(Answer):
         design: str
         """The design of the tests."""
         tests: int
-        """The number of tests; for a search the maximum."""
+        """The number of tests; for a search and an adaptive study the maximum."""
         kept: int
         """The number of stored tests, done or failed."""
         failed: tuple[Answer, ...]
@@ -102,6 +102,8 @@ class Answers(Answer):
         """The best test of a search: ``row``, ``inputs``, ``outputs``, ``margins`` and ``standing``."""
         robust: Answer | None
         """The ``optimum`` of a robust search beside the ``first`` design."""
+        aim: Answer | None
+        """Of an adaptive study: ``output``, ``part``, ``error``, ``tests``, and whether the output ``is_known``."""
 
     def _repr_html_(self) -> str:
         # 5 %, median and 95 % among the percentiles.

@@ -27,8 +27,8 @@ const MIN_VARIANCE: f64 = 1e-20;
 /// tests change them little.
 const MAX_FITTED: usize = 128;
 
-/// Smallest nugget of joint draws, which rounding of the covariance of several hundred close points needs.
-const DRAWN_NUGGET: f64 = 1e-7;
+/// Smallest nugget of many points together, which rounding of the covariance of several hundred close ones needs.
+const JOINT_NUGGET: f64 = 1e-7;
 
 /// Groups of tests, each of which is predicted by an emulator fitted to the others.
 const FOLDS: usize = 5;
@@ -276,6 +276,22 @@ impl Emulator {
         among - one.rows(0, last).dot(&other.rows(0, last)) + one[last] * other[last]
     }
 
+    /// Returns the predicted means at points, and the covariance of the process there relative to its variance, without the
+    /// nugget.
+    pub fn joint(&self, points: &[Vec<f64>]) -> (DVector<f64>, DMatrix<f64>) {
+        let axes = || 0..self.lengths.len();
+        let with = points.iter().map(|one| self.with_tests(axes(), one));
+        let with: Vec<DVector<f64>> = with.collect();
+        let mean = |with: &DVector<f64>| self.predict_average(with, 1.0).mean;
+        let means = DVector::from_iterator(points.len(), with.iter().map(mean));
+        let whitened: Vec<DVector<f64>> = with.iter().map(|with| self.whitened(with)).collect();
+        let covariance = DMatrix::from_fn(points.len(), points.len(), |row, column| {
+            let among = self.correlation(axes(), &points[row], &points[column]);
+            self.covariance([&whitened[row], &whitened[column]], among)
+        });
+        (means, covariance)
+    }
+
     /// Returns random outputs at `points`, `count` times: joint draws from the process with its nugget; none if rounding
     /// makes their covariance indefinite.
     pub fn draws(
@@ -284,21 +300,9 @@ impl Emulator {
         count: usize,
         numbers: &mut Random,
     ) -> Option<Vec<DVector<f64>>> {
-        let axes = || 0..self.lengths.len();
-        let with: Vec<DVector<f64>> = points
-            .iter()
-            .map(|one| self.with_tests(axes(), one))
-            .collect();
-        let mean = |with: &DVector<f64>| self.predict_average(with, 1.0).mean;
-        let means = DVector::from_iterator(points.len(), with.iter().map(mean));
-        let whitened: Vec<DVector<f64>> = with.iter().map(|with| self.whitened(with)).collect();
-        // The smallest nugget keeps the covariance of close points positive definite.
-        let nugget = self.nugget().max(DRAWN_NUGGET);
-        let covariance = DMatrix::from_fn(points.len(), points.len(), |row, column| {
-            let among = self.correlation(axes(), &points[row], &points[column]);
-            let own = if row == column { nugget } else { 0.0 };
-            self.covariance([&whitened[row], &whitened[column]], among) + own
-        });
+        let (means, mut covariance) = self.joint(points);
+        let nugget = self.joint_nugget();
+        (0..points.len()).for_each(|one| covariance[(one, one)] += nugget);
         let lower = covariance.cholesky()?.unpack();
         let scale = self.scale * self.process.variance.sqrt();
         let mut draw = || {
@@ -306,6 +310,11 @@ impl Emulator {
             &means + &lower * normal * scale
         };
         Some((0..count).map(|_| draw()).collect())
+    }
+
+    /// Returns the nugget, or the smallest one that keeps the covariance of close points positive definite.
+    pub fn joint_nugget(&self) -> f64 {
+        self.nugget().max(JOINT_NUGGET)
     }
 
     pub fn axes(&self) -> usize {

@@ -21,9 +21,10 @@ use condyle_lab::{RunError, batch_run};
 use condyle_results::{Summary, catalogue};
 
 use crate::{
+    adaptive,
     error::StudyError,
     plan::{Plan, Shard, Test, TestOutputs, TestResult},
-    search::next_tests,
+    search,
     store::{DATABASE, Store},
 };
 
@@ -48,7 +49,7 @@ pub struct Progress {
     pub before: u64,
     /// Tests that are done, including those stored before.
     pub kept: u64,
-    /// All tests; for a search, the largest number allowed.
+    /// All tests; for a sequential design, the largest number allowed.
     pub tests: u64,
 }
 
@@ -78,7 +79,7 @@ pub fn run_study(
     listener: &mut Listener<'_>,
 ) -> Result<(), StudyError> {
     let StudyOptions { shard, threads, .. } = *options;
-    if plan.is_search() && !shard.is_whole() {
+    if plan.is_sequential() && !shard.is_whole() {
         return Err(StudyError::no_shards());
     }
     let store = Store::take_shard(plan, shard, &options.out)?;
@@ -94,11 +95,12 @@ pub fn run_study(
         let mut keep = |found: Vec<Found<TestResult>>| store.keep(plan, &found);
         run_tests(tests, threads, &work, &mut keep, &mut progress, listener)
     };
-    if plan.is_search() {
+    if plan.is_sequential() {
         let mut known = Vec::new();
         loop {
             known.extend(store.known(plan, known.len() as u64)?);
-            let Some(tests) = next_tests(plan, &known) else {
+            let tests = search::next_tests(plan, &known);
+            let Some(tests) = tests.or_else(|| adaptive::next_tests(plan, &known)) else {
                 return Ok(());
             };
             // Of an interrupted batch, some tests are stored.

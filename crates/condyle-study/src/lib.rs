@@ -4,6 +4,7 @@
 //! stores their results in a [`Store`], from which [`write_answers`] computes tables, pictures and a page.
 //! [`sensitivity`], [`uncertainty`] and [`converge`] are ready-made plans with their own answers.
 
+mod adaptive;
 mod answers;
 mod converge;
 mod descent;

@@ -51,9 +51,9 @@ pub fn write_answers(plan: &Plan, folder: &Path) -> Result<Answers, StudyError> 
     let title = Some(answers.title.as_str()).filter(|title| !title.is_empty());
     let doubts = answers.doubts().unwrap_or_default();
     let answer = answers.sentence().unwrap_or_default();
-    let tests = match plan.is_search() {
-        true => format!("A search of {kept} tests"),
-        false => format!("{kept} tests, design {design}"),
+    let tests = match plan.study().objectives().is_empty() {
+        false => format!("A search of {kept} tests"),
+        true => format!("{kept} tests, design {design}"),
     };
     let lede = format!("{answer} {tests}; {end}. {doubts}");
     let lede = lede.trim();
@@ -203,7 +203,9 @@ fn tornado(answers: &Answers) -> Option<Picture> {
         }
     });
     let all: Vec<Bar> = all.collect();
-    if all.is_empty() || all.iter().any(|bar| !bar.span[0].is_finite()) {
+    // Sobol indices take its place.
+    let is_adaptive = answers.aim.is_some();
+    if is_adaptive || all.is_empty() || all.iter().any(|bar| !bar.span[0].is_finite()) {
         return None;
     }
     let title = format!("Effects on {}", spread.title);

@@ -77,7 +77,7 @@ impl Plan {
         }
         let inputs = study.inputs.len();
         let most = match &study.design {
-            Design::Sobol(_) | Design::Optimise(_) => MAX_AXES,
+            Design::Sobol(_) | Design::Optimise(_) | Design::Adaptive(_) => MAX_AXES,
             // A Saltelli design takes two independent values of each input from one point.
             Design::Saltelli(_) => MAX_AXES / 2,
             _ => usize::MAX,
@@ -116,18 +116,18 @@ impl Plan {
         &self.inputs_blake3
     }
 
-    /// Returns the number of all tests; for a search, the largest number allowed.
+    /// Returns the number of all tests; for a sequential design, the largest number allowed.
     pub fn tests(&self) -> u64 {
         self.tests * designs(&self.study) as u64
     }
 
     /// Returns whether tests depend on the results of earlier ones.
-    pub fn is_search(&self) -> bool {
-        matches!(self.study.design, Design::Optimise(_))
+    pub fn is_sequential(&self) -> bool {
+        matches!(self.study.design, Design::Optimise(_) | Design::Adaptive(_))
     }
 
-    /// Returns test `row`; none beyond the last test, and none for a search, whose tests depend on the results of
-    /// earlier ones.
+    /// Returns test `row`; none beyond the last test, and none for a sequential design, whose tests depend on the
+    /// results of earlier ones.
     pub(crate) fn test(&self, row: u64) -> Option<Test> {
         if row >= self.tests() {
             return None;
@@ -135,7 +135,7 @@ impl Plan {
         let designs = designs(&self.study) as u64;
         let (of_design, alternative) = (row / designs, (row % designs) as usize);
         let values = match &self.study.design {
-            Design::Optimise(_) => return None,
+            Design::Optimise(_) | Design::Adaptive(_) => return None,
             Design::Rows(_) => {
                 let row = &self.study.rows[of_design as usize];
                 row.iter().cloned().map(Some).collect()
@@ -169,7 +169,7 @@ impl Plan {
             Design::Morris(keys) => morris_places(row, inputs, keys.levels, keys.seed),
             Design::FullFactorial(keys) => factorial_places(row, &counts(keys.points)),
             Design::OneAtATime(keys) => one_at_a_time_places(row, &counts(keys.points)),
-            Design::Rows(_) | Design::Optimise(_) => Vec::new(),
+            Design::Rows(_) | Design::Optimise(_) | Design::Adaptive(_) => Vec::new(),
         };
         self.correlated(places)
     }
@@ -237,6 +237,7 @@ fn tests(study: &Study) -> f64 {
         Design::OneAtATime(keys) => 1.0 + numbers(keys.points).sum::<f64>(),
         Design::Rows(_) => study.rows.len() as f64,
         Design::Optimise(keys) => keys.size as f64,
+        Design::Adaptive(keys) => keys.size as f64,
     }
 }
 

@@ -219,13 +219,18 @@ impl Store {
         Err(StudyError::folder(folder, problem))
     }
 
-    /// Takes the number of tests of a plan that has more of them than the study in the folder had.
+    /// Takes the text and the number of tests of a plan that has more of them than the study in the folder had, or aims at
+    /// smaller errors.
     fn grow(&self, plan: &Plan) -> Result<(), StudyError> {
         let facts = [
             ("tests", plan.tests().to_string()),
             ("study.toml", plan.study().text.clone()),
         ];
-        if self.fact("tests")?.as_ref() == Some(&facts[0].1) {
+        let mut is_known = true;
+        for (name, value) in &facts {
+            is_known &= self.fact(name)?.as_ref() == Some(value);
+        }
+        if is_known {
             return Ok(());
         }
         let update = "UPDATE study SET value = ?2 WHERE name = ?1";
@@ -259,9 +264,9 @@ impl Store {
     /// Returns the numbers of the tests that are not stored.
     ///
     /// # Errors
-    /// The study is a search, whose tests are not known in advance.
+    /// The tests of a sequential design are not known in advance.
     pub fn missing(&self, plan: &Plan) -> Result<Vec<u64>, StudyError> {
-        if plan.is_search() {
+        if plan.is_sequential() {
             return Err(StudyError::no_shards());
         }
         let rows = (0..).zip(self.kept(plan)?);
@@ -333,7 +338,7 @@ impl Store {
         Ok(known)
     }
 
-    /// Returns test `row` with its stored inputs, which for a search are stored only here; none if it is not stored.
+    /// Returns test `row` with its stored inputs, which for a sequential design are stored only here; none if it is not stored.
     pub(crate) fn test(&self, row: u64, plan: &Plan) -> Result<Option<Test>, StudyError> {
         let (inputs, _) = plan.columns();
         let values = self.first_row(&select(&inputs, ""), row as i64, |cells| {
@@ -476,10 +481,10 @@ impl Store {
 }
 
 impl Plan {
-    /// Test `row`; that of a search as it is stored in `folder`.
+    /// Test `row`; that of a sequential design as it is stored in `folder`.
     ///
     /// # Errors
-    /// A row that the study does not have, or a search has not reached.
+    /// A row that the study does not have, or a sequential design has not reached.
     pub fn row(&self, row: u64, folder: Option<&Path>) -> Result<Test, StudyError> {
         let tests = self.tests();
         if row >= tests {
@@ -494,7 +499,7 @@ impl Plan {
         }
         test.ok_or_else(|| {
             StudyError::Plan(format!(
-                "row {row} of a search is known after the search has reached it; run the study first"
+                "row {row} depends on the results of earlier tests, which have not reached it; run the study first"
             ))
         })
     }

@@ -1,11 +1,11 @@
 //! The contents of a study.
 
 use std::io;
-use std::ops::Range;
+use std::ops::{Range, RangeInclusive};
 use std::path::{Path, PathBuf};
 
 use super::answers::Answers;
-use super::declared::{Design, MorrisKeys, OptimiseKeys, SampleKeys, Variation};
+use super::declared::{AdaptiveKeys, Design, MorrisKeys, OptimiseKeys, SampleKeys, Variation};
 use super::input::Input;
 use crate::case::{Assignment, Case, CaseReader, ChangeError};
 use crate::config::*;
@@ -107,6 +107,16 @@ impl Study {
             || catalogue::output(&keys.minimise).into_iter().collect(),
             |both| both.to_vec(),
         )
+    }
+
+    /// Returns the output that the tests of an adaptive design are for, and the part of it that its errors may reach; none for
+    /// other designs.
+    pub fn aim(&self) -> Option<(&'static Scalar, f64)> {
+        let Design::Adaptive(keys) = &self.design else {
+            return None;
+        };
+        let (output, part) = keys.aim()?;
+        Some((catalogue::output(output)?, part))
     }
 
     /// Returns the number of inputs that a search chooses; the others, which follow them, are disturbances.
@@ -229,8 +239,25 @@ impl Study {
     }
 }
 
+impl AdaptiveKeys {
+    /// Returns the name of the output and the part of it, read from `OUTPUT known to NUMBER %`.
+    pub(super) fn aim(&self) -> Option<(&str, f64)> {
+        let (output, part) = self.until.split_once(AIM)?;
+        let percent: f64 = part.strip_suffix('%')?.trim().parse().ok()?;
+        MAX_PERCENT
+            .contains(&percent)
+            .then_some((output.trim(), percent / 100.0))
+    }
+}
+
+/// The words between the output and the part in `until`.
+const AIM: &str = " known to ";
+/// Parts that can be asked for, in %: smaller ones are beyond the solver, and larger ones need no emulator.
+const MAX_PERCENT: RangeInclusive<f64> = 0.01..=50.0;
+
 impl Design {
-    /// Returns the design without its number of tests, if its tests are the first ones of every larger number.
+    /// Returns the design without what lets it grow: its number of tests, if its tests are the first ones of every larger number,
+    /// and the part to which an output is to be known.
     fn growing(&self) -> Self {
         let sample = |keys: &SampleKeys| SampleKeys {
             size: 0,
@@ -245,6 +272,11 @@ impl Design {
             }),
             Self::Optimise(keys) => Self::Optimise(OptimiseKeys {
                 size: 0,
+                ..keys.clone()
+            }),
+            Self::Adaptive(keys) => Self::Adaptive(AdaptiveKeys {
+                size: 0,
+                until: keys.aim().map_or_else(String::new, |aim| aim.0.to_owned()),
                 ..keys.clone()
             }),
             other => other.clone(),

@@ -148,6 +148,16 @@ settings! {
         seed: u64 = 1, in within(0.0, 9e15);
     }
 
+    /// Tests that are added where the emulator of an output is least certain.
+    AdaptiveKeys {
+        /// When to stop, such as "mass_loss_mg known to 1 %": 90 % of the errors of the emulator are at most this part of the output.
+        until: String;
+        /// Largest number of tests.
+        size: u64 = 200, in within(10.0, 256.0);
+        /// Seed of the random numbers: the same seed gives the same tests.
+        seed: u64 = 1, in within(0.0, 9e15);
+    }
+
     /// Two correlated inputs.
     CorrelationKeys {
         /// Their two keys.
@@ -234,5 +244,7 @@ variants! {
         Rows(RowsKeys) = "rows",
         /// A search for the optimum, by emulators of the outputs.
         Optimise(OptimiseKeys) = "optimise",
+        /// Tests that are added where the emulator of an output is least certain, until it is known as well as stated.
+        Adaptive(AdaptiveKeys) = "adaptive",
     }
 }

@@ -12,8 +12,8 @@ mod read;
 pub use answers::{Answers, Bound};
 pub use contents::{Alternative, Correlation, Study};
 pub use declared::{
-    BetaKeys, CorrelationKeys, Design, EmpiricalKeys, FactorialKeys, LevelKeys, LognormalKeys,
-    MorrisKeys, NormalKeys, OptimiseKeys, RowsKeys, SampleKeys, TriangularKeys, TruncatedKeys,
-    UniformKeys, Variation, WeibullKeys,
+    AdaptiveKeys, BetaKeys, CorrelationKeys, Design, EmpiricalKeys, FactorialKeys, LevelKeys,
+    LognormalKeys, MorrisKeys, NormalKeys, OptimiseKeys, RowsKeys, SampleKeys, TriangularKeys,
+    TruncatedKeys, UniformKeys, Variation, WeibullKeys,
 };
 pub use input::{Input, ScaledKey};

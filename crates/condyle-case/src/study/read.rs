@@ -6,7 +6,7 @@ use std::sync::Arc;
 use super::answers::{Answers, output};
 use super::contents::{Alternative, Correlation, PARETO, Study};
 use super::declared::{
-    AlternativeKeys, CorrelationKeys, Design, HeadingKeys, OptimiseKeys, Variation,
+    AdaptiveKeys, AlternativeKeys, CorrelationKeys, Design, HeadingKeys, OptimiseKeys, Variation,
 };
 use super::input::{Input, check_count, read_rows, sorted_numbers};
 use crate::case::{Assignment, Case, CaseReader, ChangeError};
@@ -275,7 +275,10 @@ impl Study {
     fn check_design(&self, section: &Section<'_>, log: &mut Log<'_>) {
         let span = section.value_span("kind");
         let design = self.design.word();
-        let is_sample = matches!(self.design, Design::LatinHypercube(_) | Design::Sobol(_));
+        let is_sample = matches!(
+            self.design,
+            Design::LatinHypercube(_) | Design::Sobol(_) | Design::Adaptive(_)
+        );
         if !self.correlations.is_empty() && !is_sample {
             let fault = Fault::new(
                 format!("inputs of a {design} design cannot be correlated"),
@@ -286,7 +289,7 @@ impl Study {
         if !self.alternatives.is_empty()
             && matches!(
                 self.design,
-                Design::Optimise(_) | Design::Saltelli(_) | Design::Morris(_)
+                Design::Optimise(_) | Design::Adaptive(_) | Design::Saltelli(_) | Design::Morris(_)
             )
         {
             let fault = Fault::new(
@@ -297,6 +300,7 @@ impl Study {
         }
         match &self.design {
             Design::Optimise(keys) => self.check_search(keys, section, log),
+            Design::Adaptive(keys) => self.check_adaptive(keys, section, log),
             Design::Morris(keys) if keys.levels % 2 == 1 => {
                 let message = format!(
                     "a Morris design needs an even number of levels; {} is odd",
@@ -308,6 +312,29 @@ impl Study {
                 );
             }
             _ => {}
+        }
+    }
+
+    /// Reports an aim that cannot be read, and inputs that no emulator takes.
+    fn check_adaptive(&self, keys: &AdaptiveKeys, section: &Section<'_>, log: &mut Log<'_>) {
+        match keys.aim() {
+            Some((name, _)) => drop(output(name, "until", section, log)),
+            None => {
+                let problem = format!(
+                    "`{}` does not state how well an output is to be known",
+                    keys.until
+                );
+                let advice = "write an output and a part from 0.01 to 50 %, such as `until = \"mass_loss_mg known to 1 %\"`";
+                log.problem(section.value_span("until"), Fault::new(problem, advice));
+            }
+        }
+        for input in &self.inputs {
+            if matches!(&input.variation, Variation::Levels(keys) if !are_different_numbers(&keys.levels))
+            {
+                let problem = format!("an emulator needs numbers, and `{}` has none", input.key);
+                let advice = "give a distribution, or two or more numbers as `levels`; compare words in studies of their own";
+                log.problem(input.span.clone(), Fault::new(problem, advice));
+            }
         }
     }
 

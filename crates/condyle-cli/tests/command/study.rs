@@ -58,6 +58,10 @@ fn every_design_gives_the_same_table_on_any_number_of_threads() {
         ("kind = \"morris\"\nwalks = 2", 6),
         ("kind = \"full-factorial\"\npoints = 2", 4),
         ("kind = \"one-at-a-time\"", 7),
+        (
+            "kind = \"adaptive\"\nuntil = \"max_depth_mm known to 0.01 %\"\nsize = 11",
+            11,
+        ),
     ] {
         let one = table(&bench(&of(design)), &["--threads", "1"]);
         assert_eq!(
@@ -91,6 +95,13 @@ fn seeds_differ_and_pictures_are_there() {
 #[test]
 fn a_study_that_is_killed_goes_on_and_does_nothing_twice() {
     goes_on_where_it_is_killed(&of("size = 40"));
+}
+
+#[test]
+fn an_adaptive_study_that_is_killed_goes_on_and_does_nothing_twice() {
+    // Six first tests, and seven batches.
+    let aim = "kind = \"adaptive\"\nuntil = \"mass_loss_mg known to 0.01 %\"\nsize = 24";
+    goes_on_where_it_is_killed(&of(aim));
 }
 
 #[test]
@@ -479,6 +490,25 @@ fn what_is_wrong_with_a_study_is_said_with_its_place() {
         (
             vary("contact.friction", range) + "[design]\nkind = \"full-factorial\"\nsize = 3\n",
             vec!["size"],
+        ),
+        (
+            vary("contact.friction", range) + "[design]\nkind = \"adaptive\"\n",
+            vec!["needs `until`"],
+        ),
+        (
+            vary("contact.friction", range)
+                + "[design]\nkind = \"adaptive\"\nuntil = \"mass_loss_mg known to 0 %\"\n",
+            vec!["how well an output is to be known", "from 0.01 to 50 %"],
+        ),
+        (
+            vary("contact.friction", range)
+                + "[design]\nkind = \"adaptive\"\nuntil = \"mass_los_mg known to 1 %\"\n",
+            vec!["did you mean `mass_loss_mg`?"],
+        ),
+        (
+            vary("wear.law", "levels = [\"archard\", \"kang\"]")
+                + "[design]\nkind = \"adaptive\"\nuntil = \"mass_loss_mg known to 1 %\"\n",
+            vec!["an emulator needs numbers, and `wear.law` has none"],
         ),
         (
             vary("contact.friction", range) + "[[limit]]\noutput = \"mass_loss_mg\"\n",

@@ -179,6 +179,7 @@ pub(crate) fn is_sampled(plan: &Plan, point: usize) -> bool {
         Design::Morris(_)
         | Design::FullFactorial(_)
         | Design::OneAtATime(_)
-        | Design::Optimise(_) => false,
+        | Design::Optimise(_)
+        | Design::Adaptive(_) => false,
     }
 }

@@ -117,7 +117,7 @@ pub(crate) fn emulated(data: &Data<'_>) -> (Vec<Emulated>, Vec<Indices>) {
     let study = data.plan.study();
     let is_sample = matches!(
         study.design,
-        Design::LatinHypercube(_) | Design::Sobol(_) | Design::Saltelli(_)
+        Design::LatinHypercube(_) | Design::Sobol(_) | Design::Saltelli(_) | Design::Adaptive(_)
     );
     let has_words = data.inputs.iter().any(|column| !column.words.is_empty());
     if !is_sample || has_words || designs(study) > 1 || study.inputs.is_empty() {
@@ -155,10 +155,11 @@ pub(crate) fn emulated(data: &Data<'_>) -> (Vec<Emulated>, Vec<Indices>) {
     (all, indices)
 }
 
-/// Returns an emulator of an output from the first tests of the sample that are done.
+/// Returns an emulator of an output from the first tests that are done; of a Saltelli design, of those of the sample.
 fn emulator(data: &Data<'_>, axes: &[Axis<'_>], values: &[f64]) -> Option<Emulator> {
     let rows = values.iter().enumerate();
-    let done = rows.filter(|(row, value)| value.is_finite() && is_sampled(data.plan, *row));
+    let is_used = |row| !data.is_sample() || is_sampled(data.plan, row);
+    let done = rows.filter(|(row, value)| value.is_finite() && is_used(*row));
     let places = done.take(MAX_TESTS).map(|(row, value)| {
         let columns = axes.iter().zip(&data.inputs);
         let point = columns.map(|(axis, column)| axis.place(column.values[row]));

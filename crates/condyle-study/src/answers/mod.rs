@@ -13,6 +13,7 @@ use condyle_results::split_unit;
 use serde::Serialize;
 
 use crate::{
+    adaptive::{self, Aim},
     answers::{
         data::{Data, Spread},
         effects::{Effect, Elementary},
@@ -47,6 +48,7 @@ pub struct Answers {
     pub(crate) front: Option<Front>,
     pub(crate) best: Option<Best>,
     pub(crate) robust: Option<Robust>,
+    pub(crate) aim: Option<Aim>,
 }
 
 #[derive(Clone, Debug, Serialize)]
@@ -116,6 +118,10 @@ impl Answers {
             front: Front::read(&data, store)?,
             best: Best::read(&data, store)?,
             robust: Robust::read(&data, store)?,
+            aim: match study.aim() {
+                Some(_) => adaptive::standing(plan, &store.known(plan, 0)?),
+                None => None,
+            },
         })
     }
 
@@ -160,7 +166,13 @@ impl Answers {
         let of_search = || self.best.as_ref().and_then(sentence_of_search);
         let of_designs = || self.ranking.as_ref().and_then(sentence_of_designs);
         let of_front = || self.front.as_ref().and_then(sentence_of_front);
-        of_search()
+        let of_aim = || {
+            let aim = self.aim.as_ref()?.sentence();
+            let indices = self.sentence_of_indices().unwrap_or_default();
+            Some(format!("{aim} {indices}").trim().to_owned())
+        };
+        of_aim()
+            .or_else(of_search)
             .or_else(|| self.robust.as_ref().map(Robust::sentence))
             .or_else(of_front)
             .or_else(of_designs)
@@ -204,6 +216,7 @@ impl Answers {
         }
         parts.extend(self.doubts());
         parts.extend(self.end_of_search());
+        parts.extend(self.aim.as_ref().map(|aim| aim.sentence() + "\n"));
         parts.join("\n")
     }
 
@@ -363,8 +376,8 @@ impl Answers {
     /// Returns the table of effects, for designs without a specific table.
     fn table_of_effects(&self) -> Vec<Vec<String>> {
         let is_counted = self.design == "saltelli";
-        let is_search = self.design == "optimise";
-        if is_counted || !self.elementary.is_empty() || is_search {
+        let is_sequential = ["optimise", "adaptive"].contains(&self.design);
+        if is_counted || !self.elementary.is_empty() || is_sequential {
             return Vec::new();
         }
         let output = self.effects.first().map_or("", |one| one.output);

@@ -31,7 +31,7 @@ const FIRST_TESTS_PER_INPUT: usize = 3;
 const JUDGED: usize = 128;
 
 /// A stored test.
-type Known = (Test, TestResult);
+pub(crate) type Known = (Test, TestResult);
 
 /// Returns the next tests of a search after the `known` ones, which are rows 0, 1, 2 and so on; none at its end. They
 /// depend on `known` and the seed alone, so that a resumed search continues as if it had not stopped.
@@ -56,8 +56,8 @@ pub(crate) fn next_tests(plan: &Plan, known: &[Known]) -> Option<Vec<Test>> {
     Some(tests_at(plan, whole, along_all(plan.study(), &points)))
 }
 
-/// Returns the number of first tests, which must not depend on the size, so that a search can grow.
-fn first_tests(axes: usize) -> usize {
+/// Returns the number of first tests, which must not depend on the size, so that a search or an adaptive study can grow.
+pub(crate) fn first_tests(axes: usize) -> usize {
     (FIRST_TESTS_PER_INPUT * axes).max(6)
 }
 
@@ -85,7 +85,7 @@ fn along_all(study: &Study, points: &[Vec<f64>]) -> Vec<Vec<Place>> {
 }
 
 /// Returns tests at places, from row `first` on.
-fn tests_at(plan: &Plan, first: usize, places: Vec<Vec<Place>>) -> Vec<Test> {
+pub(crate) fn tests_at(plan: &Plan, first: usize, places: Vec<Vec<Place>>) -> Vec<Test> {
     let test = |(row, places): (u64, Vec<Place>)| Test {
         row,
         alternative: 0,
@@ -143,7 +143,7 @@ pub(crate) fn standing(plan: &Plan, known: &[Known]) -> Option<Standing> {
 }
 
 /// Returns a test in the unit cube.
-fn point(study: &Study, test: &Test) -> Vec<f64> {
+pub(crate) fn point(study: &Study, test: &Test) -> Vec<f64> {
     let values = study.inputs.iter().zip(&test.values);
     let places = values.map(|(input, value)| along(input, value.as_ref()).unwrap_or(0.5));
     places.collect()
@@ -270,7 +270,7 @@ const FILLING_TRIES: usize = 256;
 /// Points closer than this along every axis are the same test.
 const MIN_DISTANCE: f64 = 1e-5;
 
-fn is_new(point: &[f64], points: &[Vec<f64>]) -> bool {
+pub(crate) fn is_new(point: &[f64], points: &[Vec<f64>]) -> bool {
     let differs = |other: &Vec<f64>| {
         let mut axes = point.iter().zip(other);
         axes.any(|(one, other)| (one - other).abs() > MIN_DISTANCE)
