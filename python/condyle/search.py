@@ -36,7 +36,7 @@ class Search:
     >>> with tempfile.TemporaryDirectory() as out, study.search(out) as search:
     ...     designs = search.ask(2)
     ...     search.tell(designs, [{"mass_loss_mg": 30.0}, {"mass_loss_mg": 20.0}])
-    ...     search.told, designs[0]
+    ...     search.tested, designs[0]
     (2, {'contact.friction': 0.07})
     """
 
@@ -49,8 +49,8 @@ class Search:
         self._pending: list[dict[str, float]] = []
 
     @property
-    def told(self) -> int:
-        """The number of stored tests."""
+    def tested(self) -> int:
+        """The number of tests with a stored result."""
         return self._held.count()
 
     @property
@@ -129,4 +129,4 @@ class Search:
         return [float(result.get(key, math.nan)) for key in keys], doubts
 
     def __repr__(self) -> str:
-        return f"<condyle.Search: {self.told} of at most {self._study.tests} tests told, {len(self._pending)} pending>"
+        return f"<condyle.Search: {self.tested} of at most {self._study.tests} tests done, {len(self._pending)} pending>"

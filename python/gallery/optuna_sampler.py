@@ -73,7 +73,7 @@ def main() -> None:
         best = search.answered().answers.best
         assert best is not None
         values = ", ".join(f"{one.name} = {one.value:.4g}" for one in best.inputs)
-        print(f"{search.told} trials; the best within the limit: {best.outputs[0].value:.2f} mg with {values}")
+        print(f"{search.tested} trials; the best within the limit: {best.outputs[0].value:.2f} mg with {values}")
 
 
 if __name__ == "__main__":

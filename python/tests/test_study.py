@@ -363,7 +363,7 @@ SEARCH: dict[str, Any] = {
 }
 
 
-def test_a_search_told_from_outside_is_that_of_the_study(small: condyle.Case, tmp_path: Path) -> None:
+def test_a_search_tested_elsewhere_is_that_of_the_study(small: condyle.Case, tmp_path: Path) -> None:
     study = condyle.Study.from_dict(SEARCH, case=small)
     inside = study.run(tmp_path / "inside")
     with study.search(tmp_path / "outside") as search:
@@ -372,7 +372,7 @@ def test_a_search_told_from_outside_is_that_of_the_study(small: condyle.Case, tm
             assert search.pending == designs
             search.tell(designs, [condyle.run(search.case(design), fields=False) for design in designs])
             designs = search.ask(2)
-        assert search.told == 12 and search.pending == []
+        assert search.tested == 12 and search.pending == []
         outside = search.answered()
     assert table(outside) == table(inside) and outside.answers == inside.answers
     assert set(outside["insert.thickness_mm"]) <= {8.0, 9.5, 12.0}
@@ -389,9 +389,9 @@ def test_results_that_do_not_fit_a_search_are_errors(study: condyle.Study, small
         ]:
             with pytest.raises(condyle.BadInput, match=expected):
                 search.tell([wrong], [result])
-        assert search.told == 0 and search.pending == [design]
+        assert search.tested == 0 and search.pending == [design]
         search.tell([design], [condyle.NotSolved("no equilibrium\nat 3 %")])
-        assert search.told == 1 and search.pending == []
+        assert search.tested == 1 and search.pending == []
         assert search.answered().table["reason"].tolist() == ["no equilibrium"]
     with (
         study.search(tmp_path / "other") as search,

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Kills runs at random instants, resumes them until they are done, and compares every byte.
+"""Kills runs, convergence studies and studies at random instants, resumes them until they are done, and compares every byte.
 
 kill_and_resume.py CONDYLE [--kills N] [--seed N]
 
@@ -21,6 +21,8 @@ from pathlib import Path
 
 # Times, and what is made of them; the page says none.
 TIMES = ("wall_s",)
+# Tests are stored in the order in which they end; the table has that of their numbers.
+UNORDERED = ("study.db", "study.db-wal", "study.db-shm")
 
 
 def sphere(radius, centre_z, steps=36):
@@ -79,22 +81,55 @@ def cases(folder):
     }
 
 
+def studies(file):
+    """Names and texts of studies of the case in `file`: of both kinds whose tests depend on others, and of one that does not."""
+    vary = "".join(
+        f'[[vary]]\nkey = "{key}"\nlow = {low}\nhigh = {high}\n'
+        for key, low, high in (("contact.friction", 0.02, 0.12), ("insert.thickness_mm", 8, 12))
+    )
+    designs = {
+        "study, Sobol": 'kind = "sobol"\nsize = 24',
+        "study, search": 'kind = "optimise"\nsize = 24',
+        "study, adaptive": 'kind = "adaptive"\nuntil = "mass_loss_mg known to 0.01 %"\nsize = 24',
+    }
+    return {name: f'case = "{file.name}"\n[design]\n{design}\n{vary}' for name, design in designs.items()}
+
+
+def trials(folder):
+    """Name, file and arguments of everything that is killed."""
+    for index, (name, text) in enumerate(cases(folder).items()):
+        file = folder / f"case-{index}.toml"
+        file.write_text(text)
+        yield name, ["run", str(file)], True
+    small = folder / "small.toml"
+    small.write_text("[insert]\nedge_mm = 3.0\n[march]\nupdates = 4\n")
+    yield "converge", ["converge", str(small), "--over", "insert.edge_mm=4,3,2,1.5"], True
+    for index, (name, text) in enumerate(studies(small).items()):
+        file = folder / f"study-{index}.toml"
+        file.write_text(text)
+        yield name, ["study", str(file)], False
+
+
 def without_times(value):
     if isinstance(value, dict):
         return {key: without_times(inner) for key, inner in value.items() if key not in TIMES}
+    if isinstance(value, list):
+        return [without_times(inner) for inner in value]
     return value
 
 
 def content(folder):
-    """Every file of a results folder by its name, without times."""
-    files = {path.name: path.read_bytes() for path in sorted(folder.iterdir())}
-    files["summary.json"] = without_times(json.loads(files["summary.json"]))
-    return files
+    """Every file of a results folder by its path, without times."""
+    paths = [path for path in sorted(folder.rglob("*")) if path.is_file() and path.name not in UNORDERED]
+    return {
+        str(path.relative_to(folder)): without_times(json.loads(path.read_bytes())) if path.suffix == ".json" else path.read_bytes()
+        for path in paths
+    }
 
 
 class Case:
-    def __init__(self, condyle, name, file, folder):
-        self.condyle, self.name, self.file, self.folder = condyle, name, file, folder
+    def __init__(self, condyle, arguments, has_resume, folder):
+        self.condyle, self.arguments, self.has_resume, self.folder = condyle, arguments, has_resume, folder
         self.kills = self.runs = self.resumed = 0
         self.differ = []
         began = time.monotonic()
@@ -104,7 +139,9 @@ class Case:
         self.expected = content(whole)
 
     def start(self, out, cache):
-        command = [self.condyle, "run", str(self.file), "--out", str(out)] + (["--resume"] if out.exists() else [])
+        # A study resumes whatever it finds in its folder.
+        resume = ["--resume"] if self.has_resume and out.exists() else []
+        command = [self.condyle, *self.arguments, "--out", str(out), *resume]
         return subprocess.Popen(
             command, env=dict(os.environ, CONDYLE_CACHE=str(cache)), stdout=subprocess.DEVNULL, stderr=subprocess.PIPE
         )
@@ -151,17 +188,15 @@ def main():
     asked = words.parse_args()
     chance = random.Random(asked.seed)
     folder = Path(tempfile.mkdtemp(prefix="condyle-kills-"))
-    print("| case | seconds a run | kills | starts with `--resume` | runs | that differ |")
+    print("| case | seconds a run | kills | starts again | runs | that differ |")
     print("| --- | --- | --- | --- | --- | --- |")
-    texts = cases(folder)
+    all_trials = list(trials(folder))
     differ, killed = [], 0
-    for index, (name, text) in enumerate(texts.items()):
-        file = folder / f"case-{index}.toml"
-        file.write_text(text)
+    for index, (name, arguments, has_resume) in enumerate(all_trials):
         own = folder / f"{index}"
         own.mkdir()
-        case = Case(asked.condyle, name, file, own)
-        end = asked.kills * (index + 1) // len(texts)
+        case = Case(asked.condyle, arguments, has_resume, own)
+        end = asked.kills * (index + 1) // len(all_trials)
         while killed + case.kills < end and not case.differ:
             # A run that is never killed more than a few times ends; one that is killed at once starts over.
             case.kill_until_done(chance, min(12, end - killed - case.kills))

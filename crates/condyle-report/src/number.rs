@@ -77,7 +77,9 @@ fn words(name: &str) -> String {
 /// Returns the dotted path of a key of a case as words: `insert.thickness_mm` is "Thickness of insert, mm". A name that is no
 /// path remains.
 pub(crate) fn path_in_words(name: &str) -> String {
-    let path = name.rsplit_once('.').filter(|_| !name.contains(' '));
+    let is_key = |part: &str| part.starts_with(|c: char| c.is_ascii_lowercase());
+    let is_path = name.split('.').all(is_key) && !name.contains(' ');
+    let path = name.rsplit_once('.').filter(|_| is_path);
     let Some((tables, key)) = path else {
         return name.to_owned();
     };
@@ -128,6 +130,8 @@ mod tests {
             ("machine.axial_force.scale", "Scale of axial force"),
             ("machine.ap_force.scale", "Scale of AP force"),
             ("Design 1.5", "Design 1.5"),
+            ("v1.5", "v1.5"),
+            ("0.25", "0.25"),
             ("friction", "friction"),
         ] {
             assert_eq!(path_in_words(path), words);

@@ -11,7 +11,8 @@ const MAX_INTERVALS: usize = 6;
 
 /// Writes `study.html` and every picture into `folder`, and returns the path of the page.
 ///
-/// `tables`: headings and rows, of which the first is the head. `pictures`: file names, captions and texts.
+/// `tables`: headings and rows, of which the first is the head; paths of inputs in heads and first columns become words.
+/// `pictures`: file names, captions and texts.
 ///
 /// # Errors
 /// A folder that cannot be written.
@@ -25,11 +26,23 @@ pub fn write_study_page(
     for (name, _, svg) in pictures {
         write_text(folder.join(name), svg)?;
     }
+    let row = |(place, row): (usize, &Vec<String>)| {
+        let cells = row.iter().enumerate();
+        let cells = cells.map(|(column, cell)| match place == 0 || column == 0 {
+            true => path_in_words(cell),
+            false => cell.clone(),
+        });
+        cells.collect::<Vec<_>>()
+    };
+    let tables = tables.iter().map(|(heading, rows)| {
+        let rows = rows.iter().enumerate().map(row);
+        (heading.clone(), rows.collect::<Vec<_>>())
+    });
     let sheets = Sheets {
         kicker: "condyle study",
         title,
         lede,
-        tables,
+        tables: &tables.collect::<Vec<_>>(),
         pictures,
         ..Sheets::default()
     };
