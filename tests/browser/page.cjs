@@ -105,29 +105,42 @@ async function sliders(page) {
   return solved_ms;
 }
 
-// A point of the insert is dragged, with the new value next to it; the test is solved when it is dropped.
+// The first place of the picture, in parts of it, that has a point with these words.
+async function pointOf(page, label, move) {
+  for (const y of range(0.1, 0.98, 0.02)) {
+    for (const x of range(0.05, 0.95, 0.01)) if ((await move(x, y)).startsWith(label)) return [x, y];
+  }
+  throw new Error(`no point for ${label}`);
+}
+
+const range = (from, to, step) => Array.from({ length: Math.round((to - from) / step) + 1 }, (_, i) => from + i * step);
+
+// Points of insert and femur are dragged, with the new value next to them; the test is solved when they are dropped, and undone.
 async function dragged(page) {
-  await picture(page);
-  const box = await page.locator(".stage canvas").boundingBox();
-  const words = () => page.locator(".stage [aria-live]").innerText();
-  const at = async (x, y) => {
-    await page.mouse.move(box.x + x * box.width, box.y + y * box.height);
-    return (await words()).startsWith("Thickness");
-  };
-  const places = Array.from({ length: 600 }, (_, i) => [0.25 + 0.01 * (i % 30), 0.6 + 0.02 * Math.floor(i / 30)]);
-  let found;
-  for (const place of places) if (!found && (await at(...place))) found = place;
-  assert(found, "no point for the thickness");
-  const before = await page.locator("#case-text").inputValue();
-  await at(...found);
-  await page.mouse.down();
-  await at(found[0], found[1] + 0.02);
-  const said = await words();
-  assert.strictEqual(await page.locator("#case-text").inputValue(), before, "the case changes before the point is dropped");
-  await ran(page, () => page.mouse.up());
-  const [, thickness] = (await page.locator("#case-text").inputValue()).match(/thickness_mm = ([\d.]+)/);
-  assert(Number(thickness) > 9, "a backside dragged down makes a thinner insert");
-  assert.strictEqual(said, `Thickness ${Number(thickness)} mm`);
+  const text = () => page.locator("#case-text").inputValue();
+  for (const [label, key, [right, down], isLarger] of [
+    ["Thickness", "thickness_mm", [0, 0.02], true],
+    ["Distal radius", "distal_radius_mm", [0, 0.02], true],
+    ["Radius from the front", "coronal_radius_mm", [0, -0.02], false],
+  ]) {
+    await picture(page);
+    const box = await page.locator(".stage canvas").boundingBox();
+    const move = async (x, y) => {
+      await page.mouse.move(box.x + x * box.width, box.y + y * box.height);
+      return page.locator(".stage [aria-live]").innerText();
+    };
+    const [x, y] = await pointOf(page, label, move);
+    const [before, kept] = [await text(), await move(x, y)];
+    await page.mouse.down();
+    const said = await move(x + right, y + down);
+    assert.strictEqual(await text(), before, "the case changes before the point is dropped");
+    await ran(page, () => page.mouse.up());
+    const [old, now] = [kept, said].map((words) => Number(words.match(/([\d.]+) mm$/)[1]));
+    assert(now > old === isLarger && now !== old, `${label}: ${kept}, then ${said}`);
+    assert.match(await text(), new RegExp(`\\b${key} = ${now}\\b`));
+    await ran(page, () => page.goBack());
+    assert.strictEqual(await text(), before, "the browser's back does not undo a drag");
+  }
 }
 
 // Coarse numbers come first, and the report is of the run that is shown: nothing is solved again.

@@ -1,6 +1,6 @@
 // Points of the bodies that can be dragged along lines.
 
-import { Group, Mesh, MeshBasicMaterial, SphereGeometry, type Object3D, type Raycaster, type Vector3 } from "three";
+import { Mesh, MeshBasicMaterial, SphereGeometry, type Object3D, type Raycaster, type Vector3 } from "three";
 import { element } from "./dom";
 
 // Radius of a grip, and of the place around it where it is taken, mm.
@@ -11,6 +11,8 @@ export interface Grip {
   at: Vector3;
   // Unit vector.
   along: Vector3;
+  // True for a point that moves with the femur; both vectors are then those at neutral.
+  isOfFemur?: boolean;
   // Says what a motion by some mm does.
   words: (mm: number) => string;
   dropped: (mm: number) => void;
@@ -21,6 +23,7 @@ interface Picture {
   host: HTMLElement;
   canvas: HTMLCanvasElement;
   world: Object3D;
+  femur: Object3D | undefined;
   rayTo: (event: PointerEvent) => Raycaster;
   // The place of a point on the host, px.
   placeOf: (point: Vector3) => { x: number; y: number };
@@ -30,21 +33,21 @@ interface Picture {
 
 // A motion has words next to it, and takes effect when the grip is dropped.
 export class Grips {
-  private readonly balls = new Group();
+  private readonly balls: Mesh[] = [];
   private readonly words = element("span", { class: "direction", "aria-live": "polite" });
 
   constructor(
     private readonly grips: Grip[],
     private readonly picture: Picture,
   ) {
-    for (const { at } of grips) {
+    for (const grip of grips) {
       const ball = new Mesh(new SphereGeometry(GRIP_MM, 16, 12), new MeshBasicMaterial({ color: 0x2f6db5, depthTest: false }));
       ball.renderOrder = 2;
-      ball.position.copy(at);
-      this.balls.add(ball);
+      ball.position.copy(grip.at);
+      this.bodyOf(grip).add(ball);
+      this.balls.push(ball);
     }
-    const { host, world, signal } = picture;
-    world.add(this.balls);
+    const { host, signal } = picture;
     host.append(this.words);
     // Before the canvas has the event, which would turn the view.
     host.addEventListener("pointerdown", (event) => this.take(event), { capture: true, signal });
@@ -54,7 +57,17 @@ export class Grips {
   }
 
   show(isShown: boolean): void {
-    this.balls.visible = isShown;
+    for (const ball of this.balls) ball.visible = isShown;
+  }
+
+  private bodyOf({ isOfFemur }: Grip): Object3D {
+    return (isOfFemur && this.picture.femur) || this.picture.world;
+  }
+
+  // The point and its line where the body is now.
+  private now(grip: Grip): { at: Vector3; along: Vector3 } {
+    const { matrixWorld } = this.bodyOf(grip);
+    return { at: grip.at.clone().applyMatrix4(matrixWorld), along: grip.along.clone().transformDirection(matrixWorld) };
   }
 
   private hover(event: PointerEvent): void {
@@ -70,7 +83,7 @@ export class Grips {
     event.stopPropagation();
     const { canvas } = this.picture;
     canvas.setPointerCapture(event.pointerId);
-    const ball = this.balls.children[this.grips.indexOf(grip)]!;
+    const ball = this.balls[this.grips.indexOf(grip)]!;
     const [start, drag] = [this.along(event, grip), new AbortController()];
     let mm = 0;
     const move = (next: PointerEvent) => {
@@ -91,15 +104,16 @@ export class Grips {
 
   private near(event: PointerEvent): Grip | undefined {
     const { ray } = this.picture.rayTo(event);
-    const away = ({ at }: Grip) => ray.distanceToPoint(at);
-    const near = this.grips.filter((grip) => away(grip) < GRASP_MM);
+    const away = (grip: Grip) => ray.distanceToPoint(this.now(grip).at);
+    const near = this.grips.filter((grip) => this.bodyOf(grip).visible && away(grip) < GRASP_MM);
     return near.sort((one, two) => away(one) - away(two))[0];
   }
 
   // The place on the line of a grip that is nearest to a point on the screen, mm from the grip.
-  private along(event: PointerEvent, { at, along }: Grip): number {
+  private along(event: PointerEvent, grip: Grip): number {
+    const { at, along } = this.now(grip);
     const { origin, direction } = this.picture.rayTo(event).ray;
-    const [apart, across] = [at.clone().sub(origin), along.dot(direction)];
+    const [apart, across] = [at.sub(origin), along.dot(direction)];
     // Where the eye looks along the line, both are parallel.
     return (across * apart.dot(direction) - apart.dot(along)) / Math.max(1 - across * across, 1e-3);
   }
@@ -107,7 +121,8 @@ export class Grips {
   private say(grip: Grip | undefined, mm: number): void {
     this.words.textContent = grip?.words(mm) ?? "";
     if (!grip) return;
-    const { x, y } = this.picture.placeOf(grip.at.clone().addScaledVector(grip.along, mm));
+    const { at, along } = this.now(grip);
+    const { x, y } = this.picture.placeOf(at.addScaledVector(along, mm));
     this.words.style.transform = `translate(-50%,-220%) translate(${x.toFixed(1)}px,${y.toFixed(1)}px)`;
   }
 }

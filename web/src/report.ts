@@ -26,7 +26,8 @@ function showRun(host: HTMLElement, scene: Scene): void {
     const still = stillOf(chart);
     return still && (() => standalone(still));
   };
-  const view = new RunView(scene, { svgOf });
+  const view = new RunView(scene);
+  view.draw(svgOf);
   for (const plot of view.plots) {
     const still = stillOf(plot.chart);
     still?.classList.add("still");

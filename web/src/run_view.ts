@@ -11,15 +11,13 @@ const MILLION = 1e6;
 export interface RunViewOptions {
   // Flat maps inside of it are linked with the bodies.
   root?: ParentNode;
-  // The picture of a chart that is saved as SVG.
-  svgOf?: (chart: Chart) => (() => string) | undefined;
   // The viewer of the run before, whose renderer goes on.
   previous?: Viewer;
 }
 
 export class RunView {
   readonly viewer: Viewer | undefined;
-  readonly plots: Plot[];
+  plots: Plot[] = [];
   // The history of the picked point.
   readonly history = element("div");
   private picked: Plot | undefined;
@@ -27,11 +25,17 @@ export class RunView {
 
   constructor(
     private readonly scene: Scene,
-    { root = document, svgOf, previous }: RunViewOptions = {},
+    { root = document, previous }: RunViewOptions = {},
   ) {
     this.maps = new FlatMaps(root, (x, z) => this.viewer?.pickAt(x, z));
     if (scene.facts.updates.length) this.viewer = new Viewer(scene, previous);
     const { viewer } = this;
+    if (viewer) viewer.onPick = (node) => this.pick(viewer, node);
+  }
+
+  // Draws the charts, after the bodies so that the page responds in between; `svgOf` is the picture of a chart that is saved.
+  draw(svgOf?: (chart: Chart) => (() => string) | undefined): void {
+    const { scene, viewer } = this;
     // Other activities have motions of their own, which the bodies do not show.
     const chosen: Record<string, (chart: Chart) => (x: number) => void> = {
       wear:
@@ -46,10 +50,8 @@ export class RunView {
       options.svg = svgOf?.(chart);
       return new Plot(chart, options);
     });
-    if (!viewer) return;
     const moved = this.plots.filter(({ chart }) => chart.group === "cycle");
-    viewer.onPercent = (percent) => moved.forEach((plot) => plot.point(percent));
-    viewer.onPick = (node) => this.pick(viewer, node);
+    if (viewer) viewer.onPercent = (percent) => moved.forEach((plot) => plot.point(percent));
   }
 
   // Releases the run; its elements stay until they are removed.

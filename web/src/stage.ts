@@ -108,6 +108,7 @@ export class Stage {
   private paper = new Color();
   private readonly end = new AbortController();
   private isAsked = false;
+  private isNew = true;
   private resting = 0;
 
   constructor(
@@ -247,6 +248,7 @@ export class Stage {
       host: this.host,
       canvas: this.canvas,
       world: this.world,
+      femur: this.femur,
       rayTo: (event) => this.rayTo(event),
       placeOf: (at) => this.placeOf(at),
       moved: () => this.ask(),
@@ -322,6 +324,7 @@ export class Stage {
   // Draws now, as finely as a picture at rest. Changes call `ask` instead, so that many are drawn once.
   draw(): void {
     clearTimeout(this.resting);
+    this.isNew = false;
     this.drawWith(this.isSlow ? FINE_AT_REST : Math.min(devicePixelRatio, 2));
     this.canvas.dataset["still"] = "yes";
   }
@@ -392,7 +395,8 @@ export class Stage {
     requestAnimationFrame(() => {
       this.isAsked = false;
       if (this.end.signal.aborted) return;
-      if (!this.isSlow) return this.draw();
+      // The first picture of a body is at rest; each change of the resolution holds up the page.
+      if (!this.isSlow || this.isNew) return this.draw();
       this.drawWith(COARSE_IN_MOTION);
       clearTimeout(this.resting);
       this.resting = setTimeout(() => this.draw(), REST_MS);
@@ -454,7 +458,7 @@ function geometryOf(places: Float32Array, triangles: Uint32Array): BufferGeometr
   return geometry;
 }
 
-function matrix({ femoral_origin_mm: [x, y, z], rotation }: Pose): Matrix4 {
+export function matrix({ femoral_origin_mm: [x, y, z], rotation }: Pose): Matrix4 {
   return matrixOf([x!, y!, z!, ...rotation.flat()]);
 }
 

@@ -3,7 +3,6 @@
 use std::iter;
 
 use condyle_case::study::Design;
-use condyle_results::catalogue::Scalar;
 use nalgebra::DMatrix;
 use serde::Serialize;
 
@@ -11,9 +10,11 @@ use crate::{
     answers::words::shown,
     design::sobol::sobol_places,
     emulator::Emulator,
-    plan::{Plan, Test, output_value},
-    search::{Known, first_tests, is_new, point, tests_at},
+    error::StudyError,
+    plan::{Plan, Test},
+    search::{Known, first_tests, is_new, point, tests_at, value},
     statistics::quantile,
+    store::Store,
 };
 
 /// The share of all errors that are at most as large as the stated one.
@@ -52,30 +53,26 @@ pub(crate) fn next_tests(plan: &Plan, known: &[Known]) -> Option<Vec<Test>> {
     // A batch that was interrupted is proposed again from the tests before it.
     let whole = batches(axes).take_while(|tests| *tests <= known.len());
     let whole = whole.last().unwrap_or(first);
-    let (aim, seen) = judged(plan, &known[..whole])?;
+    let (aim, seen) = standing(plan, &known[..whole])?;
     if known.len() >= size || aim.is_known {
         return None;
     }
     let next = batches(axes).find(|tests| *tests > whole)?.min(size);
     let tests = match seen {
-        Some(seen) => seen.least_certain(plan, next - whole),
+        Some(seen) => seen.least_certain(next - whole),
         None => sobol_tests(plan, keys.seed, whole, next),
     };
     Some(tests).filter(|tests| !tests.is_empty())
 }
 
-/// Returns the state of an adaptive study; none for other studies.
-pub(crate) fn standing(plan: &Plan, known: &[Known]) -> Option<Aim> {
-    Some(judged(plan, known)?.0)
-}
-
-/// Returns the state of an adaptive study, and the emulator by which it is judged; no emulator while too few tests are done.
-fn judged(plan: &Plan, known: &[Known]) -> Option<(Aim, Option<Seen>)> {
+/// Returns the state of an adaptive study, and the emulator by which it is judged, while too few tests are done without one; none
+/// for other studies.
+fn standing(plan: &Plan, known: &[Known]) -> Option<(Aim, Option<Seen>)> {
     let (output, part) = plan.study().aim()?;
     let before = batches(plan.study().inputs.len());
     let before = before.take_while(|tests| *tests < known.len()).last();
     let seen = |tests: usize| Seen::new(plan, &known[..tests]);
-    let error = |seen: &Option<Seen>| Some(seen.as_ref()?.error(plan));
+    let error = |seen: &Option<Seen>| seen.as_ref().map(Seen::error);
     let is_within = |error: Option<f64>| error.is_some_and(|error| error <= part);
     let last = seen(known.len());
     let error_of_last = error(&last);
@@ -113,6 +110,8 @@ struct Seen {
     values: Vec<f64>,
     emulator: Emulator,
     pool: Vec<Test>,
+    /// The same in the unit cube.
+    places: Vec<Vec<f64>>,
 }
 
 impl Seen {
@@ -124,34 +123,33 @@ impl Seen {
         };
         let points: Vec<Vec<f64>> = known.iter().map(|(test, _)| point(study, test)).collect();
         let values: Vec<f64> = known.iter().map(|one| value(one, output)).collect();
-        let done = points
-            .iter()
-            .zip(&values)
-            .filter(|(_, value)| value.is_finite());
-        let (at, of): (Vec<Vec<f64>>, Vec<f64>) =
-            done.map(|(point, value)| (point.clone(), *value)).unzip();
+        let done = points.iter().cloned().zip(values.iter().copied());
+        let done = done.filter(|(_, value)| value.is_finite());
+        let (at, of): (Vec<Vec<f64>>, Vec<f64>) = done.unzip();
         if at.len() <= study.inputs.len() + 2 {
             return None;
         }
+        // Another scrambling than that of the first tests.
+        let pool = sobol_tests(plan, !keys.seed, 0, POOL);
         Some(Self {
             points,
             values,
             emulator: Emulator::fit(&at, &of)?.calibrated(),
-            // Another scrambling than that of the first tests.
-            pool: sobol_tests(plan, !keys.seed, 0, POOL),
+            places: pool.iter().map(|test| point(study, test)).collect(),
+            pool,
         })
     }
 
     /// Returns the part of the output that 90 % of the errors stay below: the larger of that of tests predicted from all others,
     /// and that of predictions at the points of the pool by their standard deviations.
-    fn error(&self, plan: &Plan) -> f64 {
+    fn error(&self) -> f64 {
         let part = |error: f64, value: f64| error / value.abs().max(f64::MIN_POSITIVE);
         let done = self.values.iter().filter(|value| value.is_finite());
         let left_out = self.emulator.left_out().into_iter().zip(done);
         let left_out = left_out.map(|(one, value)| part(one.mean.abs(), *value));
         let noise = self.emulator.noise();
-        let predicted = self.pool.iter().map(|test| {
-            let found = self.emulator.predict(&point(plan.study(), test));
+        let predicted = self.places.iter().map(|place| {
+            let found = self.emulator.predict(place);
             let deviation = found.standard_deviation.hypot(noise);
             part(NORMAL_90 * deviation, found.mean)
         });
@@ -165,12 +163,8 @@ impl Seen {
 
     /// Returns `count` tests of the pool, each of which lowers the variance summed over the pool most (Cohn 1996): that of the
     /// process conditioned on all tests, on those that failed as if they had been done, and on those added before.
-    fn least_certain(&self, plan: &Plan, count: usize) -> Vec<Test> {
-        let mut all: Vec<Vec<f64>> = self
-            .pool
-            .iter()
-            .map(|test| point(plan.study(), test))
-            .collect();
+    fn least_certain(&self, count: usize) -> Vec<Test> {
+        let mut all = self.places.clone();
         let failed = self.points.iter().zip(&self.values);
         let failed = failed.filter(|(_, value)| value.is_nan());
         all.extend(failed.map(|(point, _)| point.clone()));
@@ -181,19 +175,16 @@ impl Seen {
             covariance.ger(-1.0 / (column[place] + nugget), &column, &column, 1.0);
         };
         (POOL..all.len()).for_each(|place| condition(&mut covariance, place));
-        let mut left: Vec<usize> = (0..POOL)
-            .filter(|place| is_new(&all[*place], &self.points))
-            .collect();
+        let mut left: Vec<usize> = (0..POOL).collect();
+        left.retain(|place| is_new(&all[*place], &self.points));
         let first = self.points.len() as u64;
         let next = |row| {
             let gain = |place: &usize| {
                 let column = covariance.column(*place);
                 column.rows(0, POOL).norm_squared() / (column[*place] + nugget)
             };
-            let best = left
-                .iter()
-                .copied()
-                .max_by(|one, other| gain(one).total_cmp(&gain(other)))?;
+            let gains = left.iter().map(|place| (gain(place), *place));
+            let (_, best) = gains.max_by(|one, other| one.0.total_cmp(&other.0))?;
             condition(&mut covariance, best);
             // Inputs with few levels have the same point more than once.
             left.retain(|place| is_new(&all[*place], std::slice::from_ref(&all[best])));
@@ -206,32 +197,33 @@ impl Seen {
     }
 }
 
-fn value((_, result): &Known, output: &Scalar) -> f64 {
-    let outputs = result.as_ref();
-    outputs.map_or(f64::NAN, |outputs| output_value(&outputs.values, output))
-}
-
 impl Aim {
+    pub fn read(plan: &Plan, store: &Store) -> Result<Option<Self>, StudyError> {
+        // Other studies may have many tests.
+        if plan.study().aim().is_none() {
+            return Ok(None);
+        }
+        let standing = standing(plan, &store.known(plan, 0)?);
+        Ok(standing.map(|(aim, _)| aim))
+    }
+
     /// Returns the state in a sentence.
     pub fn sentence(&self) -> String {
         // Without the rounding error of the division by 100.
         let part = (1e6 * self.part).round() / 1e4;
         let (title, tests) = (self.title, self.tests);
-        let error = self.error.map_or_else(
-            || "too few of them are done for an emulator".to_owned(),
-            |error| {
-                format!(
-                    "90 % of the errors of its emulator are at most {} % of it",
-                    shown(100.0 * error)
-                )
-            },
-        );
-        match self.is_known {
-            true => format!("The {title} is known to {part} % after {tests} tests: {error}."),
-            false => format!(
-                "The {title} is not known to {part} % after {tests} tests: {error}. Allow more tests by `size`."
-            ),
-        }
+        let error = match self.error {
+            Some(error) => {
+                let percent = shown(100.0 * error);
+                format!("90 % of the errors of its emulator are at most {percent} % of it")
+            }
+            None => "too few of them are done for an emulator".to_owned(),
+        };
+        let (not, advice) = match self.is_known {
+            true => ("", ""),
+            false => ("not ", " Allow more tests by `size`."),
+        };
+        format!("The {title} is {not}known to {part} % after {tests} tests: {error}.{advice}")
     }
 }
 
@@ -239,7 +231,7 @@ impl Aim {
 mod tests {
     use std::fs;
 
-    use condyle_results::catalogue;
+    use condyle_results::catalogue::{self, Scalar};
 
     use super::*;
     use crate::{
@@ -353,7 +345,7 @@ mod tests {
                 let plan = plan(percent, 250, seed);
                 let mut known = Vec::new();
                 run(&plan, mass, &mut known);
-                let aim = standing(&plan, &known).unwrap();
+                let aim = standing(&plan, &known).unwrap().0;
                 let part = unseen_part(&plan, mass, &known, seed);
                 println!(
                     "{name} {percent} % seed {seed}: {:.4} unseen, {:?} stated, {} tests",
@@ -424,7 +416,7 @@ mod tests {
         let mut known = Vec::new();
         let plan = plan(0.01, 40, 1);
         run(&plan, waves, &mut known);
-        let aim = standing(&plan, &known).unwrap();
+        let aim = standing(&plan, &known).unwrap().0;
         assert!(known.len() == 40 && !aim.is_known);
         let said = aim.sentence();
         assert!(
@@ -434,7 +426,7 @@ mod tests {
         // A constant is known from the first tests on.
         let mut known = Vec::new();
         run(&plan, |_| 3.0, &mut known);
-        assert!(known.len() == 11 && standing(&plan, &known).unwrap().is_known);
+        assert!(known.len() == 11 && standing(&plan, &known).unwrap().0.is_known);
         // Without a solved test, Sobol points follow to the end.
         let mut known = Vec::new();
         run(&plan, |_| f64::NAN, &mut known);
@@ -442,6 +434,7 @@ mod tests {
         assert!(
             standing(&plan, &known)
                 .unwrap()
+                .0
                 .sentence()
                 .contains("too few of them")
         );

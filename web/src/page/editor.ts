@@ -24,6 +24,7 @@ export class Editor {
   private readonly problems = element("div", { class: "problems", role: "status" });
   private offers: Offer[] = [];
   private chosen = 0;
+  private numbered = "";
 
   constructor(
     private readonly schema: CaseSchema,
@@ -76,6 +77,10 @@ export class Editor {
 
   private number(problems: Wrong[]): void {
     const wrong = new Map(problems.map(({ line, message }) => [line, message]));
+    const shown = JSON.stringify([this.text.split("\n").length, ...wrong]);
+    // New lines make the browser lay out the whole page.
+    if (shown === this.numbered) return;
+    this.numbered = shown;
     const lines = this.text.split("\n").map((_, index) => {
       const message = wrong.get(index + 1);
       return message === undefined ? element("div", {}, String(index + 1)) : element("div", { class: "wrong", title: message }, `✕ ${index + 1}`);

@@ -173,9 +173,11 @@ class Page {
     const solved = summary.wall_s + (summary.error?.wall_s ?? 0);
     this.say(`${inDigits(summary.cycles / 1e6)} million cycles, solved in ${inDigits(solved)} s on this machine`);
     await nextFrame();
-    this.shown.show(found);
+    this.shown.showBodies(found);
     const stage = this.shown.viewer?.stage;
     if (stage && !stage.isFlat) stage.grip(gripsOf(found, (places, value) => this.sliders.set(places, value)));
+    await nextFrame();
+    this.shown.showCharts();
     await nextFrame();
     this.compared.show(found, this.shown.viewer);
     // Meshes are in no address: with them, the case would not run elsewhere.

@@ -26,16 +26,23 @@ export class ShownRun {
     private readonly gait: HTMLElement,
   ) {}
 
-  show({ scene }: Found): void {
+  showBodies({ scene }: Found): void {
     const before = this.view?.viewer;
     // The page has no flat maps.
     const view = new RunView(scene, { root: this.bodies, previous: before });
-    const boxes = (isWear: boolean) => view.plots.filter(({ chart }) => (chart.group === "wear") === isWear).map(({ box }) => box);
     this.bodies.replaceChildren(...(view.viewer ? [view.viewer.box] : []));
-    this.worn.replaceChildren(element("div", { class: "worn" }, ...boxes(true), view.history));
-    this.gait.replaceChildren(element("div", { class: "gait" }, ...boxes(false)));
     if (before && view.viewer) view.viewer.lookAs(before);
     this.view?.dispose();
     this.view = view;
+  }
+
+  showCharts(): void {
+    const { view } = this;
+    // A newer run may have been shown meanwhile.
+    if (!view || view.plots.length) return;
+    view.draw();
+    const boxes = (isWear: boolean) => view.plots.filter(({ chart }) => (chart.group === "wear") === isWear).map(({ box }) => box);
+    this.worn.replaceChildren(element("div", { class: "worn" }, ...boxes(true), view.history));
+    this.gait.replaceChildren(element("div", { class: "gait" }, ...boxes(false)));
   }
 }

@@ -4,12 +4,15 @@ import { element, Slider } from "../dom";
 import { inDigits } from "../digits";
 import { numberOf, valueAt, withValue, type Place } from "./case_text";
 
-interface Moved extends Place {
+export interface Limits {
   label: string;
-  unit: string;
   least: number;
   most: number;
   step: number;
+}
+
+interface Moved extends Place, Limits {
+  unit: string;
   // The default of condyle where the case has no value.
   silent: number;
   // The shape of the body that has the key; absent where every shape has it.
@@ -72,6 +75,13 @@ const GROUPS: [heading: string, moved: Moved[]][] = [
     ],
   ],
 ];
+
+// The label and the range of the slider of a number.
+export function movedAt({ table, key }: Place): Limits {
+  const found = GROUPS.flatMap(([, moved]) => moved).find((moved) => moved.table === table && moved.key === key);
+  if (!found) throw new Error(`no slider moves ${table}.${key}`);
+  return found;
+}
 
 export class Sliders {
   readonly box = element("div", { class: "sliders" });

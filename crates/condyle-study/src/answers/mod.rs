@@ -13,7 +13,7 @@ use condyle_results::split_unit;
 use serde::Serialize;
 
 use crate::{
-    adaptive::{self, Aim},
+    adaptive::Aim,
     answers::{
         data::{Data, Spread},
         effects::{Effect, Elementary},
@@ -118,10 +118,7 @@ impl Answers {
             front: Front::read(&data, store)?,
             best: Best::read(&data, store)?,
             robust: Robust::read(&data, store)?,
-            aim: match study.aim() {
-                Some(_) => adaptive::standing(plan, &store.known(plan, 0)?),
-                None => None,
-            },
+            aim: Aim::read(plan, store)?,
         })
     }
 

@@ -149,15 +149,18 @@ pub(crate) fn point(study: &Study, test: &Test) -> Vec<f64> {
     places.collect()
 }
 
+/// Returns an output of a test; NaN if the test failed.
+pub(crate) fn value((_, result): &Known, output: &Scalar) -> f64 {
+    let outputs = result.as_ref();
+    outputs.map_or(f64::NAN, |outputs| output_value(&outputs.values, output))
+}
+
 /// Returns the stored tests of a search in the unit cube.
 fn observed(plan: &Plan, known: &[Known]) -> Observed {
     let study = plan.study();
     let values = |output: &Scalar| {
-        let value = |(_, result): &Known| {
-            let outputs = result.as_ref();
-            outputs.map_or(f64::NAN, |outputs| output_value(&outputs.values, output))
-        };
-        known.iter().map(value).collect::<Vec<f64>>()
+        let values = known.iter().map(|one| value(one, output));
+        values.collect::<Vec<f64>>()
     };
     let sides = || {
         let bounds = study.answers.bounds.iter();
