@@ -220,10 +220,22 @@ def test_bad_input_says_where(small: condyle.Case, study: condyle.Study, done: c
         condyle.open_study(tmp_path)
     search = {"kind": "optimise", "size": 40, "minimise": "mass_loss_mg"}
     vary = [{"key": "insert.sagittal_radius_mm", "low": 45.0, "high": 60.0}]
-    with ThreadPoolExecutor(1) as pool, pytest.raises(condyle.BadInput, match="the tests of a search depend on earlier ones"):
+    with ThreadPoolExecutor(1) as pool, pytest.raises(condyle.BadInput, match="the tests of this design depend on earlier ones"):
         condyle.Study.from_dict({"design": search, "vary": vary}, case=small).run(tmp_path / "search", executor=pool)
     with pytest.raises(ValueError, match="not both"), ThreadPoolExecutor(1) as pool:
         study.run(tmp_path / "both", executor=pool, client=object())
+
+
+def test_an_adaptive_study_ends_when_its_output_is_known(small: condyle.Case, tmp_path: Path) -> None:
+    design = {"kind": "adaptive", "until": "mass_loss_mg known to 2 %", "size": 40}
+    vary = [{"key": "contact.friction", "low": 0.04, "high": 0.1}]
+    result = condyle.Study.from_dict({"design": design, "vary": vary}, case=small).run(tmp_path / "out")
+    aim = result.answers.aim
+    assert aim.is_known and aim.error <= aim.part == 0.02
+    assert aim.tests == result.answers.kept < 40
+    other = condyle.run(small.replace({"contact.friction": 0.083}), fields=False).mass_loss_mg
+    mass, _ = result.emulator("mass_loss_mg").predict({"contact.friction": 0.083})
+    assert abs(mass / other - 1.0) < 0.02
 
 
 def test_a_worker_with_other_files_is_refused(small: condyle.Case, result: condyle.Result, tmp_path: Path) -> None:
@@ -395,7 +407,7 @@ def test_results_that_do_not_fit_a_search_are_errors(study: condyle.Study, small
         assert search.answered().table["reason"].tolist() == ["no equilibrium"]
     with (
         study.search(tmp_path / "other") as search,
-        pytest.raises(condyle.BadInput, match="a latin-hypercube design has tests that are known in advance"),
+        pytest.raises(condyle.BadInput, match="a design of the kind `latin-hypercube` proposes no tests"),
     ):
         search.ask()
 

@@ -26,23 +26,20 @@ pub fn write_study_page(
     for (name, _, svg) in pictures {
         write_text(folder.join(name), svg)?;
     }
-    let row = |(place, row): (usize, &Vec<String>)| {
-        let cells = row.iter().enumerate();
-        let cells = cells.map(|(column, cell)| match place == 0 || column == 0 {
-            true => path_in_words(cell),
-            false => cell.clone(),
-        });
-        cells.collect::<Vec<_>>()
-    };
-    let tables = tables.iter().map(|(heading, rows)| {
-        let rows = rows.iter().enumerate().map(row);
-        (heading.clone(), rows.collect::<Vec<_>>())
-    });
+    let mut tables = tables.to_vec();
+    for (place, row) in tables
+        .iter_mut()
+        .flat_map(|(_, rows)| rows.iter_mut().enumerate())
+    {
+        let named = if place == 0 { row.len() } else { 1 };
+        let cells = row.iter_mut().take(named);
+        cells.for_each(|cell| *cell = path_in_words(cell));
+    }
     let sheets = Sheets {
         kicker: "condyle study",
         title,
         lede,
-        tables: &tables.collect::<Vec<_>>(),
+        tables: &tables,
         pictures,
         ..Sheets::default()
     };

@@ -85,7 +85,7 @@ impl Plan {
         if inputs > most {
             let design = study.design.word();
             return Err(StudyError::Plan(format!(
-                "a {design} design takes {most} inputs at most, and the study has {inputs}; let fewer inputs vary, or use \
+                "a design of the kind `{design}` takes {most} inputs at most, and the study has {inputs}; let fewer inputs vary, or use \
                  kind = \"latin-hypercube\""
             )));
         }

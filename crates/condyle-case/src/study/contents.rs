@@ -1,7 +1,7 @@
 //! The contents of a study.
 
 use std::io;
-use std::ops::{Range, RangeInclusive};
+use std::ops::Range;
 use std::path::{Path, PathBuf};
 
 use super::answers::Answers;
@@ -242,18 +242,13 @@ impl Study {
 impl AdaptiveKeys {
     /// Returns the name of the output and the part of it, read from `OUTPUT known to NUMBER %`.
     pub(super) fn aim(&self) -> Option<(&str, f64)> {
-        let (output, part) = self.until.split_once(AIM)?;
+        let (output, part) = self.until.split_once(" known to ")?;
         let percent: f64 = part.strip_suffix('%')?.trim().parse().ok()?;
-        MAX_PERCENT
-            .contains(&percent)
-            .then_some((output.trim(), percent / 100.0))
+        // Smaller parts are beyond the solver, and larger ones need no emulator.
+        let is_sensible = (0.01..=50.0).contains(&percent);
+        is_sensible.then_some((output.trim(), percent / 100.0))
     }
 }
-
-/// The words between the output and the part in `until`.
-const AIM: &str = " known to ";
-/// Parts that can be asked for, in %: smaller ones are beyond the solver, and larger ones need no emulator.
-const MAX_PERCENT: RangeInclusive<f64> = 0.01..=50.0;
 
 impl Design {
     /// Returns the design without what lets it grow: its number of tests, if its tests are the first ones of every larger number,

@@ -281,7 +281,7 @@ impl Study {
         );
         if !self.correlations.is_empty() && !is_sample {
             let fault = Fault::new(
-                format!("inputs of a {design} design cannot be correlated"),
+                format!("inputs of a design of the kind `{design}` cannot be correlated"),
                 "use `kind = \"latin-hypercube\"` or `\"sobol\"`, or leave the correlation out",
             );
             log.problem(span.clone(), fault);
@@ -293,7 +293,7 @@ impl Study {
             )
         {
             let fault = Fault::new(
-                format!("designs cannot be compared by a {design} design"),
+                format!("designs cannot be compared in a design of the kind `{design}`"),
                 "use `kind = \"latin-hypercube\"`, or leave the alternatives out",
             );
             log.problem(span, fault);

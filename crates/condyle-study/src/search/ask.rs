@@ -124,7 +124,7 @@ impl Plan {
         match &self.study().design {
             Design::Optimise(keys) => Ok(keys),
             other => Err(StudyError::Plan(format!(
-                "a {} design proposes no tests from results that are reported to it; give the study `kind = \"optimise\"`",
+                "a design of the kind `{}` proposes no tests from results; give the study `kind = \"optimise\"`",
                 other.word()
             ))),
         }
@@ -275,6 +275,9 @@ mod tests {
         );
         let (_folder, plan, store) = begun(&STUDY.replace("optimise", "sobol"));
         let said = store.ask(&plan, &[], 1).unwrap_err().to_string();
-        assert!(said.contains("a sobol design proposes no tests"), "{said}");
+        assert!(
+            said.contains("a design of the kind `sobol` proposes no tests"),
+            "{said}"
+        );
     }
 }
