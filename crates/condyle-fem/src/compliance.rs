@@ -14,68 +14,47 @@ use crate::{
 const VECTORS: usize = 3;
 type Columns = Rhs<VECTORS>;
 
-/// Number of right-hand sides that are solved with a front while it is in the cache.
-const AT_ONCE: usize = 8 * Columns::COLUMNS;
+/// Number of vectors of right-hand sides that are solved with a front while it is in the cache.
+const STRIPS_AT_ONCE: usize = 8;
 
 impl ElasticSolid {
-    /// Returns the displacements of `nodes` by forces on other nodes, each acting alone: row-major, row `3 i + k` is the
-    /// displacement of node `i` along axis `k`, and column `j` belongs to force `j`.
+    /// Returns the displacements of some nodes by each of some forces that are solved half way, three numbers a node, in
+    /// single precision since there are many.
     ///
-    /// By reciprocity it is also the displacement by forces on `nodes`, such as those of an eigenstrain
-    /// ([`YieldingElement::forces`](crate::YieldingElement::forces)), along the other forces. A force along a held
-    /// direction causes no displacement. A column has the same bytes whatever the other columns are, on every run.
+    /// The displacements by a force have the same bytes whatever the other forces are, on every run.
     ///
     /// # Panics
     /// If there is no such node.
-    pub fn influence(&self, nodes: &[u32], forces: &[(u32, Vec3)]) -> Vec<f64> {
-        let mut displacements = vec![0.0; 3 * nodes.len() * forces.len()];
-        let place = |node: u32| self.factor.dissection.place(node);
-        let free = |(i, node)| Some((place(node)?, i));
-        let rows: Vec<(u32, usize)> = nodes.iter().copied().enumerate().filter_map(free).collect();
-        // Back substitution goes only to the groups of these rows.
-        let wanted = self.factor.paths(rows.iter().map(|&(place, _)| place));
-        // Forces that are near in the order of elimination load the same fronts.
-        let loaded = forces.iter().map(|&(node, _)| node).enumerate();
-        let mut columns: Vec<(u32, usize)> = loaded.filter_map(free).collect();
-        columns.sort_unstable();
-        let felt: Vec<Vec3> = forces.iter().map(|&(node, f)| self.felt(node, f)).collect();
-        for some in columns.chunks(AT_ONCE) {
-            let solved = solved(&self.factor, some, &felt, &wanted);
-            for (solved, some) in solved.iter().zip(some.chunks(Columns::COLUMNS)) {
-                for &(place, node) in &rows {
-                    for k in 0..3 {
-                        let row = &mut displacements[(3 * node + k) * forces.len()..];
-                        for (column, &(_, force)) in some.iter().enumerate() {
-                            row[force] = solved.at(3 * place as usize + k, column);
-                        }
-                    }
-                }
+    pub fn displacements_by_each(
+        &self,
+        half_solved: &[&HalfSolved],
+        nodes: &[u32],
+    ) -> Vec<Vec<f32>> {
+        let places = nodes.iter().map(|&node| self.factor.dissection.place(node));
+        let places: Vec<Option<u32>> = places.collect();
+        let strips = half_solved.iter().flat_map(|half| {
+            let columns = |strip| Columns::COLUMNS.min(half.forces - Columns::COLUMNS * strip);
+            (0..half.strips.len()).map(move |strip| (half, strip, columns(strip)))
+        });
+        let strips: Vec<(&&HalfSolved, usize, usize)> = strips.collect();
+        let mut all = Vec::new();
+        for some in strips.chunks(STRIPS_AT_ONCE) {
+            let xs = some.iter();
+            let xs = xs.map(|&(half, strip, _)| half.rows_of(strip, &self.factor));
+            let mut xs: Vec<Columns> = xs.collect();
+            self.factor.backward_all(&mut xs);
+            for (x, &(.., columns)) in xs.iter().zip(some) {
+                all.extend((0..columns).map(|column| {
+                    let number = |place: Option<u32>, k| {
+                        place.map_or(0.0, |place| x.at(3 * place as usize + k, column) as f32)
+                    };
+                    let numbers = |&place| [0, 1, 2].map(|k| number(place, k));
+                    places.iter().flat_map(numbers).collect()
+                }));
             }
         }
-        displacements
+        all
     }
-}
-
-/// Solves for the displacements by forces at places, with as many columns side by side as possible.
-fn solved(
-    factor: &Factor,
-    columns: &[(u32, usize)],
-    felt: &[Vec3],
-    wanted: &[bool],
-) -> Vec<Columns> {
-    let (mut solved, mut loaded) = (Vec::new(), Vec::new());
-    for some in columns.chunks(Columns::COLUMNS) {
-        let mut x = Columns::new(factor.freedoms());
-        for (column, &(place, force)) in some.iter().enumerate() {
-            for (k, component) in felt[force].iter().enumerate() {
-                *x.at_mut(3 * place as usize + k, column) = *component;
-            }
-        }
-        solved.push(x);
-        loaded.push(factor.paths(some.iter().map(|&(place, _)| place)));
-    }
-    factor.solve_some(&mut solved, &loaded, wanted);
-    solved
 }
 
 /// Products of four forces with all forces side by side: twelve sums stay in registers.
@@ -178,6 +157,16 @@ impl HalfSolved {
         moved
     }
 
+    /// Returns some of the forces as right-hand sides of the second half of the solution.
+    fn rows_of(&self, strip: usize, factor: &Factor) -> Columns {
+        let mut x = Columns::new(factor.freedoms());
+        for (group, rows) in &self.groups {
+            let own = &self.strips[strip][rows.clone()];
+            x.rows[factor.own_freedoms(*group)].copy_from_slice(own);
+        }
+        x
+    }
+
     /// Returns the rows, here and in `others`, of the groups that forces of both affect.
     fn common_rows(&self, others: &Self) -> Vec<[Range<usize>; 2]> {
         let mut theirs = others.groups.iter().peekable();
@@ -238,23 +227,20 @@ mod tests {
             .copied()
             .zip(directions.iter().copied())
             .collect();
-        let moved = solid.influence(&nodes, &forces);
-        let displacement =
-            |node: usize, force: usize| Vec3::from_fn(|k, _| moved[(3 * node + k) * 42 + force]);
-        assert_eq!(moved.len(), 3 * 42 * 42);
-        for (j, (&node, &direction)) in nodes.iter().zip(&directions).enumerate() {
-            let alone = solid.displacements(&[(node, direction)]);
-            for (i, &node) in nodes.iter().enumerate() {
-                let found = displacement(i, j);
-                assert!((found - alone[node as usize]).norm() < 1e-15);
+        let halves = [&forces[..17], &forces[17..]].map(|some| solid.half_solved(some));
+        let all: Vec<u32> = (0..solid.mesh().nodes.len() as u32).collect();
+        let moved = solid.displacements_by_each(&[&halves[0], &halves[1]], &all);
+        assert_eq!(moved.len(), 42);
+        for (&force, moved) in forces.iter().zip(&moved) {
+            let alone = solid.displacements(&[force]);
+            let largest = alone.iter().map(|by| by.amax()).fold(0.0, f64::max);
+            for (found, exact) in moved.as_chunks::<3>().0.iter().zip(&alone) {
+                let found = Vec3::from_fn(|k, _| f64::from(found[k]));
+                assert!((found - exact).amax() <= 1e-7 * largest);
             }
-            assert_eq!(displacement(40, j), Vec3::zeros());
         }
-        // Work is the same whichever force comes first (Betti).
-        for (i, j) in [(0, 7), (12, 33), (41, 5)] {
-            let work = |a: usize, b: usize| displacement(a, b).dot(&directions[a]);
-            assert!((work(i, j) - work(j, i)).abs() < 1e-15);
-        }
+        // A force along a held direction causes no displacement.
+        assert!(moved[40].iter().all(|by| *by == 0.0));
     }
 
     #[test]

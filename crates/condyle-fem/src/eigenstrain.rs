@@ -10,7 +10,7 @@ use nalgebra::Matrix3;
 use crate::{
     Vec3,
     elastic::{Elastic, Strain, Stress},
-    element::{Modes, POINTS, Stiffness},
+    element::{Element, Modes, POINTS, Stiffness},
     plastic::{Material, MaterialPoint},
     solid::{ElasticSolid, moved},
 };
@@ -32,7 +32,7 @@ impl ElasticSolid {
         let stress = |(number, hex): (usize, &[u32; 8])| {
             let mut mean = Strain::default();
             if let Some(strains) = eigenstrains.get(&number) {
-                let volumes = self.elements()[number].volumes();
+                let volumes = self.element(number).volumes();
                 let volume: f64 = volumes.iter().sum();
                 for (part, strain) in volumes.iter().zip(strains) {
                     mean = mean.plus(part / volume, &Stress(strain.0));
@@ -44,25 +44,16 @@ impl ElasticSolid {
         hexes.map(stress).collect()
     }
 
-    /// Returns the operator from displacements to the mean stress of an element.
-    ///
-    /// # Panics
-    /// If there is no such element.
-    pub fn element_mean(&self, element: usize) -> ElementMean {
-        ElementMean {
-            gradients: self.elements()[element].mean_gradients(),
-            elastic: self.elastic(),
-        }
-    }
-
     /// Returns an element by itself.
     ///
     /// # Panics
     /// If there is no such element.
     pub fn yielding_element(&self, element: usize) -> YieldingElement {
+        let (element, elastic) = (self.element(element), self.elastic());
         YieldingElement {
-            number: element,
-            stiffness: self.elements()[element].stiffness(&self.elastic()),
+            stiffness: element.stiffness(&elastic),
+            elastic,
+            element,
         }
     }
 }
@@ -70,13 +61,14 @@ impl ElasticSolid {
 /// The operator from the displacements of an element's nodes to its mean stress.
 #[derive(Clone, Debug)]
 pub struct ElementMean {
-    gradients: [Vec3; 8],
-    elastic: Elastic,
+    pub(crate) gradients: [Vec3; 8],
+    pub(crate) elastic: Elastic,
 }
 
 /// An element whose material may yield, with the stiffness of its modes.
 pub struct YieldingElement {
-    number: usize,
+    element: Element,
+    elastic: Elastic,
     stiffness: Stiffness,
 }
 
@@ -100,12 +92,11 @@ impl YieldingElement {
     /// The flow of the element is the fixed point: a result equal to `trial`.
     pub fn flow<M: Material>(
         &self,
-        solid: &ElasticSolid,
         material: &M,
         nodes: &[Vec3; 8],
         [trial, before]: [&[M::Point; POINTS]; 2],
     ) -> [M::Point; POINTS] {
-        let strains = self.strains(solid, nodes, &trial.map(|point| point.eigenstrain()));
+        let strains = self.strains(nodes, &trial.map(|point| point.eigenstrain()));
         std::array::from_fn(|p| material.flow(&strains[p], &before[p]))
     }
 
@@ -113,12 +104,11 @@ impl YieldingElement {
     /// displacements of the nodes, with the plastic strains kept.
     pub fn use_of_yield<M: Material>(
         &self,
-        solid: &ElasticSolid,
         material: &M,
         nodes: &[Vec3; 8],
         before: &[M::Point; POINTS],
     ) -> f64 {
-        let strains = self.strains(solid, nodes, &before.map(|point| point.eigenstrain()));
+        let strains = self.strains(nodes, &before.map(|point| point.eigenstrain()));
         let used = strains.iter().zip(before);
         used.map(|(strain, before)| material.use_of_yield(strain, before))
             .fold(0.0, f64::max)
@@ -126,27 +116,21 @@ impl YieldingElement {
 
     /// Returns the forces on the eight nodes of the element by eigenstrains at its Gauss points, in the order of its
     /// corners: the displacements under them are those of the eigenstrains.
-    pub fn forces(&self, solid: &ElasticSolid, eigenstrains: &[Strain; POINTS]) -> [Vec3; 8] {
-        let (nodes, pull) = self.pull(solid, eigenstrains);
+    pub fn forces(&self, eigenstrains: &[Strain; POINTS]) -> [Vec3; 8] {
+        let (nodes, pull) = self.pull(eigenstrains);
         let passed_on = self.stiffness.passed_on(&pull);
         std::array::from_fn(|node| nodes[node] - passed_on[node])
     }
 
-    fn strains(
-        &self,
-        solid: &ElasticSolid,
-        nodes: &[Vec3; 8],
-        eigenstrains: &[Strain; POINTS],
-    ) -> [Strain; POINTS] {
-        let (_, pull) = self.pull(solid, eigenstrains);
+    fn strains(&self, nodes: &[Vec3; 8], eigenstrains: &[Strain; POINTS]) -> [Strain; POINTS] {
+        let (_, pull) = self.pull(eigenstrains);
         let modes = self.stiffness.modes(nodes, &pull);
-        solid.elements()[self.number].strains(nodes, &modes)
+        self.element.strains(nodes, &modes)
     }
 
-    fn pull(&self, solid: &ElasticSolid, eigenstrains: &[Strain; POINTS]) -> ([Vec3; 8], Modes) {
-        let elastic = solid.elastic();
-        let stresses = eigenstrains.map(|strain| elastic.stress(&strain));
-        solid.elements()[self.number].forces(&stresses)
+    fn pull(&self, eigenstrains: &[Strain; POINTS]) -> ([Vec3; 8], Modes) {
+        let stresses = eigenstrains.map(|strain| self.elastic.stress(&strain));
+        self.element.forces(&stresses)
     }
 }
 
@@ -169,7 +153,7 @@ mod tests {
     /// Displacements of all nodes by eigenstrains of some elements.
     fn relaxed(solid: &ElasticSolid, eigenstrains: &[(usize, [Strain; POINTS])]) -> Vec<Vec3> {
         let forces = eigenstrains.iter().flat_map(|(element, eigenstrains)| {
-            let own = solid.yielding_element(*element).forces(solid, eigenstrains);
+            let own = solid.yielding_element(*element).forces(eigenstrains);
             solid.mesh().hexes[*element].into_iter().zip(own)
         });
         solid.displacements(&forces.collect::<Vec<_>>())
@@ -188,9 +172,9 @@ mod tests {
             assert!((u - exact).norm() < 1e-12, "{u} {exact}");
         }
         let elastic = solid.elastic();
-        let hexes = solid.mesh().hexes.iter().zip(solid.elements());
-        let stresses = hexes.flat_map(|(hex, element)| {
-            element.stresses(
+        let hexes = solid.mesh().hexes.iter().enumerate();
+        let stresses = hexes.flat_map(|(element, hex)| {
+            solid.element(element).stresses(
                 &elastic,
                 &moved(hex, &displacements),
                 &[eigenstrain; POINTS],
@@ -214,8 +198,8 @@ mod tests {
         let by_force = solid.displacements(&[(node, force)]);
         let nodes = moved(&solid.mesh().hexes[17], &by_force);
         let none = [Strain::default(); POINTS];
-        let stresses = solid.elements()[17].stresses(&solid.elastic(), &nodes, &none);
-        let volumes = solid.elements()[17].volumes();
+        let stresses = solid.element(17).stresses(&solid.elastic(), &nodes, &none);
+        let volumes = solid.element(17).volumes();
         let works = (0..POINTS).map(|p| volumes[p] * stresses[p].dot(&Stress(eigenstrains[p].0)));
         let work = force.dot(&displacements[node as usize]);
         assert!((works.sum::<f64>() - work).abs() < 1e-15, "{work}");
@@ -235,9 +219,9 @@ mod tests {
                 Default::default()
             };
             let nodes = moved(hex, &displacements);
-            let element = &solid.elements()[number];
+            let element = solid.element(number);
             let stresses = element.stresses(&solid.elastic(), &nodes, &own);
-            let volumes = solid.elements()[number].volumes();
+            let volumes = element.volumes();
             let volume: f64 = volumes.iter().sum();
             for i in 0..6 {
                 let sum = (0..POINTS).map(|p| volumes[p] / volume * stresses[p].0[i]);

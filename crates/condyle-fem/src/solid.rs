@@ -5,6 +5,7 @@ use thiserror::Error;
 use crate::{
     Vec3,
     elastic::{Elastic, ElasticError},
+    eigenstrain::ElementMean,
     element::Element,
     mesh::HexMesh,
     sparse::{Dissection, Factor, Rhs},
@@ -18,7 +19,7 @@ pub struct ElasticSolid {
     elastic: Elastic,
     /// Axes along which each node cannot move.
     held: Vec<[bool; 3]>,
-    elements: Vec<Element>,
+    means: Vec<ElementMean>,
     pub(crate) factor: Factor,
 }
 
@@ -76,18 +77,17 @@ impl ElasticSolid {
     ) -> Result<Self, SolidError> {
         let elastic = elastic.checked()?;
         let held = checked_supports(mesh, supports)?;
-        let element = |element: usize| {
+        let mean = |element: usize| {
             let corners = mesh.corners(element);
-            Element::new(&corners).ok_or_else(|| SolidError::Inverted {
-                element,
-                place: corners.iter().sum::<Vec3>() / 8.0,
-            })
+            let gradients = Element::new(&corners).map(|element| element.mean_gradients());
+            let place = || corners.iter().sum::<Vec3>() / 8.0;
+            gradients
+                .map(|gradients| ElementMean { gradients, elastic })
+                .ok_or_else(|| SolidError::Inverted { element, place: place() })
         };
-        let elements: Vec<Element> = (0..mesh.hexes.len())
-            .map(element)
-            .collect::<Result<_, _>>()?;
+        let means = (0..mesh.hexes.len()).map(mean).collect::<Result<_, _>>()?;
         let dissection = Dissection::new(mesh, &held);
-        let stiffness = |element: usize| elements[element].stiffness(&elastic).condensed();
+        let stiffness = |element| element_of(mesh, element).stiffness(&elastic).condensed();
         let factor = Factor::new(&mesh.hexes, &held, dissection, stiffness);
         let factor = factor.map_err(|node| SolidError::Loose {
             node,
@@ -97,7 +97,7 @@ impl ElasticSolid {
             mesh: mesh.clone(),
             elastic,
             held,
-            elements,
+            means,
             factor,
         })
     }
@@ -112,9 +112,9 @@ impl ElasticSolid {
         self.elastic
     }
 
-    /// Returns the bytes of the factor and of the strains of the elements.
+    /// Returns the bytes of the factor, which takes most of the memory.
     pub fn bytes(&self) -> usize {
-        size_of::<f64>() * self.factor.len() + size_of_val(&*self.elements)
+        size_of::<f64>() * self.factor.len()
     }
 
     /// Returns the displacement of all nodes under forces on nodes; a node may come more than once.
@@ -146,9 +146,9 @@ impl ElasticSolid {
             }
         }
         let loaded = self.factor.paths(loaded.into_iter());
-        let wanted = vec![true; loaded.len()];
-        self.factor
-            .solve_some(std::slice::from_mut(&mut x), &[loaded], &wanted);
+        let x_only = std::slice::from_mut(&mut x);
+        self.factor.forward_some(x_only, &[loaded]);
+        self.factor.backward_all(x_only);
         let mut displacements = vec![Vec3::zeros(); forces.len()];
         for (place, &node) in order.iter().enumerate() {
             displacements[node as usize] = Vec3::from_fn(|i, _| x.at(3 * place + i, 0));
@@ -162,9 +162,24 @@ impl ElasticSolid {
         Vec3::from_fn(|i, _| if held[i] { 0.0 } else { force[i] })
     }
 
-    pub(crate) fn elements(&self) -> &[Element] {
-        &self.elements
+    /// Returns the operator from displacements to the mean stress of an element.
+    ///
+    /// # Panics
+    /// If there is no such element.
+    pub fn element_mean(&self, element: usize) -> &ElementMean {
+        &self.means[element]
     }
+
+    pub(crate) fn element(&self, element: usize) -> Element {
+        element_of(&self.mesh, element)
+    }
+}
+
+/// Returns an element of a mesh that was checked.
+///
+/// It is computed whenever it is needed: an element has four kilobytes, more than the factor for each.
+fn element_of(mesh: &HexMesh, element: usize) -> Element {
+    Element::new(&mesh.corners(element)).expect("a checked element is not inverted")
 }
 
 pub(crate) fn moved(hex: &[u32; 8], displacements: &[Vec3]) -> [Vec3; 8] {
@@ -308,8 +323,8 @@ mod tests {
             .collect();
         let displacements = solid.displacements(&given);
         let mut forces = vec![Vec3::zeros(); mesh.nodes.len()];
-        for (hex, element) in mesh.hexes.iter().zip(solid.elements()) {
-            let stiffness = element.stiffness(&elastic).condensed();
+        for (number, hex) in mesh.hexes.iter().enumerate() {
+            let stiffness = solid.element(number).stiffness(&elastic).condensed();
             let f = stiffness * flat(&moved(hex, &displacements));
             for (corner, &node) in hex.iter().enumerate() {
                 forces[node as usize] +=

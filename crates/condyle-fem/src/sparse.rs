@@ -127,8 +127,11 @@ impl<S: FnMut(usize) -> NodalStiffness> Assembly<'_, S> {
             // The rows of the boundary in the front of the child come after those that it eliminated.
             let first = Layout::new(child.own.len(), 0).columns;
             for (i, &row) in rows.iter().enumerate() {
-                for (j, &column) in rows[..=i].iter().enumerate() {
-                    *triangle.at_mut(row, column) += remainder.at(first + i, first + j);
+                let into = triangle.row_mut(row / TILE);
+                let from = &remainder.row((first + i) / TILE)[first..];
+                let (lane, from_lane) = (row % TILE, (first + i) % TILE);
+                for (&column, from) in rows[..=i].iter().zip(from) {
+                    into[column].as_mut_array()[lane] += from.as_array()[from_lane];
                 }
             }
             self.spare.push(remainder.into_memory());
@@ -152,8 +155,9 @@ impl<S: FnMut(usize) -> NodalStiffness> Assembly<'_, S> {
             }
         }
         for &(row, i) in &freedoms {
+            let own = triangle.row_mut(row / TILE);
             for &(column, j) in freedoms.iter().filter(|(column, _)| *column <= row) {
-                *triangle.at_mut(row, column) += stiffness[(i, j)];
+                own[column].as_mut_array()[row % TILE] += stiffness[(i, j)];
             }
         }
     }
@@ -185,17 +189,10 @@ impl<const W: usize> Rhs<W> {
 type Rows<const W: usize> = [[f64x4; W]; TILE];
 
 impl Factor {
-    /// Replaces forces by displacements, for some right-hand sides, in the groups where these are needed.
+    /// Solves forces half way, for some right-hand sides.
     ///
-    /// `loaded`: for every right-hand side, the groups with forces and all groups above those. `wanted`: groups whose
-    /// displacements are needed, and all groups above those; other rows are undefined.
-    pub(crate) fn solve_some<const W: usize>(
-        &self,
-        xs: &mut [Rhs<W>],
-        loaded: &[Vec<bool>],
-        wanted: &[bool],
-    ) {
-        // All right-hand sides go through a front while it is in the cache.
+    /// `loaded`: for every right-hand side, the groups with forces and all groups above those.
+    pub(crate) fn forward_some<const W: usize>(&self, xs: &mut [Rhs<W>], loaded: &[Vec<bool>]) {
         let mut front = Vec::new();
         for group in 0..self.fronts.len() {
             let loaded = loaded.iter().map(|loaded| loaded[group]);
@@ -207,7 +204,13 @@ impl Factor {
                 self.forward(group, x, &mut front);
             }
         }
-        for group in (0..self.fronts.len()).rev().filter(|&group| wanted[group]) {
+    }
+
+    /// Replaces forces that are solved half way by displacements, for some right-hand sides.
+    pub(crate) fn backward_all<const W: usize>(&self, xs: &mut [Rhs<W>]) {
+        // All right-hand sides go through a front while it is in the cache.
+        let mut front = Vec::new();
+        for group in (0..self.fronts.len()).rev() {
             for x in xs.iter_mut() {
                 self.backward(group, x, &mut front);
             }

@@ -108,7 +108,7 @@ impl ElasticSolid {
             }
         }
         let mut forces = vec![BTreeMap::new(); motions.len()];
-        for (hex, element) in self.mesh().hexes.iter().zip(self.elements()) {
+        for (element, hex) in self.mesh().hexes.iter().enumerate() {
             let mut moved: BTreeMap<usize, SVector<f64, 24>> = BTreeMap::new();
             for (corner, node) in hex.iter().enumerate() {
                 for &(motion, by) in motions_of.get(node).into_iter().flatten() {
@@ -120,6 +120,7 @@ impl ElasticSolid {
             if moved.is_empty() {
                 continue;
             }
+            let element = self.element(element);
             let stiffness = element.stiffness(&self.elastic()).condensed();
             for (motion, moved) in moved {
                 let own = stiffness * moved;

@@ -24,6 +24,7 @@ pub(crate) struct Triangle {
 }
 
 /// Returns the first vector of row `t` of tiles.
+#[inline]
 fn start_of_row(t: usize) -> usize {
     TILE * (t * (t + 1) / 2)
 }
@@ -45,6 +46,10 @@ impl Triangle {
 
     pub(crate) fn row(&self, t: usize) -> &[f64x4] {
         &self.vectors[start_of_row(t)..start_of_row(t + 1)]
+    }
+
+    pub(crate) fn row_mut(&mut self, t: usize) -> &mut [f64x4] {
+        &mut self.vectors[start_of_row(t)..start_of_row(t + 1)]
     }
 
     /// Returns the number at a row and a column, which must not exceed the row.

@@ -1,7 +1,7 @@
 //! The articulating surface of an elastic insert: its compliance and the influence of loads, by finite elements.
 
 use std::{
-    collections::BTreeMap,
+    collections::{BTreeMap, BTreeSet},
     fmt,
     sync::{
         Arc, Mutex, OnceLock, PoisonError,
@@ -9,7 +9,7 @@ use std::{
     },
 };
 
-use condyle_fem::{Elastic, ElasticSolid, HexMesh, SolidError, Strain};
+use condyle_fem::{Elastic, ElasticSolid, HalfSolved, HexMesh, SolidError, Strain};
 use nalgebra::DVector;
 
 use super::{
@@ -214,7 +214,7 @@ impl ElasticSurface {
     pub fn influence(&self) -> &Influence {
         self.influence.get_or_init(|| {
             let places = self.solid.mesh().positions(&self.nodes).collect::<Vec<_>>();
-            Influence::new(&self.solid, &places, self.loads.tiles().len())
+            Influence::new(&self.solid, &places, self.loads.tiles())
         })
     }
 
@@ -222,10 +222,23 @@ impl ElasticSurface {
         &self.loads.tiles()[tile]
     }
 
-    /// Returns the displacements of all mesh nodes by unit loads on a tile, mm/N: a row for every axis of every mesh node.
-    pub fn moved_below(&self, tile: usize) -> &[f32] {
-        let influence = self.influence();
-        influence.by_surface(&self.solid, tile, &self.loads.forces_of(tile))
+    /// Returns the displacements of all mesh nodes by a unit load on each of some nodes of the surface, mm/N: three numbers a
+    /// mesh node, in the order of the nodes of the influence.
+    pub fn moved_below(&self, nodes: impl Iterator<Item = u32> + Clone) -> Vec<&[f32]> {
+        let (by_surface, all) = (&self.influence().by_surface, &self.influence().nodes);
+        let unknown = nodes.clone();
+        let unknown = unknown.filter(|&node| by_surface[node as usize].get().is_none());
+        let tiles: BTreeSet<u32> = unknown.map(|node| self.normal.tile_of(node)).collect();
+        // Tiles that are needed together are solved together.
+        let tiles = tiles.iter().map(|&tile| tile as usize);
+        let solved: Vec<_> = tiles.clone().map(|tile| self.loads.solved(tile)).collect();
+        let halves: Vec<&HalfSolved> = solved.iter().map(Arc::as_ref).collect();
+        let of_tiles = tiles.flat_map(|tile| self.nodes_of_tile(tile));
+        for (&node, moved) in of_tiles.zip(self.solid.displacements_by_each(&halves, all)) {
+            by_surface[node as usize].get_or_init(|| moved);
+        }
+        let known = nodes.filter_map(|node| by_surface[node as usize].get());
+        known.map(Vec::as_slice).collect()
     }
 
     /// Groups loads on nodes by tiles, ascending, in the order of the nodes of each.
@@ -257,7 +270,7 @@ impl ElasticSurface {
         let mut forces = self.forces(loads);
         for (&element, strains) in eigenstrains {
             let own = self.influence().element(&self.solid, element as u32);
-            let own = own.forces(&self.solid, strains);
+            let own = own.forces(strains);
             let nodes = self.solid.mesh().hexes[element];
             forces.extend(nodes.into_iter().zip(own));
         }

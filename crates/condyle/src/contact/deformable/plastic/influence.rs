@@ -5,7 +5,7 @@ use std::{
     sync::{Arc, Mutex, OnceLock, PoisonError},
 };
 
-use condyle_fem::{ElasticSolid, ElementMean, YieldingElement};
+use condyle_fem::{ElasticSolid, HexMesh, YieldingElement};
 
 use crate::{
     Vec3,
@@ -19,9 +19,11 @@ const TILE_NODES: usize = 8;
 ///
 /// Everything is computed when it is first needed, and kept; it does not depend on what was computed before.
 pub(crate) struct Influence {
-    /// For every tile of the surface, the displacements of all mesh nodes by unit loads on its nodes, mm/N: a row for every
-    /// axis of every mesh node. Single precision is enough to look for yield.
-    by_surface: Vec<OnceLock<Box<[f32]>>>,
+    /// The displacements of all mesh nodes, in the order of `nodes`, by a unit load on each node of the surface, mm/N. Single
+    /// precision is enough to look for yield.
+    pub by_surface: Vec<OnceLock<Vec<f32>>>,
+    /// The mesh nodes below one tile of the surface after the other, so that those below a contact are side by side in memory.
+    pub nodes: Vec<u32>,
     /// Tiles of mesh nodes, and for every node its tile and its place in the tile.
     node_tiles: Vec<Vec<u32>>,
     place_of: Vec<(u32, u32)>,
@@ -29,8 +31,6 @@ pub(crate) struct Influence {
     forces: UnitLoads,
     blocks: Mutex<Blocks>,
     elements: Vec<OnceLock<Box<YieldingElement>>>,
-    /// The operator of the mean stress of every element.
-    pub means: Vec<ElementMean>,
     /// For every node of the surface, the elements to which it is nearest.
     pub stacks: Vec<Vec<u32>>,
 }
@@ -42,9 +42,10 @@ type Blocks = BTreeMap<(u32, u32), Arc<[f64]>>;
 pub(crate) type ByTile = BTreeMap<u32, Vec<f64>>;
 
 impl Influence {
-    /// Prepares the influence in a solid whose surface has nodes at `surface`, in a given number of tiles.
-    pub fn new(solid: &Arc<ElasticSolid>, surface: &[Vec3], surface_tiles: usize) -> Self {
-        let mesh = solid.mesh();
+    /// Prepares the influence in a solid whose surface has nodes at `surface`, in tiles.
+    pub fn new(solid: &Arc<ElasticSolid>, surface: &[Vec3], surface_tiles: &[Vec<u32>]) -> Self {
+        let (mesh, stacks) = (solid.mesh(), stacks(solid, surface));
+        let below = nodes_below(surface_tiles, &stacks, mesh);
         let node_tiles = tiles(&mesh.nodes, TILE_NODES);
         let mut place_of = vec![(0, 0); mesh.nodes.len()];
         for (number, tile) in node_tiles.iter().enumerate() {
@@ -62,14 +63,13 @@ impl Influence {
                 .collect()
         };
         let tiles = node_tiles.iter().map(numbers).collect();
-        let elements = mesh.hexes.len();
         Self {
-            by_surface: empty(surface_tiles),
+            by_surface: empty(surface.len()),
             forces: UnitLoads::new(Arc::clone(solid), forces.collect(), tiles),
             blocks: Mutex::default(),
-            elements: empty(elements),
-            means: (0..elements).map(|e| solid.element_mean(e)).collect(),
-            stacks: stacks(solid, surface),
+            elements: empty(mesh.hexes.len()),
+            stacks,
+            nodes: below,
             node_tiles,
             place_of,
         }
@@ -79,16 +79,6 @@ impl Influence {
     pub fn element(&self, solid: &ElasticSolid, element: u32) -> &YieldingElement {
         let element = element as usize;
         self.elements[element].get_or_init(|| Box::new(solid.yielding_element(element)))
-    }
-
-    /// Returns the displacements of all mesh nodes by unit loads on a tile of the surface: a row for every axis of every node.
-    pub fn by_surface(&self, solid: &ElasticSolid, tile: usize, loads: &[(u32, Vec3)]) -> &[f32] {
-        self.by_surface[tile].get_or_init(|| {
-            let nodes: Vec<u32> = (0..solid.mesh().nodes.len() as u32).collect();
-            // Full solutions rather than products of half-solutions: all nodes are needed.
-            let moved = solid.influence(&nodes, loads);
-            moved.into_iter().map(|by| by as f32).collect()
-        })
     }
 
     pub fn add_force(&self, forces: &mut ByTile, node: u32, force: &Vec3) {
@@ -126,7 +116,16 @@ impl Influence {
         })
     }
 
-    pub fn nodes(&self, tile: u32) -> &[u32] {
+    /// Returns the place of every mesh node among the nodes below the surface.
+    pub fn places(&self) -> Vec<usize> {
+        let mut places = vec![0; self.nodes.len()];
+        for (place, &node) in self.nodes.iter().enumerate() {
+            places[node as usize] = place;
+        }
+        places
+    }
+
+    pub fn nodes_of_tile(&self, tile: u32) -> &[u32] {
         &self.node_tiles[tile as usize]
     }
 
@@ -164,6 +163,18 @@ pub(crate) fn product<T: Copy + Into<f64>>(row: &[T], loads: &[f64]) -> f64 {
 
 fn empty<T>(count: usize) -> Vec<OnceLock<T>> {
     (0..count).map(|_| OnceLock::new()).collect()
+}
+
+/// Returns all mesh nodes, those of the elements below one tile of the surface after the other.
+fn nodes_below(surface_tiles: &[Vec<u32>], stacks: &[Vec<u32>], mesh: &HexMesh) -> Vec<u32> {
+    let elements = surface_tiles.iter().flatten();
+    let elements = elements.flat_map(|&node| &stacks[node as usize]);
+    let below = elements.flat_map(|&element| mesh.hexes[element as usize]);
+    // Nodes of no element come last.
+    let all = below.chain(0..mesh.nodes.len() as u32);
+    let mut is_listed = vec![false; mesh.nodes.len()];
+    all.filter(|&node| !std::mem::replace(&mut is_listed[node as usize], true))
+        .collect()
 }
 
 /// Returns for every node of a surface the elements to which it is nearest.

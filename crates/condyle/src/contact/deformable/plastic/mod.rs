@@ -10,7 +10,7 @@ mod tests;
 
 pub(crate) use influence::Influence;
 
-use std::{collections::BTreeMap, fmt::Debug, sync::Arc};
+use std::{collections::BTreeMap, fmt::Debug, ops::Range, sync::Arc};
 
 use condyle_fem::{Material, MaterialPoint, Strain};
 
@@ -30,7 +30,7 @@ use crate::{
     number::{Mixing, Turns},
     spatial::RelativeMotion,
 };
-use influence::{ByTile, product};
+use influence::ByTile;
 
 /// Gauss points are evaluated in elements whose mean stress uses up this part of the yield stress: within an element stress
 /// varies by a tenth or so, and by more at the edge of contact.
@@ -280,16 +280,17 @@ impl<M: Material> PlasticInsert<M> {
             committed.map_or_else(
                 || {
                     // Elements without plastic strain are judged by their mean stress, with the same margin as under load.
-                    let mean = influence.means[element].stress(&nodes, &Strain::default());
+                    let mean = solid.element_mean(element);
+                    let mean = mean.stress(&nodes, &Strain::default());
                     mean.von_mises() / (EVALUATED_FROM * yield_mpa)
                 },
                 |committed| {
                     let own = influence.element(solid, element as u32);
-                    own.use_of_yield(solid, &self.material, &nodes, committed)
+                    own.use_of_yield(&self.material, &nodes, committed)
                 },
             )
         };
-        let uses = (0..influence.means.len()).map(use_of);
+        let uses = (0..solid.mesh().hexes.len()).map(use_of);
         self.residual_use = uses.fold(0.0, f64::max);
     }
 
@@ -310,10 +311,9 @@ impl<M: Material> PlasticInsert<M> {
         below.sort_unstable();
         below.dedup();
         self.load_nodes(loads, &below);
-        let influence = self.surface.influence();
         let yield_mpa = self.material.initial_yield_stress();
         let is_near_yield = |element: &u32| {
-            let mean = &influence.means[*element as usize];
+            let mean = self.surface.solid.element_mean(*element as usize);
             let nodes = self.nodes_of(*element, &ByTile::new());
             self.committed.contains_key(element)
                 || mean.stress(&nodes, &Strain::default()).von_mises() > EVALUATED_FROM * yield_mpa
@@ -330,21 +330,22 @@ impl<M: Material> PlasticInsert<M> {
                 is_needed[node as usize] = true;
             }
         }
-        let by_tile = surface.by_tile(loads);
-        let tiles = by_tile.iter();
-        let rows: Vec<(&[f32], &Vec<f64>)> = tiles
-            .map(|(tile, loads)| (surface.moved_below(*tile), loads))
-            .collect();
-        // Only for nodes of evaluated elements: a product over all nodes would be far larger.
-        for node in (0..is_needed.len()).filter(|&node| is_needed[node]) {
-            let mut moved = Vec3::zeros();
-            for (rows, loads) in &rows {
-                let own = &rows[3 * node * loads.len()..][..3 * loads.len()];
-                for (moved, row) in moved.iter_mut().zip(own.chunks_exact(loads.len())) {
-                    *moved += product(row, loads);
+        let by_loads = surface.moved_below(loads.iter().map(|&(node, _)| node));
+        let pairs = by_loads.iter().zip(loads);
+        let pairs: Vec<(&[f32], f64)> = pairs.map(|(by, (_, load_n))| (*by, *load_n)).collect();
+        // Only the nodes of evaluated elements: all nodes would take far longer. Neighbours are summed together.
+        let mut start = 0;
+        let same = |one: &u32, next: &u32| is_needed[*one as usize] == is_needed[*next as usize];
+        for nodes in surface.influence().nodes.chunk_by(same) {
+            let places = 3 * start..3 * (start + nodes.len());
+            start += nodes.len();
+            if is_needed[nodes[0] as usize] {
+                let sums = sum_of(&pairs, places);
+                for (&node, sum) in nodes.iter().zip(sums.as_chunks::<3>().0) {
+                    let residual = self.moved_mm[node as usize];
+                    self.loaded_mm[node as usize] = residual + Vec3::from(*sum);
                 }
             }
-            self.loaded_mm[node] = self.moved_mm[node] + moved;
         }
     }
 
@@ -364,7 +365,7 @@ impl<M: Material> PlasticInsert<M> {
             let nodes = self.nodes_of(element, &ByTile::new());
             let before = self.committed_points(element);
             let own = influence.element(solid, element);
-            let used = own.use_of_yield(solid, &self.material, &nodes, &before);
+            let used = own.use_of_yield(&self.material, &nodes, &before);
             flows |= used > 1.0;
             if used > SEARCHED_FROM || self.trial.contains_key(&element) {
                 searched.push(element);
@@ -432,7 +433,7 @@ impl<M: Material> PlasticInsert<M> {
         let trial = self.trial[&element];
         let nodes = self.nodes_of(element, moved_mm);
         let own = self.surface.influence().element(solid, element);
-        let flowed = own.flow(solid, &self.material, &nodes, [&trial, &before]);
+        let flowed = own.flow(&self.material, &nodes, [&trial, &before]);
         let apart = flowed.iter().zip(&trial);
         let apart = apart
             .map(|(flowed, trial)| {
@@ -455,7 +456,7 @@ impl<M: Material> PlasticInsert<M> {
             }
             let flow: [Strain; POINTS] =
                 std::array::from_fn(|p| points[p].eigenstrain().less(&before[p].eigenstrain()));
-            let own = influence.element(solid, element).forces(solid, &flow);
+            let own = influence.element(solid, element).forces(&flow);
             for (&node, force) in solid.mesh().hexes[element as usize].iter().zip(&own) {
                 influence.add_force(&mut forces, node, force);
             }
@@ -470,21 +471,18 @@ impl<M: Material> PlasticInsert<M> {
         let mut tiles: Vec<u32> = near.map(|node| self.surface.normal.tile_of(node)).collect();
         tiles.sort_unstable();
         tiles.dedup();
-        let mut loaded: BTreeMap<u32, Vec3> = BTreeMap::new();
-        for &node in forces.keys().flat_map(|&tile| influence.nodes(tile)) {
-            loaded.insert(node, influence.of_node(forces, node));
-        }
-        for tile in tiles {
-            let nodes = self.surface.nodes_of_tile(tile as usize);
-            let rows = self.surface.moved_below(tile as usize);
-            for (&node, force) in &loaded {
-                let own = &rows[3 * node as usize * nodes.len()..][..3 * nodes.len()];
-                for (row, force) in own.chunks_exact(nodes.len()).zip(force) {
-                    for (&node, &by) in nodes.iter().zip(row) {
-                        set_mm[node as usize] += f64::from(by) * force;
-                    }
-                }
-            }
+        let places = influence.places();
+        let loaded = forces.keys().flat_map(|&tile| influence.nodes_of_tile(tile));
+        let loaded = loaded.map(|&node| (places[node as usize], influence.of_node(forces, node)));
+        let loaded: Vec<(usize, Vec3)> = loaded.collect();
+        let nodes = tiles.iter();
+        let nodes = nodes.flat_map(|&tile| self.surface.nodes_of_tile(tile as usize));
+        let nodes = nodes.copied();
+        for (node, by) in nodes.clone().zip(self.surface.moved_below(nodes)) {
+            let by = by.as_chunks::<3>().0;
+            let parts = loaded.iter();
+            let parts = parts.map(|&(place, force)| force.dot(&Vec3::from(by[place].map(f64::from))));
+            set_mm[node as usize] += parts.sum::<f64>();
         }
     }
 
@@ -544,6 +542,17 @@ impl<M: Material> LoadHistory for PlasticInsert<M> {
     fn into_fields(self: Box<Self>) -> Vec<StateField> {
         self.into_stored().field().into_iter().collect()
     }
+}
+
+/// Returns the sum of rows of displacements, each times its load.
+fn sum_of(by_loads: &[(&[f32], f64)], places: Range<usize>) -> Vec<f64> {
+    let mut sums = vec![0.0; places.len()];
+    for (by, load_n) in by_loads {
+        for (sum, &by) in sums.iter_mut().zip(&by[places.clone()]) {
+            *sum += f64::from(by) * load_n;
+        }
+    }
+    sums
 }
 
 fn eigenstrains<P: MaterialPoint>(points: &Points<P>) -> Eigenstrains {

@@ -93,7 +93,7 @@ impl InitialStress {
     fn forces(&self, strains: &DVector<f64>) -> Vec<(u32, Vec3)> {
         let hexes = self.solid.mesh().hexes.iter().enumerate();
         let forces = hexes.flat_map(|(e, hex)| {
-            let forces = self.elements[e].forces(&self.solid, &own_strains(strains, e));
+            let forces = self.elements[e].forces(&own_strains(strains, e));
             hex.iter().copied().zip(forces)
         });
         forces.collect()
@@ -108,7 +108,7 @@ impl InitialStress {
                 point.strain = strain;
             }
             let element = &self.elements[e];
-            element.flow(&self.solid, &self.material, &nodes, [&trial, &before[e]])
+            element.flow(&self.material, &nodes, [&trial, &before[e]])
         };
         hexes.map(flow).collect()
     }
