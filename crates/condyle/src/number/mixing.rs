@@ -21,6 +21,8 @@ const BENT: f64 = 3.0;
 pub(crate) struct Mixing {
     last: Option<Seen>,
     changes: VecDeque<Seen>,
+    /// The products of the residual of every change with those of itself and of the changes before.
+    products: VecDeque<Vec<f64>>,
     least: Option<f64>,
 }
 
@@ -50,10 +52,17 @@ impl Mixing {
                 reached: &seen.reached - &last.reached,
                 left: &seen.left - &last.left,
             });
-        }
-        // The oldest difference belongs to the point farthest from the solution.
-        if self.changes.len() > DEPTH {
-            self.changes.pop_front();
+            // The oldest difference belongs to the point farthest from the solution.
+            if self.changes.len() > DEPTH {
+                self.changes.pop_front();
+                self.products.pop_front();
+                for products in &mut self.products {
+                    products.remove(0);
+                }
+            }
+            let own = &self.changes[self.changes.len() - 1].left;
+            let products = self.changes.iter().map(|change| change.left.dot(own));
+            self.products.push_back(products.collect());
         }
         let mut next = seen.reached.clone();
         if let Some(parts) = self.parts(&seen.left) {
@@ -68,9 +77,8 @@ impl Mixing {
     /// Returns the $\gamma$ of the changes; none if there are none.
     fn parts(&self, left: &DVector<f64>) -> Option<DVector<f64>> {
         let count = self.changes.len();
-        let of = |i: usize| &self.changes[i].left;
         // Cholesky's factor reads the lower triangle only.
-        let product = |i: usize, j: usize| if i < j { 0.0 } else { of(i).dot(of(j)) };
+        let product = |i: usize, j: usize| self.products[i].get(j).copied().unwrap_or(0.0);
         let mut products = DMatrix::from_fn(count, count, product);
         // Normal equations suffice: at most eight columns, and the diagonal is raised below.
         let mean = products.trace() / count as f64;
@@ -78,7 +86,7 @@ impl Mixing {
             products[(i, i)] += MIN_PART * mean;
         }
         // If the factor fails by rounding, the step is a plain one.
-        let wanted = DVector::from_fn(count, |i, _| of(i).dot(left));
+        let wanted = DVector::from_fn(count, |i, _| self.changes[i].left.dot(left));
         Some(products.cholesky()?.solve(&wanted))
     }
 }

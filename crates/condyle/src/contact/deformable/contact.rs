@@ -11,7 +11,7 @@ use super::{
     complementarity::{Candidate, ContactSet},
     compliance::Compliance,
     edge_and_peak::NodePressures,
-    history::{LoadHistory, NodeLoad, SETTLED_MM, SurfaceLoads},
+    history::{LoadHistory, NodeLoad, SurfaceLoads},
 };
 use crate::{
     Vector,
@@ -217,15 +217,13 @@ impl ContactModel for DeformableContact<'_> {
             candidates: &self.candidates,
         };
         // All histories are settled under the same loads; the step is solved again if any of them moves the surface.
-        let mut moved_mm = 0.0_f64;
+        let mut settled = Settled::Yes;
         for history in &mut self.histories {
-            moved_mm = moved_mm.max(history.settle(&loads)?);
+            if history.settle(&loads)? == Settled::RespondAgain {
+                settled = Settled::RespondAgain;
+            }
         }
-        Ok(if moved_mm <= SETTLED_MM {
-            Settled::Yes
-        } else {
-            Settled::RespondAgain
-        })
+        Ok(settled)
     }
 
     fn accept(&mut self, motion: &RelativeMotion) {

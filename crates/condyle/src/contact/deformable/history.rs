@@ -4,7 +4,7 @@ use crate::{
     contact::{
         contact_patch::ContactPatch,
         law::Bodies,
-        model::{NotBorne, StateField, TouchedNode},
+        model::{NotBorne, Settled, StateField, TouchedNode},
     },
     spatial::{
         Mat6, RelativeMotion, Wrench,
@@ -51,12 +51,13 @@ pub(crate) trait LoadHistory {
         None
     }
 
-    /// Updates the trial state under the loads of the last response, and returns how far that moves the surface, mm.
+    /// Updates the trial state under the loads of the last response; it agrees with them if that moves the surface by no more
+    /// than [`SETTLED_MM`].
     ///
     /// # Errors
     /// The insert cannot bear the load.
-    fn settle(&mut self, _loads: &SurfaceLoads<'_>) -> Result<f64, NotBorne> {
-        Ok(0.0)
+    fn settle(&mut self, _loads: &SurfaceLoads<'_>) -> Result<Settled, NotBorne> {
+        Ok(Settled::Yes)
     }
 
     /// Commits the trial state at the end of a step, near the last response.
@@ -123,6 +124,15 @@ impl<S: Clone + Default> ByActivity<S> {
         let count = self.left.len().max(activity + 1);
         self.left.resize_with(count, S::default);
         self.left[activity] = state;
+    }
+}
+
+/// Returns whether loads and history agree, of which the history moves the surface too far or not.
+pub(crate) fn settled(moves_too_far: bool) -> Settled {
+    if moves_too_far {
+        Settled::RespondAgain
+    } else {
+        Settled::Yes
     }
 }
 

@@ -19,13 +19,13 @@ use nalgebra::DVector;
 use super::{
     complementarity::Candidate,
     elastic_surface::ElasticSurface,
-    history::{ByActivity, LoadHistory, SETTLED_MM, SurfaceLoads, farthest_mm, field},
+    history::{ByActivity, LoadHistory, SETTLED_MM, SurfaceLoads, farthest_mm, field, settled},
 };
 use crate::{
     contact::{
         contact_patch::ContactPatch,
         law::BacksideAtRest,
-        model::{ContactState, NotBorne, StateField, TouchedNode},
+        model::{ContactState, NotBorne, Settled, StateField, TouchedNode},
     },
     number::Turns,
     spatial::RelativeMotion,
@@ -183,8 +183,8 @@ impl LoadHistory for RestingInsert {
         points.map(|point| point[2]).fold(0.0, f64::max)
     }
 
-    /// Finds the equilibrium under the loads, and returns how far that moves nodes of the surface from the trial, mm.
-    fn settle(&mut self, under: &SurfaceLoads<'_>) -> Result<f64, NotBorne> {
+    /// Finds the equilibrium under the loads; they agree if it moves no node near the contact too far from the trial.
+    fn settle(&mut self, under: &SurfaceLoads<'_>) -> Result<Settled, NotBorne> {
         let forces_n = self.surface.forces_on_tray(&self.tray, under.loads);
         let (stuck_mm, from_mm) = (&self.left_mm, &self.searched_mm);
         let found = self
@@ -194,17 +194,17 @@ impl LoadHistory for RestingInsert {
         let tried: Vec<(u32, f64)> = tried.collect();
         let tried_mm = std::mem::replace(&mut self.tried_mm, found.moved_mm.clone());
         self.set_mm.fill(None);
-        let moved = tried
-            .into_iter()
-            .map(|(node, tried_mm)| (self.set_mm(node) - tried_mm).abs());
-        let moved_mm = moved.fold(0.0, f64::max);
-        if moved_mm > SETTLED_MM {
+        // Once a node has moved too far, the displacements of the others need not be computed.
+        let mut tried = tried.into_iter();
+        let moves =
+            tried.any(|(node, tried_mm)| (self.set_mm(node) - tried_mm).abs() > SETTLED_MM);
+        if moves {
             self.tried_mm = self.turns.next(&tried_mm, &found.moved_mm);
             self.set_mm.fill(None);
         }
         self.searched_mm.clone_from(&found.searched_mm);
         self.found = Some(found);
-        Ok(moved_mm)
+        Ok(settled(moves))
     }
 
     fn accept(&mut self, _: &RelativeMotion, _: &ContactPatch<'_>) {

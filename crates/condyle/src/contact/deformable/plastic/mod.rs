@@ -17,14 +17,14 @@ use condyle_fem::{Material, MaterialPoint, Strain};
 use super::{
     complementarity::Candidate,
     elastic_surface::ElasticSurface,
-    history::{LoadHistory, NodeLoad, SETTLED_MM, SurfaceLoads, farthest_mm, field},
+    history::{LoadHistory, NodeLoad, SETTLED_MM, SurfaceLoads, farthest_mm, field, settled},
 };
 use crate::{
     Vec3,
     contact::{
         contact_patch::ContactPatch,
         law::{PlasticUnderSurface, Regime},
-        model::{ContactState, NotBorne, StateField, TouchedNode},
+        model::{ContactState, NotBorne, Settled, StateField, TouchedNode},
     },
     geometry::FacesAround,
     number::{Mixing, Turns},
@@ -508,9 +508,10 @@ impl<M: Material> LoadHistory for PlasticInsert<M> {
         }
     }
 
-    fn settle(&mut self, under: &SurfaceLoads<'_>) -> Result<f64, NotBorne> {
+    fn settle(&mut self, under: &SurfaceLoads<'_>) -> Result<Settled, NotBorne> {
         let around = under.bodies.insert.faces_around();
-        self.flow(under.loads, under.peak_mpa(), under.near(), around)
+        let moved_mm = self.flow(under.loads, under.peak_mpa(), under.near(), around)?;
+        Ok(settled(moved_mm > SETTLED_MM))
     }
 
     fn accept(&mut self, _: &RelativeMotion, _: &ContactPatch<'_>) {
