@@ -4,8 +4,8 @@ use thiserror::Error;
 
 use crate::{
     Vec3,
-    elastic::{Elastic, ElasticError},
     eigenstrain::ElementMean,
+    elastic::{Elastic, ElasticError},
     element::Element,
     mesh::HexMesh,
     sparse::{Dissection, Factor, Rhs},
@@ -83,7 +83,10 @@ impl ElasticSolid {
             let place = || corners.iter().sum::<Vec3>() / 8.0;
             gradients
                 .map(|gradients| ElementMean { gradients, elastic })
-                .ok_or_else(|| SolidError::Inverted { element, place: place() })
+                .ok_or_else(|| SolidError::Inverted {
+                    element,
+                    place: place(),
+                })
         };
         let means = (0..mesh.hexes.len()).map(mean).collect::<Result<_, _>>()?;
         let dissection = Dissection::new(mesh, &held);

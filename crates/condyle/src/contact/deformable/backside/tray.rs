@@ -171,6 +171,21 @@ impl Tray {
         forces_n: &DVector<f64>,
         searched_mm: &DVector<f64>,
     ) -> Result<Rest, NotBorne> {
+        self.rest_within(AT_REST_MM, friction, stuck_mm, forces_n, searched_mm)
+    }
+
+    /// Finds the same within `within_mm`.
+    ///
+    /// # Errors
+    /// As [`Tray::rest`].
+    pub fn rest_within(
+        &self,
+        within_mm: f64,
+        friction: f64,
+        stuck_mm: &[f64],
+        forces_n: &DVector<f64>,
+        searched_mm: &DVector<f64>,
+    ) -> Result<Rest, NotBorne> {
         let mut searched = searched_mm.clone();
         let mut mixing = Mixing::default();
         for _ in 0..MAX_STEPS {
@@ -178,7 +193,7 @@ impl Tray {
             // The reflection of the splitting: at its fixed point the force of the springs is that of the contact.
             let mirrored = &admissible * 2.0 - &searched;
             let apart = self.pulled(forces_n, &mirrored) - &admissible;
-            if apart.amax() <= AT_REST_MM {
+            if apart.amax() <= within_mm {
                 let ends = admissible.iter().zip(searched.iter());
                 let pulls = self.stiffness_of_search.iter().zip(ends);
                 return Ok(Rest {

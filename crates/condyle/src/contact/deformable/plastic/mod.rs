@@ -472,7 +472,9 @@ impl<M: Material> PlasticInsert<M> {
         tiles.sort_unstable();
         tiles.dedup();
         let places = influence.places();
-        let loaded = forces.keys().flat_map(|&tile| influence.nodes_of_tile(tile));
+        let loaded = forces
+            .keys()
+            .flat_map(|&tile| influence.nodes_of_tile(tile));
         let loaded = loaded.map(|&node| (places[node as usize], influence.of_node(forces, node)));
         let loaded: Vec<(usize, Vec3)> = loaded.collect();
         let nodes = tiles.iter();
@@ -481,7 +483,8 @@ impl<M: Material> PlasticInsert<M> {
         for (node, by) in nodes.clone().zip(self.surface.moved_below(nodes)) {
             let by = by.as_chunks::<3>().0;
             let parts = loaded.iter();
-            let parts = parts.map(|&(place, force)| force.dot(&Vec3::from(by[place].map(f64::from))));
+            let parts =
+                parts.map(|&(place, force)| force.dot(&Vec3::from(by[place].map(f64::from))));
             set_mm[node as usize] += parts.sum::<f64>();
         }
     }
