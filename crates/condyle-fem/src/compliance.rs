@@ -233,7 +233,7 @@ mod tests {
         assert_eq!(moved.len(), 42);
         for (&force, moved) in forces.iter().zip(&moved) {
             let alone = solid.displacements(&[force]);
-            let largest = alone.iter().map(|by| by.amax()).fold(0.0, f64::max);
+            let largest = alone.iter().map(Vec3::amax).fold(0.0, f64::max);
             for (found, exact) in moved.as_chunks::<3>().0.iter().zip(&alone) {
                 let found = Vec3::from_fn(|k, _| f64::from(found[k]));
                 assert!((found - exact).amax() <= 1e-7 * largest);

@@ -5,8 +5,6 @@
 
 use std::collections::BTreeMap;
 
-use nalgebra::Matrix3;
-
 use crate::{
     Vec3,
     elastic::{Elastic, Strain, Stress},
@@ -58,31 +56,11 @@ impl ElasticSolid {
     }
 }
 
-/// The operator from the displacements of an element's nodes to its mean stress.
-#[derive(Clone, Debug)]
-pub struct ElementMean {
-    pub(crate) gradients: [Vec3; 8],
-    pub(crate) elastic: Elastic,
-}
-
 /// An element whose material may yield, with the stiffness of its modes.
 pub struct YieldingElement {
     element: Element,
     elastic: Elastic,
     stiffness: Stiffness,
-}
-
-impl ElementMean {
-    /// Returns the mean stress under displacements of the nodes, and a mean eigenstrain.
-    pub fn stress(&self, nodes: &[Vec3; 8], eigenstrain: &Strain) -> Stress {
-        // The incompatible modes add nothing to the mean.
-        let mut gradient = Matrix3::zeros();
-        for (node, by) in nodes.iter().zip(&self.gradients) {
-            gradient += node * by.transpose();
-        }
-        let strain = Strain::from_gradient(&gradient);
-        self.elastic.stress(&strain.less(eigenstrain))
-    }
 }
 
 impl YieldingElement {

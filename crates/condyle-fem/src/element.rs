@@ -255,6 +255,26 @@ impl Element {
     }
 }
 
+/// The operator from the displacements of an element's nodes to its mean stress.
+#[derive(Clone, Debug)]
+pub struct ElementMean {
+    pub(crate) gradients: [Vec3; 8],
+    pub(crate) elastic: Elastic,
+}
+
+impl ElementMean {
+    /// Returns the mean stress under displacements of the nodes, and a mean eigenstrain.
+    pub fn stress(&self, nodes: &[Vec3; 8], eigenstrain: &Strain) -> Stress {
+        // The incompatible modes add nothing to the mean.
+        let mut gradient = Matrix3::zeros();
+        for (node, by) in nodes.iter().zip(&self.gradients) {
+            gradient += node * by.transpose();
+        }
+        let strain = Strain::from_gradient(&gradient);
+        self.elastic.stress(&strain.less(eigenstrain))
+    }
+}
+
 /// Natural coordinates of the Gauss points, in the order of the corners.
 fn gauss_points() -> [[f64; 3]; POINTS] {
     SIGNS.map(|sign| sign.map(|s| s / 3f64.sqrt()))

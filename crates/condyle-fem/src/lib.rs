@@ -41,8 +41,9 @@ mod support;
 mod tests;
 
 pub use compliance::HalfSolved;
-pub use eigenstrain::{ElementMean, YieldingElement};
+pub use eigenstrain::YieldingElement;
 pub use elastic::{Elastic, ElasticError, Strain, Stress};
+pub use element::ElementMean;
 pub use mesh::{HEX_EDGES, HEX_FACES, HexMesh, trilinear_volume, volume_below};
 pub use plastic::{
     ElasticPlastic, Hardening, HardeningError, Material, MaterialPoint, PlasticPoint,

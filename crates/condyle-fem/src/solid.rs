@@ -4,9 +4,8 @@ use thiserror::Error;
 
 use crate::{
     Vec3,
-    eigenstrain::ElementMean,
     elastic::{Elastic, ElasticError},
-    element::Element,
+    element::{Element, ElementMean},
     mesh::HexMesh,
     sparse::{Dissection, Factor, Rhs},
 };
