@@ -476,7 +476,10 @@ impl<M: Material> PlasticInsert<M> {
             .keys()
             .flat_map(|&tile| influence.nodes_of_tile(tile));
         let loaded = loaded.map(|&node| (places[node as usize], influence.of_node(forces, node)));
-        let loaded: Vec<(usize, Vec3)> = loaded.collect();
+        let loaded = loaded.filter(|(_, force)| *force != Vec3::zeros());
+        let mut loaded: Vec<(usize, Vec3)> = loaded.collect();
+        // In the order of memory: each row is read once from start to end.
+        loaded.sort_unstable_by_key(|(place, _)| *place);
         let nodes = tiles.iter();
         let nodes = nodes.flat_map(|&tile| self.surface.nodes_of_tile(tile as usize));
         let nodes = nodes.copied();
