@@ -30,8 +30,6 @@ impl ElasticSolid {
         half_solved: &[&HalfSolved],
         nodes: &[u32],
     ) -> Vec<Vec<f32>> {
-        let places = nodes.iter().map(|&node| self.factor.dissection.place(node));
-        let places: Vec<Option<u32>> = places.collect();
         let strips = half_solved.iter().flat_map(|half| {
             let columns = |strip| Columns::COLUMNS.min(half.forces - Columns::COLUMNS * strip);
             (0..half.strips.len()).map(move |strip| (half, strip, columns(strip)))
@@ -43,6 +41,8 @@ impl ElasticSolid {
             let xs = xs.map(|&(half, strip, _)| half.rows_of(strip, &self.factor));
             let mut xs: Vec<Columns> = xs.collect();
             self.factor.backward_all(&mut xs);
+            let places = nodes.iter().map(|&node| self.factor.dissection.place(node));
+            let places: Vec<Option<u32>> = places.collect();
             for (x, &(.., columns)) in xs.iter().zip(some) {
                 all.extend((0..columns).map(|column| {
                     let number = |place: Option<u32>, k| {
