@@ -220,7 +220,10 @@ def test_bad_input_says_where(small: condyle.Case, study: condyle.Study, done: c
         condyle.open_study(tmp_path)
     search = {"kind": "optimise", "size": 40, "minimise": "mass_loss_mg"}
     vary = [{"key": "insert.sagittal_radius_mm", "low": 45.0, "high": 60.0}]
-    with ThreadPoolExecutor(1) as pool, pytest.raises(condyle.BadInput, match="the tests of this design depend on earlier ones"):
+    with (
+        ThreadPoolExecutor(1) as pool,
+        pytest.raises(condyle.BadInput, match="the tests of this design depend on earlier ones"),
+    ):
         condyle.Study.from_dict({"design": search, "vary": vary}, case=small).run(tmp_path / "search", executor=pool)
     with pytest.raises(ValueError, match="not both"), ThreadPoolExecutor(1) as pool:
         study.run(tmp_path / "both", executor=pool, client=object())

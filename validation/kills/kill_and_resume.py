@@ -122,7 +122,9 @@ def content(folder):
     """Every file of a results folder by its path, without times."""
     paths = [path for path in sorted(folder.rglob("*")) if path.is_file() and path.name not in UNORDERED]
     return {
-        str(path.relative_to(folder)): without_times(json.loads(path.read_bytes())) if path.suffix == ".json" else path.read_bytes()
+        str(path.relative_to(folder)): without_times(json.loads(path.read_bytes()))
+        if path.suffix == ".json"
+        else path.read_bytes()
         for path in paths
     }
 
