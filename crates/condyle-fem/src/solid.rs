@@ -78,14 +78,14 @@ impl ElasticSolid {
         let held = checked_supports(mesh, supports)?;
         let mean = |element: usize| {
             let corners = mesh.corners(element);
-            let gradients = Element::new(&corners).map(|element| element.mean_gradients());
-            let place = || corners.iter().sum::<Vec3>() / 8.0;
-            gradients
-                .map(|gradients| ElementMean { gradients, elastic })
-                .ok_or_else(|| SolidError::Inverted {
-                    element,
-                    place: place(),
-                })
+            let checked = Element::new(&corners).ok_or_else(|| SolidError::Inverted {
+                element,
+                place: corners.iter().sum::<Vec3>() / 8.0,
+            });
+            checked.map(|element| ElementMean {
+                gradients: element.mean_gradients(),
+                elastic,
+            })
         };
         let means = (0..mesh.hexes.len()).map(mean).collect::<Result<_, _>>()?;
         let dissection = Dissection::new(mesh, &held);

@@ -9,7 +9,10 @@ use condyle_fem::{ElasticSolid, HexMesh, YieldingElement};
 
 use crate::{
     Vec3,
-    contact::deformable::compliance::{SurfaceCompliance, UnitLoads, tiles},
+    contact::deformable::{
+        cholesky::product,
+        compliance::{SurfaceCompliance, UnitLoads, tiles},
+    },
 };
 
 /// Largest number of mesh nodes in a tile. Plastic strains spread over few elements, so tiles are small.
@@ -116,19 +119,6 @@ impl Influence {
         })
     }
 
-    /// Returns the place of every mesh node among the nodes below the surface.
-    pub fn places(&self) -> Vec<usize> {
-        let mut places = vec![0; self.nodes.len()];
-        for (place, &node) in self.nodes.iter().enumerate() {
-            places[node as usize] = place;
-        }
-        places
-    }
-
-    pub fn nodes_of_tile(&self, tile: u32) -> &[u32] {
-        &self.node_tiles[tile as usize]
-    }
-
     pub fn tile_of(&self, node: u32) -> u32 {
         self.place_of[node as usize].0
     }
@@ -144,21 +134,6 @@ impl Influence {
         lock().insert((tile, other), Arc::clone(&block));
         block
     }
-}
-
-/// Returns the product of a row with loads, in four independent sums, so that no addition waits for the one before.
-pub(crate) fn product<T: Copy + Into<f64>>(row: &[T], loads: &[f64]) -> f64 {
-    let mut sums = [0.0; 4];
-    let (fours, four_loads) = (row.chunks_exact(4), loads.chunks_exact(4));
-    let (rest, rest_of_loads) = (fours.remainder(), four_loads.remainder());
-    for (row, loads) in fours.zip(four_loads) {
-        for lane in 0..4 {
-            sums[lane] += row[lane].into() * loads[lane];
-        }
-    }
-    let rest = rest.iter().zip(rest_of_loads);
-    let rest: f64 = rest.map(|(&by, load)| by.into() * load).sum();
-    sums.iter().sum::<f64>() + rest
 }
 
 fn empty<T>(count: usize) -> Vec<OnceLock<T>> {

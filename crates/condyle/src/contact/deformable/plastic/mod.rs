@@ -471,15 +471,11 @@ impl<M: Material> PlasticInsert<M> {
         let mut tiles: Vec<u32> = near.map(|node| self.surface.normal.tile_of(node)).collect();
         tiles.sort_unstable();
         tiles.dedup();
-        let places = influence.places();
-        let loaded = forces
-            .keys()
-            .flat_map(|&tile| influence.nodes_of_tile(tile));
-        let loaded = loaded.map(|&node| (places[node as usize], influence.of_node(forces, node)));
-        let loaded = loaded.filter(|(_, force)| *force != Vec3::zeros());
-        let mut loaded: Vec<(usize, Vec3)> = loaded.collect();
         // In the order of memory: each row is read once from start to end.
-        loaded.sort_unstable_by_key(|(place, _)| *place);
+        let nodes = influence.nodes.iter().enumerate();
+        let loaded = nodes.map(|(place, &node)| (place, influence.of_node(forces, node)));
+        let loaded = loaded.filter(|(_, force)| *force != Vec3::zeros());
+        let loaded: Vec<(usize, Vec3)> = loaded.collect();
         let nodes = tiles.iter();
         let nodes = nodes.flat_map(|&tile| self.surface.nodes_of_tile(tile as usize));
         let nodes = nodes.copied();
