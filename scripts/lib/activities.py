@@ -39,9 +39,9 @@ def percent(part, whole):
 
 def adding_up(runs):
     print(
-        "**Does the wear of activities add up independently?** `gait-and-stairs` with each law moving the surface, in mg a million cycles: "
-        "each activity in a test of its own, their sum by shares, and both in one test. The last column is what each would have "
-        "worn with a principal direction of its own on the surfaces of the common test, compared with the wear of both there: "
+        "**Additivity of the wear of activities.** `gait-and-stairs`, in mg per million cycles, with each law changing the surface: "
+        "each activity in its own test, their sum weighted by shares, and both in one test, relative to this sum. The last column "
+        "compares the wear of the common test with that of activities with separate principal directions on the same surfaces: "
         "the effect of the directions alone.\n"
     )
     print_head(["law", "gait alone", "stairs alone", "sum by shares", "both in one test", "of the sum", "directions alone"])
@@ -65,9 +65,9 @@ def in_vivo(runs):
         return
     iso, measured, same_load = (rate(runs / name) for name in ("iso-motion", "in-vivo", "in-vivo-iso-load"))
     row(
-        "walking as measured in vivo wears more than the ISO cycle",
+        "walking measured in vivo wears more than the ISO cycle",
         "`in-vivo-walking` against `stanmore-displacement` with `iso-like` load",
-        f"{measured:.1f} against {iso:.1f} mg a million cycles; under the ISO-like load {same_load:.1f}",
+        f"{measured:.1f} against {iso:.1f} mg per million cycles; with the ISO-like load {same_load:.1f}",
         measured > iso,
         "Reinders 2015 found three times as much, Dreyer 2023 2.8 times. Here load and motion are of two people, on a generic implant.",
     )
@@ -79,14 +79,14 @@ def creep(runs):
     row(
         "creep dominates the first half million cycles",
         "`creep`",
-        f"after {first['cycles']:.0f} cycles the deepest place is {crept:.3f} mm down by creep and {worn:.3f} mm by wear",
+        f"after {first['cycles']:.0f} cycles the deepest place has receded by {crept:.3f} mm down by creep and {worn:.3f} mm by wear",
         crept > worn,
     )
     last, found = wear(runs / "creep")[-1], summary(runs / "creep")["creep"]
     row(
-        "and wear what follows",
+        "wear dominates the rest of the test",
         "`creep`",
-        f"from there to the end creep adds {last['max_creep_mm'] - first['max_creep_mm']:.3f} mm at the most, wear "
+        f"from there to the end creep adds {last['max_creep_mm'] - first['max_creep_mm']:.3f} mm at most, wear "
         f"{last['max_depth_mm'] - first['max_depth_mm']:.3f} mm",
         last["max_depth_mm"] - first["max_depth_mm"] > last["max_creep_mm"] - first["max_creep_mm"],
     )
@@ -96,17 +96,17 @@ def creep(runs):
     row(
         "the rise of scans from a million cycles on is the rate of wear",
         "`creep`",
-        f"{rise:.4f} mm a million cycles against {slope:.4f} mm of wear at its deepest; {line['at_no_cycles_mm']:.3f} mm at no cycles",
+        f"{rise:.4f} mm per million cycles, compared with {slope:.4f} mm of wear at its deepest; {line['at_no_cycles_mm']:.3f} mm at no cycles",
         abs(rise / slope - 1) < 0.05,
         "Within 5 % counts as yes.",
     )
     without = summary(runs / "plus")
     row(
-        "mass is worn as without creep",
+        "creep does not change the mass loss",
         "`creep` against `knight-2007` with `ap_force_sign = 1`",
         f"{last['mass_loss_mg']:.1f} against {without['mass_loss_mg']:.1f} mg",
         abs(last["mass_loss_mg"] / without["mass_loss_mg"] - 1) < TOLD / 100,
-        "As a scar of wear does, one of creep makes the insert conform: the femur slides farther in it.",
+        "Creep, like wear, makes the insert conform, and the femur slides farther.",
     )
 
 
@@ -121,7 +121,7 @@ def turned(runs):
         volume = 100 * (other["volume_loss_mm3"] / plain["volume_loss_mm3"] - 1)
         depth = 100 * (other["max_depth_mm"] / plain["max_depth_mm"] - 1)
         row(
-            f"turning an input's direction changes scar and volume: `{key} = -1`",
+            f"reversing an input changes scar and volume: `{key} = -1`",
             "`knight-2007` with `ap_force_sign = 1`",
             f"volume {volume:+.1f} %, deepest place {depth:+.1f} %",
             abs(volume) > TOLD and abs(depth) > TOLD,
@@ -131,8 +131,8 @@ def turned(runs):
 def main():
     runs = Path(sys.argv[1])
     adding_up(runs)
-    print("**What is known of knees**, and whether the model shows it:\n")
-    print_head(["finding", "case", "found", "shown", "remark"])
+    print("**Known findings on knees**, and their agreement with the model:\n")
+    print_head(["finding", "case", "model", "agrees", "remark"])
     in_vivo(runs)
     creep(runs)
     turned(runs)

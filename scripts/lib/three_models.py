@@ -46,7 +46,7 @@ def print_head(cells):
 def implants(folders):
     print_head(
         ["case", "insert", "peak, first and last cycle, MPa", "area, mm2", "mass, mg", "deepest wear, mm"]
-        + ["off in AP, mm; IE, deg", "permanent set, mm", "processor, s"]
+        + ["difference of AP, mm; IE, deg", "permanent set, mm", "processor, s"]
     )
     for name, folder in folders:
         exact = first_cycle(folder / "deformable")
@@ -75,7 +75,7 @@ def both_models(folder):
 
 
 def changed(what, folders):
-    print_head([what, "peak, MPa: foundation, deformable", "over", "area, mm2", "over"])
+    print_head([what, "peak, MPa: foundation, deformable", "ratio", "area, mm2", "ratio"])
     for name, folder in folders:
         (peak, area), (exact_peak, exact_area) = both_models(folder)
         row = [name, f"{peak:.1f}, {exact_peak:.1f}", f"{peak / exact_peak:.2f}"]

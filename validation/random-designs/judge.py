@@ -155,7 +155,7 @@ def _volumes(summary, meshes):
     crept = summary.get("creep", {}).get("volume_mm3", 0.0)
     lost = _volume(meshes[0]) - _volume(meshes[-1]) - crept
     if abs(lost - summary["volume_loss_mm3"]) > COUNTS_APART * summary["volume_loss_mm3"] + 0.01:
-        yield Finding("the mesh lost a different volume from the worn one", ("counts_of_volume",))
+        yield Finding("volumes of mesh and wear differ", ("counts_of_volume",))
 
 
 def _thickness(mesh):
@@ -170,16 +170,16 @@ def _pressure(summary, motion):
         return  # The insert of the model yields.
     highest = max(summary["peak_pressure_mpa"], motion["peak_pressure_mpa"].max())
     if highest > YIELD_UNDER_A_BALL_MPA:
-        yield Finding("pressed beyond yield", ("pressure_beyond_yield",))
+        yield Finding("pressure beyond yield", ("pressure_beyond_yield",))
 
 
 def _motion(motion):
     for cycle in np.unique(motion["cycles"]):
         rows = motion["cycles"] == cycle
         if np.ptp(motion["ap_mm"][rows]) > MAX_AP_MM:
-            yield Finding("AP beyond what knees do", ("ap_range", "femur_beyond_rim", *RIM_CHECKS))
+            yield Finding("AP beyond that of knees", ("ap_range", "femur_beyond_rim", *RIM_CHECKS))
         if np.ptp(motion["ie_deg"][rows]) > MAX_IE_DEG:
-            yield Finding("IE beyond what knees do", ("ie_range",))
+            yield Finding("IE beyond that of knees", ("ie_range",))
 
 
 def _loads(motion):

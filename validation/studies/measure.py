@@ -62,14 +62,14 @@ def main() -> None:
     a_test = one / given.tests
     rows = [
         ("tests", f"{given.tests}"),
-        ("march of one run alone, as `condyle run` reports it", f"{1000 * alone:.0f} ms"),
+        ("solver time of one run alone, as `condyle run` reports it", f"{1000 * alone:.0f} ms"),
         ("a test of the study on one worker", f"{1000 * a_test:.0f} ms, {100 * (a_test / alone - 1):+.1f} %"),
-        ("throughput of two workers over that of one", f"{one / two:.2f}"),
+        ("throughput of two workers relative to one", f"{one / two:.2f}"),
         (f"{WHOLE:,} tests on two workers, with their answers", f"{whole / 60:.1f} minutes"),
-        ("memory, one worker, two, and two with all those", f"{memory_one:.0f} MB, {memory_two:.0f} MB, {memory_whole:.0f} MB"),
-        ("the same bytes of the table", "yes" if same else "no"),
+        ("memory: one worker; two; two with the 10,000 tests", f"{memory_one:.0f} MB, {memory_two:.0f} MB, {memory_whole:.0f} MB"),
+        ("table has the same bytes", "yes" if same else "no"),
     ]
-    print("| what | measured |\n| --- | --- |")
+    print("| quantity | measured |\n| --- | --- |")
     for row in rows:
         print("| " + " | ".join(row) + " |")
 

@@ -115,15 +115,15 @@ def main() -> None:
         dask_s = seconds_of(study, client=client)
         cost_s = task_cost_s(given.study, client, 500)
     mean_s = sum(times_s) / len(times_s)
-    print("| what | measured |\n| --- | --- |")
-    print(f"| processors here | {os.cpu_count()} |")
+    print("| quantity | measured |\n| --- | --- |")
+    print(f"| processors | {os.cpu_count()} |")
     print(f"| a test | {1e3 * mean_s:.0f} ms |")
-    print(f"| what a worker takes to begin | {1e3 * first_s:.0f} ms |")
+    print(f"| start of a worker | {1e3 * first_s:.0f} ms |")
     print(
-        f"| {given.tests} tests on two threads, and on two processes of Dask | {threads_s:.1f} s, {dask_s:.1f} s ({100 * (dask_s / threads_s - 1):+.1f} %) |"
+        f"| {given.tests} tests on two threads; on two processes of Dask | {threads_s:.1f} s, {dask_s:.1f} s ({100 * (dask_s / threads_s - 1):+.1f} %) |"
     )
     print(
-        f"| a task of {TESTS_A_TASK} tests costs the sender and Dask | {1e3 * cost_s:.1f} ms, {100 * cost_s / (TESTS_A_TASK * mean_s):.2f} % of what it does |"
+        f"| a task of {TESTS_A_TASK} tests: time of the sender and Dask | {1e3 * cost_s:.1f} ms, {100 * cost_s / (TESTS_A_TASK * mean_s):.2f} % of the time of its tests |"
     )
     print("\n| workers, simulated | " + " | ".join(f"{tests:,} tests" for tests in STUDIES) + " |")
     print("| --- |" + " --- |" * len(STUDIES))

@@ -327,7 +327,7 @@ impl Uncertainty {
         );
         if self.doubtful > 0 {
             text += &format!(
-                "{} of them are doubtful: run one with `condyle run` to see why.\n",
+                "Doubtful runs: {}; `condyle run` states the reasons.\n",
                 self.doubtful
             );
         }
@@ -338,7 +338,7 @@ impl Uncertainty {
             );
         }
         if !self.left_out.is_empty() {
-            text += &format!("This case has no key for: {}.\n", self.left_out.join(", "));
+            text += &format!("Not varied, since the case has no such key: {}.\n", self.left_out.join(", "));
         }
         text
     }

@@ -41,7 +41,7 @@ pub fn print(condyle: Option<&Path>) {
     if let Some(condyle) = condyle {
         let whole_s = least_s(ROUNDS, || run_command(condyle));
         row(
-            "the whole command, files and report included",
+            "the whole command, with files and report",
             0.5,
             whole_s,
             "s",
@@ -54,13 +54,13 @@ pub fn print(condyle: Option<&Path>) {
     let finer = finer(&generic);
     let ratio = least_s(ROUNDS, || solved(&finer)) / generic_s;
     row(
-        "four times the articulating nodes, of the time",
+        "time with four times the articulating nodes, relative",
         4.5,
         ratio,
         "times",
     );
     row(
-        "one of two runs at once, of the time alone",
+        "time of each of two simultaneous runs, relative to one alone",
         1.1,
         beside_another(&generic),
         "times",
@@ -86,7 +86,7 @@ pub fn print_laws() {
         [least[0].min(round[0]), least[1].min(round[1])]
     });
     row(
-        "all wear laws in one pass, of the time of Archard's alone",
+        "time of all wear laws in one pass, relative to Archard's alone",
         1.15,
         least[1] / least[0],
         "times",
@@ -113,7 +113,7 @@ fn print_real(real: &Case, generic: &Case) {
         "s",
     );
     row(
-        "the same, kept from a run before",
+        "the same, from the cache",
         0.2,
         kept_s(&femur_only),
         "s",
@@ -121,32 +121,32 @@ fn print_real(real: &Case, generic: &Case) {
     let under_2600_n = Updates::of(real, SECOND + 1, |test| press(test, AXIAL_FORCE_N));
     let evaluations = Evaluations::of(&under_2600_n, SECOND);
     row(
-        "one contact evaluation of it at 2600 N, with the accuracy of the march",
+        "`dm-knee`, one contact evaluation at 2600 N, with the accuracy of the march",
         15.0,
         evaluations.median_us(),
         "us",
     );
     row(
-        "the same, first look at an increment's pose only",
+        "the same, first look only",
         15.0,
         evaluations.median_of_firsts_us(),
         "us",
     );
     row(
-        "the same in the very first cycle, of which nothing is known",
+        "the same in the first cycle, without separation bounds",
         15.0,
         Evaluations::of(&under_2600_n, 0).median_of_firsts_us(),
         "us",
     );
     let in_gait = Updates::of(real, LAST + 1, |_| ());
     row(
-        "one under the gait's own force, with the accuracy of the march",
+        "the same under the force of gait, with the accuracy of the march",
         15.0,
         Evaluations::of(&in_gait, SECOND).median_us(),
         "us",
     );
     row(
-        "the same in the last update, the insert worn",
+        "the same in the last update, on the worn insert",
         15.0,
         Evaluations::of(&in_gait, LAST).median_us(),
         "us",
