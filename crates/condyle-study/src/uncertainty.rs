@@ -338,7 +338,7 @@ impl Uncertainty {
             );
         }
         if !self.left_out.is_empty() {
-            text += &format!("Not varied, since the case has no such key: {}.\n", self.left_out.join(", "));
+            text += &format!("Inputs without a key: {}.\n", self.left_out.join(", "));
         }
         text
     }

@@ -112,12 +112,7 @@ fn print_real(real: &Case, generic: &Case) {
         preparation_s,
         "s",
     );
-    row(
-        "the same, from the cache",
-        0.2,
-        kept_s(&femur_only),
-        "s",
-    );
+    row("the same, from the cache", 0.2, kept_s(&femur_only), "s");
     let under_2600_n = Updates::of(real, SECOND + 1, |test| press(test, AXIAL_FORCE_N));
     let evaluations = Evaluations::of(&under_2600_n, SECOND);
     row(
