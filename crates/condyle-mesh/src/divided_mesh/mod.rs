@@ -6,11 +6,13 @@ mod samples;
 #[cfg(test)]
 mod tests;
 
+use std::ops::Range;
+
 use self::{normals::Normals, samples::samples_of};
 use crate::{
     Vec3,
     curved_mesh::{CurvedMesh, Foot, lift},
-    triangle_mesh::{TriangleMesh, closest_point, weighted},
+    triangle_mesh::{TriangleMesh, bounds, closest_point, weighted},
 };
 
 /// Share of a corner below which a place lies on the opposite side, in spite of rounding.
@@ -33,6 +35,16 @@ pub struct DividedMesh {
 struct Facet {
     at_corners: [Option<Vec3>; 3],
     at_sides: [Option<Vec3>; 3],
+}
+
+/// Consecutive triangles that are parts of one facet, and the ball around them.
+pub struct Cluster {
+    /// Their numbers.
+    pub triangles: Range<usize>,
+    /// Centre of the ball.
+    pub centre: Vec3,
+    /// Radius of the ball, mm.
+    pub radius_mm: f64,
 }
 
 impl DividedMesh {
@@ -65,6 +77,34 @@ impl DividedMesh {
             facets: creases(&mesh, &normals, &facets),
             mesh: divided,
         }
+    }
+
+    /// Returns the triangles in clusters of neighbours, in their order.
+    pub fn clusters(&self) -> Vec<Cluster> {
+        /// More make the balls large, fewer make them many.
+        const MAX_IN_CLUSTER: usize = 8;
+        let mut first = 0;
+        let of_facets = self.facet_of.chunk_by(|one, next| one.0 == next.0);
+        let sizes = of_facets.flat_map(|parts| parts.chunks(MAX_IN_CLUSTER).map(<[_]>::len));
+        let clusters = sizes.map(|size| {
+            let triangles = first..first + size;
+            first += size;
+            let corners = || {
+                triangles
+                    .clone()
+                    .flat_map(|triangle| self.mesh.corners(triangle))
+            };
+            let (low, high) = bounds(&corners().collect::<Vec<_>>());
+            let centre = (low + high) / 2.0;
+            let radii = corners().map(|corner| (corner - centre).norm());
+            let radius_mm = radii.fold(0.0, f64::max);
+            Cluster {
+                triangles,
+                centre,
+                radius_mm,
+            }
+        });
+        clusters.collect()
     }
 
     /// Returns the squared distance from a point to the triangle's plane, mm2: a cheap lower bound.

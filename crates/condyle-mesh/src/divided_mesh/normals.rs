@@ -4,9 +4,13 @@ use std::collections::BTreeMap;
 
 use super::{
     patch::Patch,
-    samples::{MIN_HEIGHT_MM, height, sides_by_edge},
+    samples::{MIN_HEIGHT_MM, height},
 };
-use crate::{Vec3, triangle_mesh::TriangleMesh};
+use crate::{
+    Vec3,
+    repair::{by_edge, edge_uses},
+    triangle_mesh::TriangleMesh,
+};
 
 /// Triangles that meet at more than 30 degrees belong to two surfaces.
 pub(super) const MIN_COSINE: f64 = 0.866;
@@ -135,10 +139,12 @@ fn tangent(along: &Vec3, normal: Option<Vec3>, across: Option<Vec3>) -> Vec3 {
 
 fn sides_across(mesh: &TriangleMesh) -> Vec<[Option<TriangleSide>; 3]> {
     let mut across = vec![[None; 3]; mesh.triangles.len()];
-    for sides in sides_by_edge(mesh).values() {
-        if let &[(one, side), (other, opposite)] = &sides[..] {
-            across[one][side] = Some((other, opposite));
-            across[other][opposite] = Some((one, side));
+    for pair in by_edge(&edge_uses(mesh)) {
+        if let [one, other] = pair {
+            let [one, other] =
+                [one, other].map(|edge| (edge.triangle as usize, usize::from(edge.side)));
+            across[one.0][one.1] = Some(other);
+            across[other.0][other.1] = Some(one);
         }
     }
     across

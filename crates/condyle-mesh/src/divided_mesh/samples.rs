@@ -1,8 +1,10 @@
 //! The vertices of a mesh that sample its surface, in triangles of a good shape.
 
-use std::collections::BTreeMap;
-
-use crate::{Vec3, triangle_mesh::TriangleMesh};
+use crate::{
+    Vec3,
+    repair::{EdgeUse, by_edge, edge_uses},
+    triangle_mesh::TriangleMesh,
+};
 
 /// Distance up to which a vertex lies on a flat facet or a straight edge, mm: above the rounding of files, and much less
 /// than the chord error of any export.
@@ -25,19 +27,24 @@ const MAX_ROUNDS: usize = 60;
 /// no reliable plane. Both are artefacts of the program that triangulated the surface.
 pub(super) fn samples_of(mesh: &TriangleMesh) -> TriangleMesh {
     let mut mesh = mesh.clone();
-    for change in [remove_flat_vertices, exchange_diagonals] {
-        let mut rounds = 0..MAX_ROUNDS;
-        while rounds.next().is_some() && change(&mut mesh) {}
+    let mut vertices: Vec<u32> = (0..mesh.vertices.len() as u32).collect();
+    let mut rounds = 0..MAX_ROUNDS;
+    while rounds.next().is_some() && !vertices.is_empty() {
+        vertices = remove_flat_vertices(&mut mesh, &vertices);
     }
+    let mut rounds = 0..MAX_ROUNDS;
+    while rounds.next().is_some() && exchange_diagonals(&mut mesh) {}
     mesh
 }
 
-/// Removes flat vertices that are not neighbours; returns false if there are none.
-fn remove_flat_vertices(mesh: &mut TriangleMesh) -> bool {
+/// Removes those of some vertices that are flat and not neighbours; returns the vertices around which triangles changed,
+/// ascending: no other can have become flat.
+fn remove_flat_vertices(mesh: &mut TriangleMesh, vertices: &[u32]) -> Vec<u32> {
     let around = mesh.triangles_around();
     let mut is_changed = vec![false; mesh.triangles.len()];
     let mut removed = Vec::new();
-    for (vertex, star) in (0..).zip(&around) {
+    for &vertex in vertices {
+        let star = &around[vertex as usize];
         if star.iter().any(|&triangle| is_changed[triangle as usize]) {
             continue;
         }
@@ -52,11 +59,16 @@ fn remove_flat_vertices(mesh: &mut TriangleMesh) -> bool {
             }
         }
     }
+    let triangles = mesh.triangles.iter().zip(&is_changed);
+    let changed = triangles.filter_map(|(corners, &is_changed)| is_changed.then_some(corners));
+    let mut next: Vec<u32> = changed.copied().flatten().collect();
+    next.sort_unstable();
+    next.dedup();
     removed.sort_unstable();
     let mut number = 0..;
     let is_kept = |_: &[u32; 3]| removed.binary_search(&number.next().unwrap_or(0)).is_err();
     mesh.triangles.retain(is_kept);
-    !removed.is_empty()
+    next
 }
 
 /// Returns the neighbour onto which a vertex can be moved without any change of the surface.
@@ -124,38 +136,26 @@ pub(super) fn height([a, b, c]: [Vec3; 3]) -> f64 {
     (b - a).cross(&(c - a)).norm() / longest.max(f64::MIN_POSITIVE)
 }
 
-/// Returns the sides at every edge, each by the number of its triangle and of the corner at its start.
-pub(super) fn sides_by_edge(mesh: &TriangleMesh) -> BTreeMap<[u32; 2], Vec<(usize, usize)>> {
-    let mut sides: BTreeMap<[u32; 2], Vec<(usize, usize)>> = BTreeMap::new();
-    for (triangle, corners) in mesh.triangles.iter().enumerate() {
-        for side in 0..3 {
-            let (a, b) = (corners[side], corners[(side + 1) % 3]);
-            sides
-                .entry([a.min(b), a.max(b)])
-                .or_default()
-                .push((triangle, side));
-        }
-    }
-    sides
-}
-
 /// Exchanges the diagonals of quads that have no triangle in common; returns false if there are none.
 fn exchange_diagonals(mesh: &mut TriangleMesh) -> bool {
-    let sides = sides_by_edge(mesh);
+    let uses = edge_uses(mesh);
+    let is_edge = |ends: [u32; 2]| uses.binary_search_by_key(&ends, |edge| edge.ends).is_ok();
     let mut is_changed = vec![false; mesh.triangles.len()];
-    for pair in sides.values() {
-        let &[(one, side), (other, across)] = &pair[..] else {
+    for pair in by_edge(&uses) {
+        let [first, second] = pair else {
             continue;
         };
+        let [one, other] = [first.triangle as usize, second.triangle as usize];
         if is_changed[one] || is_changed[other] {
             continue;
         }
-        let turned = |triangle: usize, side: usize| {
-            [0, 1, 2].map(|step| mesh.triangles[triangle][(side + step) % 3])
+        let turned = |side: &EdgeUse| {
+            let corners = mesh.triangles[side.triangle as usize];
+            [0, 1, 2].map(|step| corners[(usize::from(side.side) + step) % 3])
         };
-        let ([a, b, c], [from, to, d]) = (turned(one, side), turned(other, across));
+        let ([a, b, c], [from, to, d]) = (turned(first), turned(second));
         let new = [c.min(d), c.max(d)];
-        if [from, to] == [b, a] && !sides.contains_key(&new) && is_better(mesh, [a, b, c, d]) {
+        if [from, to] == [b, a] && is_better(mesh, [a, b, c, d]) && !is_edge(new) {
             (mesh.triangles[one], mesh.triangles[other]) = ([a, d, c], [d, b, c]);
             is_changed[one] = true;
             is_changed[other] = true;

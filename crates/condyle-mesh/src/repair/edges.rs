@@ -8,29 +8,37 @@ use crate::{
 };
 
 #[derive(Clone, Copy)]
-pub(super) struct EdgeUse {
+pub(crate) struct EdgeUse {
     /// Vertices of the edge, the lower number first.
-    pub(super) ends: [u32; 2],
-    pub(super) triangle: u32,
+    pub(crate) ends: [u32; 2],
+    pub(crate) triangle: u32,
+    /// Number of the side of the triangle, which begins at the corner of the same number.
+    pub(crate) side: u8,
     /// The triangle runs from the lower vertex to the higher.
-    pub(super) rises: bool,
+    pub(crate) rises: bool,
 }
 
 /// Returns all sides of all triangles, those of one edge together.
-pub(super) fn edge_uses(mesh: &TriangleMesh) -> Vec<EdgeUse> {
+pub(crate) fn edge_uses(mesh: &TriangleMesh) -> Vec<EdgeUse> {
     let mut uses = Vec::with_capacity(3 * mesh.triangles.len());
     for (triangle, &[a, b, c]) in (0..).zip(&mesh.triangles) {
-        uses.extend([[a, b], [b, c], [c, a]].map(|[from, to]| EdgeUse {
+        let sides = [(0, a, b), (1, b, c), (2, c, a)];
+        uses.extend(sides.map(|(side, from, to)| EdgeUse {
             ends: [from.min(to), from.max(to)],
             triangle,
+            side,
             rises: from < to,
         }));
     }
-    uses.sort_unstable_by_key(|edge| (edge.ends, edge.triangle));
+    uses.sort_unstable_by_key(|edge| {
+        // One number for both ends: it is compared in one step.
+        let ends = u64::from(edge.ends[0]) << 32 | u64::from(edge.ends[1]);
+        (ends, edge.triangle, edge.side)
+    });
     uses
 }
 
-pub(super) fn by_edge(uses: &[EdgeUse]) -> impl Iterator<Item = &[EdgeUse]> {
+pub(crate) fn by_edge(uses: &[EdgeUse]) -> impl Iterator<Item = &[EdgeUse]> {
     uses.chunk_by(|one, other| one.ends == other.ends)
 }
 

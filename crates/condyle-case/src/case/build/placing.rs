@@ -178,13 +178,14 @@ pub(in crate::case) fn checked(
     mesh: TriangleMesh,
     checks: Checks,
 ) -> Result<CheckedMesh, BuildError> {
-    let noise = noise(&mesh);
-    checks.check(mesh).map_err(|error| match noise {
-        Some(noise) => {
-            BuildError::mesh(file, &["file"], format_args!("{noise}; as it is, {error}"))
-        }
-        None => BuildError::shell(file, &error),
-    })
+    checks
+        .check(mesh.clone())
+        .map_err(|error| match noise(&mesh) {
+            Some(noise) => {
+                BuildError::mesh(file, &["file"], format_args!("{noise}; as it is, {error}"))
+            }
+            None => BuildError::shell(file, &error),
+        })
 }
 
 /// Scatter beyond which a surface is noisy, mm: the same at the contact changes the highest pressure by some 5 %.

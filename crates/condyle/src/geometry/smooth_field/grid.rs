@@ -1,6 +1,6 @@
 //! The regular grid at whose nodes the gap to a mesh is known, and the numbers at its nodes.
 
-use condyle_mesh::DividedMesh;
+use condyle_mesh::{Cluster, DividedMesh};
 use serde::{Deserialize, Serialize};
 
 use crate::Vec3;
@@ -64,14 +64,15 @@ impl NodeGrid {
         })
     }
 
-    /// Returns the first node and one past the last node along each axis within the band of a triangle.
-    pub fn band_around(&self, corners: [Vec3; 3]) -> [[usize; 3]; 2] {
-        let [a, b, c] = corners.map(|corner| (corner - self.origin) / SPACING_MM);
-        let (low, high) = (a.inf(&b).inf(&c), a.sup(&b).sup(&c));
-        let band = BAND_MM / SPACING_MM;
-        let first = |axis: usize| (low[axis] - band).ceil().max(0.0) as usize;
-        let end = |axis: usize| ((high[axis] + band).floor() as usize + 1).min(self.counts[axis]);
-        [[0, 1, 2].map(first), [0, 1, 2].map(end)]
+    /// Returns the first node and one past the last node along each axis within `reach_mm` of a place along that axis.
+    pub fn nodes_around(&self, place: &Vec3, reach_mm: f64) -> [[usize; 2]; 3] {
+        let middle = (place - self.origin) / SPACING_MM;
+        let reach = reach_mm / SPACING_MM;
+        [0, 1, 2].map(|axis| {
+            let first = (middle[axis] - reach).ceil().max(0.0) as usize;
+            let end = (middle[axis] + reach).floor().max(-1.0) + 1.0;
+            [first, (end as usize).min(self.counts[axis])]
+        })
     }
 
     /// Returns the largest distance of the grid from the frame's origin, mm.
@@ -127,18 +128,40 @@ fn nearest_triangles(
     count: usize,
 ) -> impl Iterator<Item = Option<usize>> {
     const NONE: u32 = u32::MAX;
+    /// Parts by which rounding may place a point nearer than it is: every bound is wider, so that it changes no result.
+    const ROUNDING: f64 = 1e-9;
     let [_, row, layer] = grid.strides();
     let last_layer = first_layer + count / layer;
+    let clusters = curved.clusters();
+    let rows_around = |cluster: &Cluster| {
+        let [xs, ys, zs] = grid.nodes_around(&cluster.centre, cluster.radius_mm + BAND_MM);
+        let layers = zs[0].max(first_layer)..zs[1].min(last_layer);
+        layers.flat_map(move |k| (ys[0]..ys[1]).map(move |j| (xs[0]..xs[1], j, k)))
+    };
+    let number = move |i: usize, j: usize, k: usize| i + row * j + layer * (k - first_layer);
     // Squared distances: the root is taken once, for the nearest triangle only.
     let mut nearest2 = vec![BAND_MM * BAND_MM; count];
+    // One corner of each cluster gives upper bounds, with which most clusters are out of question for most nodes.
+    for cluster in &clusters {
+        let [corner, ..] = curved.mesh.corners(cluster.triangles.start);
+        for (across, j, k) in rows_around(cluster) {
+            let nodes = &mut nearest2[number(0, j, k)..][across.clone()];
+            for (i, nearest2) in across.zip(nodes) {
+                let distance2 = (grid.position(i, j, k) - corner).norm_squared();
+                *nearest2 = nearest2.min(distance2 * (1.0 + ROUNDING));
+            }
+        }
+    }
     let mut nearest = vec![NONE; count];
-    for triangle in 0..curved.mesh.triangles.len() {
-        let [low, high] = grid.band_around(curved.mesh.corners(triangle));
-        for k in low[2].max(first_layer)..high[2].min(last_layer) {
-            for j in low[1]..high[1] {
-                for i in low[0]..high[0] {
-                    let here = i + row * j + layer * (k - first_layer);
-                    let node = grid.position(i, j, k);
+    for cluster in &clusters {
+        for (across, j, k) in rows_around(cluster) {
+            for i in across {
+                let (here, node) = (number(i, j, k), grid.position(i, j, k));
+                let reach = (nearest2[here].sqrt() + cluster.radius_mm) * (1.0 + ROUNDING);
+                if (node - cluster.centre).norm_squared() > reach * reach {
+                    continue;
+                }
+                for triangle in cluster.triangles.clone() {
                     // The plane is never farther than the triangle, and cheaper to evaluate.
                     if curved.plane_distance2(triangle, &node) >= nearest2[here] {
                         continue;
