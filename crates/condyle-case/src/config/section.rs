@@ -62,9 +62,10 @@ impl<'a> Section<'a> {
         let Some(value) = self.value(name) else {
             return Some(Vec::new());
         };
-        let items = value.get_ref().as_array().map_or(0, |items| items.len());
+        let items = value.get_ref().as_array().map(|items| items.len());
         let tables = self.tables(name);
-        if items == 0 || tables.len() < items {
+        // Programs write a list without tables as an empty array.
+        if items != Some(tables.len()) {
             let wanted = format!("tables, each headed [[{}]]", self.part(name).path);
             let fault = type_fault(name, &wanted, type_name(value.get_ref()));
             log.problem(self.key_span(name), fault);

@@ -6,7 +6,7 @@ use super::grid::{ColumnGrid, Place};
 use crate::{Vec3, curved_mesh::CurvedMesh, triangle_mesh::TriangleMesh};
 
 /// Edge of the bins that sort the triangles over the transverse plane, mm.
-const BIN_MM: f64 = 1.0;
+const BIN_MM: f64 = 0.5;
 /// A line that slips between two triangles is tried again this far away, mm: much more than rounding errors, and much
 /// less than the accuracy of a node's position.
 const ASIDE_MM: f64 = 1e-4;
