@@ -162,7 +162,7 @@ pub(super) fn parsed_shell(
         );
         return Err(BuildError::mesh(file, &["clip_below_mm"], message));
     }
-    let mut shell = checked(file, mesh, checks)?;
+    let mut shell = checked(file, &mesh, checks)?;
     // A closed shell shows its inside; an open one must face the other body.
     let must_face_up = checks.touching == Touching::FromAbove;
     if !shell.closed && faces_up(&shell.mesh) != must_face_up {
@@ -175,12 +175,12 @@ pub(super) fn parsed_shell(
 /// Checks a mesh in place; the noise of a scan is named before the crossings that it causes.
 pub(in crate::case) fn checked(
     file: &Path,
-    mesh: TriangleMesh,
+    mesh: &TriangleMesh,
     checks: Checks,
 ) -> Result<CheckedMesh, BuildError> {
     checks
         .check(mesh.clone())
-        .map_err(|error| match noise(&mesh) {
+        .map_err(|error| match noise(mesh) {
             Some(noise) => {
                 BuildError::mesh(file, &["file"], format_args!("{noise}; as it is, {error}"))
             }
