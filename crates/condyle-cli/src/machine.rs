@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use condyle_case::case::{Preset, Rig, RigJoint, template};
+use condyle_case::case::{Preset, Rig, RigJoint};
 
 use crate::{
     arguments::Machine,
@@ -12,7 +12,7 @@ use crate::{
 pub fn machine(arguments: &Machine) -> Done {
     match arguments {
         Machine::List => list(),
-        Machine::Show { preset } => output::print(&shown(*preset)),
+        Machine::Show { preset } => output::print(preset.text()),
         Machine::Check { file } => check(file),
     }
 }
@@ -25,26 +25,28 @@ fn list() -> Done {
     output::print(lines.text())
 }
 
-/// Returns the file of a machine by joints, or the tables of the knee simulator in a case.
-fn shown(preset: Preset) -> String {
-    if let Some((_, text)) = preset.rig() {
-        return text.to_owned();
-    }
-    let case = template(preset);
-    let tables = case
-        .split("\n[")
-        .filter(|table| table.starts_with("machine"));
-    tables.map(|table| format!("[{table}\n")).collect()
-}
-
 fn check(file: &Path) -> Done {
     let rig = Rig::from_file(file).map_err(|problems| Failure::from(&problems))?;
     let mut lines = Lines::default();
     let mut row = |name: &str, value: String| lines.line(format!("{name:<28}{value}"));
-    row("tests", rig.keys.tests.name().to_owned());
+    let results = if rig.is_knee_simulator() {
+        ", with the results of the knee simulator"
+    } else {
+        ""
+    };
+    row("tests", format!("{}{results}", rig.keys.tests.name()));
     row("frequency", format!("{} Hz", rig.keys.frequency_hz));
     for joint in &rig.joints {
         row(&joint.keys.name, described(joint));
+    }
+    for spring in &rig.springs {
+        let (along, about) = (&spring.along, &spring.about);
+        let [positive, negative] = spring.stiffness_n_per_mm;
+        let described = format!(
+            "spring along {along}, {} mm from the axis of {about}, {positive} and {negative} N/mm",
+            spring.offset_mm
+        );
+        row(&spring.name, described);
     }
     for ligament in &rig.ligaments {
         row(

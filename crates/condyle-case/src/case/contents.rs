@@ -4,6 +4,7 @@ use std::collections::BTreeMap;
 use std::ops::Range;
 use std::sync::Arc;
 
+use condyle::machine::TestedJoint;
 use condyle::wear::WEAR_LAWS;
 use serde_json::json;
 
@@ -16,6 +17,7 @@ use super::insert::{Insert, InsertShape};
 use super::machine::Machine;
 use super::material::{Creep, Material};
 use super::renamed::renamed;
+use super::rig::Rig;
 use super::run_options::{Accuracy, Limits, March, Output, Time};
 use super::wear::{Wear, WearLaws};
 use crate::config::*;
@@ -117,10 +119,10 @@ impl Case {
         let mut report = |key: &str, message: String, advice: String| {
             log.problem(insert.value_span(key), Fault::new(message, advice));
         };
-        if self.machine.rig.is_none() {
-            let message = format!(
-                "a {bearing} needs a machine by joints, and this case has a knee simulator"
-            );
+        let is_of_knees = |rig: &Rig| rig.keys.tests == TestedJoint::Knee;
+        if self.machine.rig.as_ref().is_none_or(is_of_knees) {
+            let message =
+                format!("a {bearing} needs another machine than the knee simulator of this case");
             report(
                 "shape",
                 message,

@@ -1,5 +1,7 @@
 //! The simulator: its own keys, its six freedoms, and the waveforms that drive them.
 
+use std::sync::OnceLock;
+
 use condyle::machine::knee::{self, KNEE};
 use condyle::machine::{Channel, JointDescription, JointIndex, JointKind, Waveform};
 
@@ -30,6 +32,8 @@ choice! {
         Iso181921CervicalLike = "iso-18192-1-cervical-like",
         /// Ankle: flexion prescribed, AP force and torque restrained by the bearing.
         Iso22622Like = "iso-22622-like",
+        /// Ankle: as iso-22622-like, with AP motion and rotation prescribed.
+        Iso22622DisplacementLike = "iso-22622-displacement-like",
         /// Pin on a disc along a circle.
         PinOnDisc = "pin-on-disc",
     }
@@ -124,9 +128,11 @@ pub struct Waveforms {
 }
 
 impl Preset {
-    /// Returns the word and the text of the machine file, unless the preset is the knee simulator.
-    pub fn rig(self) -> Option<(&'static str, &'static str)> {
-        let text = match self {
+    /// Returns the text of its machine file.
+    pub fn text(self) -> &'static str {
+        match self {
+            Self::StanmoreForce => include_str!("../../machines/stanmore-force.toml"),
+            Self::StanmoreDisplacement => include_str!("../../machines/stanmore-displacement.toml"),
             Self::Iso142421Like => include_str!("../../machines/iso-14242-1-like.toml"),
             Self::Iso142423Like => include_str!("../../machines/iso-14242-3-like.toml"),
             Self::Iso142424Like => include_str!("../../machines/iso-14242-4-like.toml"),
@@ -137,23 +143,26 @@ impl Preset {
                 include_str!("../../machines/iso-18192-1-cervical-like.toml")
             }
             Self::Iso22622Like => include_str!("../../machines/iso-22622-like.toml"),
+            Self::Iso22622DisplacementLike => {
+                include_str!("../../machines/iso-22622-displacement-like.toml")
+            }
             Self::PinOnDisc => include_str!("../../machines/pin-on-disc.toml"),
-            _ => return None,
-        };
-        Some((self.word(), text))
+        }
+    }
+
+    /// Returns the machine of its file, which is read once.
+    pub(super) fn machine(self) -> &'static Rig {
+        static READ: [OnceLock<Rig>; Preset::ALL.len()] =
+            [const { OnceLock::new() }; Preset::ALL.len()];
+        let name = || format!("machines/{}.toml", self.word());
+        READ[self as usize].get_or_init(|| Rig::shipped(&name(), self.text()))
     }
 
     /// Returns the drive of a freedom for which the case gives none.
     fn drive(self, freedom: &str) -> DriveWord {
-        let prescribed: &[&str] = match self {
-            Self::StanmoreDisplacement => &["ap", "ie", "flexion"],
-            _ => &["flexion"],
-        };
-        if prescribed.contains(&freedom) {
-            DriveWord::Prescribed
-        } else {
-            DriveWord::Loaded
-        }
+        let mut joints = self.machine().joints.iter();
+        let joint = joints.find(|joint| joint.keys.name == freedom);
+        joint.map_or(DriveWord::Loaded, |joint| joint.keys.drive)
     }
 }
 
@@ -408,7 +417,10 @@ impl Machine {
         let mut discarded = Log::new(&log.source, log.base);
         let settings = MachineSettings::read(section, &mut discarded);
         let (preset, file) = settings.map_or((None, None), |settings| {
-            (settings.preset.rig(), settings.file)
+            let machine = settings.preset.machine();
+            // A case of a knee simulator has keys of its own, which change the machine when it is built.
+            let is_of_file = !machine.is_knee_simulator();
+            (is_of_file.then(|| machine.clone()), settings.file)
         });
         let rig = Rig::read_from(section, preset, file.as_ref(), log)?;
         if rig.is_some() {

@@ -25,6 +25,7 @@ mod reader;
 mod renamed;
 mod rig;
 mod rig_joint;
+mod rig_spring;
 mod run_options;
 #[cfg(test)]
 mod tests;
@@ -35,7 +36,7 @@ mod wear;
 pub use self::{
     activity::*, assignment::*, build::*, contact::*, contents::*, drive::*, femur::*, frame::*,
     insert::*, ligament::*, machine::*, material::*, pressure_table::*, reader::*, rig::*,
-    rig_joint::*, run_options::*, wear::*,
+    rig_joint::*, rig_spring::*, run_options::*, wear::*,
 };
 
 #[cfg(feature = "file-system")]

@@ -138,6 +138,11 @@ fn bodies_for(preset: Preset) -> &'static str {
         Preset::Iso22622Like => {
             "[femur]\nshape = \"cylinder\"\nradius_mm = 24.5\n[insert]\nshape = \"trough\"\n"
         }
+        Preset::Iso22622DisplacementLike => {
+            "[femur]\nshape = \"generic\"\ndistal_radius_mm = 24.0\nposterior_radius_mm = 24.0\n\
+             coronal_radius_mm = 20.0\nspacing_mm = 18.0\n[insert]\nshape = \"generic\"\nsagittal_radius_mm = 28.0\n\
+             coronal_radius_mm = 25.0\nspacing_mm = 18.0\nthickness_mm = 6.0\n"
+        }
         Preset::PinOnDisc => "[femur]\nshape = \"plane\"\n[insert]\nshape = \"pin\"\n",
         _ => "",
     }

@@ -1,8 +1,6 @@
-//! A machine as a file: joints in order, axes, drives and waveforms; condyle's own machines for hips and specimens are such
-//! files too.
+//! A machine as a file: joints in order, axes, drives, waveforms and springs; condyle's own machines are such files too.
 
 use std::collections::BTreeMap;
-#[cfg(feature = "file-system")]
 use std::path::Path;
 use std::sync::{Arc, LazyLock, Mutex, PoisonError};
 
@@ -12,13 +10,15 @@ use condyle::machine::{
     TestedJoint, knee,
 };
 #[cfg(feature = "file-system")]
-use condyle_mesh::files::{Disk, Files};
+use condyle_mesh::files::Disk;
+use condyle_mesh::files::{Files, MemoryFiles};
 use miette::NamedSource;
 
 use super::drive::DriveWord;
 use super::frame::Side;
 use super::ligament::Ligament;
 use super::rig_joint::{RigJoint, RigJointKeys};
+use super::rig_spring::OffsetSpring;
 use crate::config::*;
 
 words! {
@@ -34,7 +34,7 @@ words! {
 settings! {
     /// The keys of a machine file besides its joints.
     RigKeys {
-        /// The joint of the body whose replacement the machine tests: hip, disc, ankle, or specimen for pins and plates.
+        /// The joint of the body whose replacement the machine tests: knee, hip, disc, ankle, or specimen for pins and plates.
         tests: TestedJoint;
         /// Cycles a second.
         frequency_hz: f64 = 1.0, in within(0.001, 100.0);
@@ -50,8 +50,20 @@ pub struct Rig {
     pub keys: RigKeys,
     /// Its joints, from the bearing to the counterface.
     pub joints: Vec<RigJoint>,
+    /// Its springs between two joints.
+    pub springs: Vec<OffsetSpring>,
     /// Its ligaments.
     pub ligaments: Vec<Ligament>,
+}
+
+/// Puts every one of `changes` in place of that of the same name in `all`, or after them.
+fn replace_by_name<T>(all: &mut Vec<T>, changes: Vec<T>, name: impl Fn(&T) -> &str) {
+    for change in changes {
+        match all.iter_mut().find(|known| name(known) == name(&change)) {
+            Some(known) => *known = change,
+            None => all.push(change),
+        }
+    }
 }
 
 impl Rig {
@@ -69,28 +81,34 @@ impl Rig {
         })
     }
 
-    /// Returns the machine of the `[machine]` table of a case if it is one by joints: that of its file or of a shipped file with
-    /// the changes of the table, or that of the table; the outer `None` if it has problems.
+    /// Returns the machine of the `[machine]` table of a case if it is one by joints: that of its file or of `preset` with the
+    /// changes of the table, or that of the table; the outer `None` if it has problems.
     pub(super) fn read_from(
         section: &Section<'_>,
-        preset: Option<(&str, &str)>,
+        preset: Option<Self>,
         file: Option<&DataFile>,
         log: &mut Log<'_>,
     ) -> Option<Option<Self>> {
         let base = match (file, preset) {
             (Some(file), _) => Self::in_file(file, section, log)?,
-            (None, Some((word, text))) => {
-                let name = format!("machines/{word}.toml");
-                let source = Arc::new(NamedSource::new(name, text.to_owned()));
-                let base = log.base;
-                Self::of_text(&source, base, log)?
-            }
+            (None, Some(preset)) => preset,
             (None, None) if section.value("joints").is_some() => {
                 return Self::read(section, log)?.ordered(section, log).map(Some);
             }
             (None, None) => return Some(None),
         };
         base.changed_by(section, log).map(Some)
+    }
+
+    /// Returns the machine of a shipped file, called `name` in messages.
+    pub(super) fn shipped(name: &str, text: &str) -> Self {
+        let files: Arc<dyn Files> = Arc::new(MemoryFiles::default());
+        let source = Arc::new(NamedSource::new(name, text.to_owned()));
+        let base = Base::of(&files, Path::new(""));
+        match Self::of_text(&source, base) {
+            Ok(machine) => machine,
+            Err(problems) => unreachable!("shipped machines are read by a test: {problems}"),
+        }
     }
 
     /// Returns the machine of the file that the key `file` of `section` names.
@@ -100,7 +118,8 @@ impl Rig {
         log: &mut Log<'_>,
     ) -> Option<Self> {
         let source = file.source(section, "file", log)?;
-        Self::of_text(&source, Base::of(file.shared_files(), file.path()), log)
+        let read = Self::of_text(&source, Base::of(file.shared_files(), file.path()));
+        read.map_err(|problems| log.extend(problems)).ok()
     }
 
     /// Returns the machine with the keys of `section`, and with its joints and ligaments in place of those of the same name.
@@ -117,13 +136,10 @@ impl Rig {
             };
             *known = joint;
         }
-        for ligament in Ligament::read_list(section, log)? {
-            let mut known = self.ligaments.iter_mut();
-            match known.find(|known| known.name == ligament.name) {
-                Some(known) => *known = ligament,
-                None => self.ligaments.push(ligament),
-            }
-        }
+        let springs = OffsetSpring::read_list(section, log)?;
+        replace_by_name(&mut self.springs, springs, |spring| &spring.name);
+        let ligaments = Ligament::read_list(section, log)?;
+        replace_by_name(&mut self.ligaments, ligaments, |ligament| &ligament.name);
         for key in RigKeys::keys() {
             let keys = &mut self.keys;
             match key.name {
@@ -141,12 +157,11 @@ impl Rig {
         self.joints.iter().map(RigJoint::name)
     }
 
-    fn of_text(source: &Source, base: Base<'_>, log: &mut Log<'_>) -> Option<Self> {
-        let read = read_document(source, base, |root, log| {
+    fn of_text(source: &Source, base: Base<'_>) -> Result<Self, Problems> {
+        read_document(source, base, |root, log| {
             check(root, &Self::items(), log);
             Self::read(root, log)
-        });
-        read.map_err(|problems| log.extend(problems)).ok()
+        })
     }
 
     /// Returns the machine with its joints in the order of `order`, after checking that they form a chain that presses.
@@ -193,6 +208,11 @@ impl Rig {
             let message = "the machine needs one joint that presses the bodies together: a loaded translation along y with \
                            [joints.load]";
             return fault("joints", message.to_owned(), "");
+        }
+        let mut springs = self.springs.iter().map(|spring| spring.build(&self.joints));
+        if let Some(unattached) = springs.find_map(Result::err) {
+            log.problem(section.key_span("offset_springs"), unattached);
+            return None;
         }
         if let Some((one, other)) = self.same_freedom() {
             let message =
@@ -248,23 +268,38 @@ impl Rig {
         differ.next()
     }
 
-    /// Returns the machine in mm, N, s and rad.
-    pub(super) fn build(&self, side: Side) -> Machine {
+    /// Returns the machine in mm, N, s and rad around a bearing that is lowest at `low_point_mm`; ligaments are of a joint of
+    /// `side`.
+    pub(super) fn build(&self, low_point_mm: Vec3, side: Side) -> Machine {
         let mut machine = Machine::new(self.mechanism());
         let ligaments = self.ligaments.iter();
         machine.ligaments = ligaments.map(|ligament| ligament.build(side)).collect();
+        let springs = self.springs.iter().map(|spring| spring.build(&self.joints));
+        machine.springs = springs.filter_map(Result::ok).collect();
         for (joint, index) in self.joints.iter().zip(JointIndex::ALL) {
             machine.springs.extend(joint.spring(index));
             let built = machine.joint_mut(index);
             built.drive = joint.driven();
-            built.axis_point_mm = joint.keys.point_mm.map_or(Vec3::zeros(), Vec3::from);
+            (built.inertia, built.damping) = joint.inertia_and_damping();
+            built.axis_point_mm = joint.axis_point_mm(low_point_mm);
         }
         machine.frequency_hz = self.keys.frequency_hz;
         machine
     }
 
+    /// Returns whether its joints move as those of the knee simulator: its runs then have the results of knees.
+    pub fn is_knee_simulator(&self) -> bool {
+        let mut pairs = self.joints.iter().zip(&knee::KNEE.joints);
+        self.keys.tests == TestedJoint::Knee
+            && self.joints.len() == knee::KNEE.joints.len()
+            && pairs.all(|(own, of_knee)| own.is_as(of_knee))
+    }
+
     /// Returns the description of the joints, which lives as long as the process: equal machines share one.
     fn mechanism(&self) -> &'static Mechanism {
+        if self.is_knee_simulator() {
+            return &knee::KNEE;
+        }
         static KNOWN: LazyLock<Mutex<BTreeMap<String, &'static Mechanism>>> =
             LazyLock::new(Mutex::default);
         let joints: Vec<&RigJointKeys> = self.joints.iter().map(|joint| &joint.keys).collect();
@@ -317,6 +352,9 @@ impl Rig {
         for joint in &self.joints {
             out.table_of_list("joints", |out| joint.write(out));
         }
+        for spring in &self.springs {
+            out.table_of_list("offset_springs", |out| spring.write(out));
+        }
         Ligament::write_list(&self.ligaments, out);
     }
 
@@ -330,7 +368,11 @@ impl Rig {
 
     fn items() -> Vec<Item> {
         let mut items = RigKeys::items();
-        items.extend([RigJoint::list_item(), Ligament::list_item()]);
+        items.extend([
+            RigJoint::list_item(),
+            OffsetSpring::list_item(),
+            Ligament::list_item(),
+        ]);
         items
     }
 
@@ -340,6 +382,7 @@ impl Rig {
         Some(Self {
             keys: keys?,
             joints,
+            springs: OffsetSpring::read_list(section, log)?,
             ligaments: Ligament::read_list(section, log)?,
         })
     }

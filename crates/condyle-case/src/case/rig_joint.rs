@@ -30,6 +30,16 @@ words! {
     }
 }
 
+choice! {
+    /// Level from which the height of a point of an axis is measured.
+    PointLevel {
+        /// The origin of the bearing frame.
+        Origin = "origin",
+        /// The lowest point of the bearing surface.
+        LowestPoint = "lowest-point",
+    }
+}
+
 settings! {
     /// The keys of a joint of a machine file, besides its waveform in `[joints.load]` or `[joints.motion]`.
     RigJointKeys {
@@ -47,6 +57,8 @@ settings! {
         moves: MovedBody = MovedBody::Counterface;
         /// Point of a rotation's axis in the bearing frame; through the centre of the counterface if not given.
         point_mm: Option<[f64; 3]> = None, in within(-1000.0, 1000.0);
+        /// Level from which the height of `point_mm`, its second number, is measured; the origin if not given.
+        point_from: Option<PointLevel> = None;
         /// Its drive.
         drive: DriveWord = DriveWord::Locked;
         /// Position of a locked rotation.
@@ -100,6 +112,7 @@ impl RigJointKeys {
                 "damping_nm_s_per_rad",
                 "turns_per_cycle",
                 "point_mm",
+                "point_from",
                 "spring_nm_per_deg",
                 "free_play_deg",
                 "spring_rest_deg",
@@ -296,6 +309,7 @@ impl RigJoint {
             && own.axis == others.axis
             && own.moves == others.moves
             && own.point_mm == others.point_mm
+            && own.point_from == others.point_from
             && own.settling == others.settling
             && self.is_zeroed() == other.is_zeroed()
     }
@@ -355,6 +369,51 @@ impl RigJoint {
         }
     }
 
+    /// Returns mass and damping in tonne and N s/mm, or moment of inertia and damping in tonne mm2 and N mm s/rad.
+    pub(super) fn inertia_and_damping(&self) -> (f64, f64) {
+        let keys = &self.keys;
+        // Files state SI units; the library computes in t, mm and s, and 1 kg m2 is 1e3 t mm2.
+        match keys.kind {
+            JointKind::Rotation => (
+                (keys.inertia_kg_m2).map_or(knee::MOMENT_OF_INERTIA_TONNE_MM2, |own| 1e3 * own),
+                (keys.damping_nm_s_per_rad).map_or(knee::DAMPING_NMM_S_PER_RAD, |own| 1e3 * own),
+            ),
+            JointKind::Translation => (
+                keys.inertia_kg.map_or(knee::MASS_TONNE, |mass| 1e-3 * mass),
+                keys.damping_n_s_per_mm.unwrap_or(knee::DAMPING_N_S_PER_MM),
+            ),
+        }
+    }
+
+    /// Returns a point of its axis in the insert frame, for a bearing that is lowest at `low_point_mm`.
+    pub(super) fn axis_point_mm(&self, low_point_mm: Vec3) -> Vec3 {
+        let level_mm = match self.keys.point_from {
+            None | Some(PointLevel::Origin) => 0.0,
+            Some(PointLevel::LowestPoint) => low_point_mm.y,
+        };
+        let point_mm = self.keys.point_mm.unwrap_or_default();
+        Vec3::from(point_mm) + Vec3::new(0.0, level_mm, 0.0)
+    }
+
+    /// Returns whether it has the name and the motion of `joint`, whatever drives it.
+    pub(super) fn is_as(&self, joint: &JointDescription) -> bool {
+        let keys = &self.keys;
+        let own = (
+            self.name(),
+            self.axis(),
+            keys.moves,
+            keys.settling,
+            self.is_zeroed(),
+        );
+        own == (
+            joint.name,
+            joint.axis,
+            joint.moves,
+            joint.settling,
+            joint.is_zeroed,
+        )
+    }
+
     pub(super) fn description(&self) -> JointDescription {
         let keys = &self.keys;
         let is_rotation = keys.kind == JointKind::Rotation;
@@ -365,6 +424,7 @@ impl RigJoint {
             JointKind::Rotation => (&ROTATION, &TORQUE),
             JointKind::Translation => (&TRANSLATION, &FORCE),
         };
+        let (inertia, damping) = self.inertia_and_damping();
         JointDescription {
             name,
             column: leaked(&format!(
@@ -382,19 +442,8 @@ impl RigJoint {
             moves: keys.moves,
             settling: keys.settling,
             is_zeroed: self.is_zeroed(),
-            // Files state SI units; the library computes in t, mm and s, and 1 kg m2 is 1e3 t mm2.
-            inertia: if is_rotation {
-                let given = keys.inertia_kg_m2;
-                given.map_or(knee::MOMENT_OF_INERTIA_TONNE_MM2, |inertia| 1e3 * inertia)
-            } else {
-                keys.inertia_kg.map_or(knee::MASS_TONNE, |mass| 1e-3 * mass)
-            },
-            damping: if is_rotation {
-                let given = keys.damping_nm_s_per_rad;
-                given.map_or(knee::DAMPING_NMM_S_PER_RAD, |damping| 1e3 * damping)
-            } else {
-                keys.damping_n_s_per_mm.unwrap_or(knee::DAMPING_N_S_PER_MM)
-            },
+            inertia,
+            damping,
             motion: Some(motion),
             load: Loading::By(load),
         }

@@ -1,5 +1,6 @@
 //! Waveforms of the machine: the shipped ones, their tables in a case, and their points there or in a CSV file.
 
+use std::collections::BTreeSet;
 use std::ops::Range;
 use std::sync::Arc;
 
@@ -17,7 +18,8 @@ struct NamedWaveform {
     /// Name of the channel with hyphens; empty for every channel.
     channel: &'static str,
     word: &'static str,
-    file: &'static str,
+    /// Word and channel, by which the joints of a machine file name it.
+    stem: &'static str,
     text: &'static str,
     interpolation: Interpolation,
 }
@@ -27,7 +29,7 @@ macro_rules! shipped {
         &[$($(NamedWaveform {
             channel: $channel,
             word: $word,
-            file: concat!("cases/waveforms/", $word, "-", $channel, ".csv"),
+            stem: concat!($word, "-", $channel),
             text: include_str!(concat!(
                 env!("CARGO_MANIFEST_DIR"), "/waveforms/", $word, "-", $channel, ".csv"
             )),
@@ -48,20 +50,30 @@ const SHIPPED: &[NamedWaveform] = shipped! {
 const NONE: NamedWaveform = NamedWaveform {
     channel: "",
     word: "none",
-    file: "none",
+    stem: "none",
     text: "percent,none\n0,0\n",
     interpolation: Interpolation::HalfCosine,
 };
 
-/// Returns the shipped waveforms of a channel; every channel except the load may also be zero.
-fn named(channel: &'static Channel) -> impl Iterator<Item = &'static NamedWaveform> {
-    let name = channel.name.replace('_', "-");
-    let shipped = SHIPPED.iter().filter(move |one| one.channel == name);
-    shipped.chain((*channel != knee::AXIAL_FORCE).then_some(&NONE))
+/// Returns the shipped waveforms of a channel, with the words for them; every channel except the load may also be zero. A joint
+/// of a machine file takes every waveform of its unit.
+fn named(
+    channel: &'static Channel,
+) -> impl Iterator<Item = (&'static str, &'static NamedWaveform)> {
+    let shipped = SHIPPED.iter().filter_map(move |one| {
+        let of_knee = KNEE.channel(&one.channel.replace('-', "_"))?;
+        if of_knee == channel {
+            Some((one.word, one))
+        } else {
+            let is_of_joint = KNEE.channel(channel.name).is_none();
+            (is_of_joint && of_knee.unit == channel.unit).then_some((one.stem, one))
+        }
+    });
+    shipped.chain((*channel != knee::AXIAL_FORCE).then_some((NONE.word, &NONE)))
 }
 
 pub(super) fn words_of(channel: &'static Channel) -> Vec<&'static str> {
-    named(channel).map(|named| named.word).collect()
+    named(channel).map(|(word, _)| word).collect()
 }
 
 fn knots_key(channel: &Channel) -> Key {
@@ -139,7 +151,10 @@ pub(super) fn table(channels: &[&'static Channel]) -> TableItem {
         if let Item::Key(key) = item
             && key.name == "waveform"
         {
-            key.kind = Kind::Word(words_of(first));
+            let mut known = BTreeSet::new();
+            let words = channels.iter().flat_map(|channel| words_of(channel));
+            // Every channel has the zero waveform.
+            key.kind = Kind::Word(words.filter(|word| known.insert(*word)).collect());
         }
     }
     let knots: Vec<Key> = channels.iter().map(|channel| knots_key(channel)).collect();
@@ -294,14 +309,15 @@ fn samples(
         return None;
     }
     let word = keys.waveform.as_deref().unwrap_or(DEFAULT_WAVEFORM);
-    let Some(named) = named(channel).find(|named| named.word == word) else {
+    let Some((_, named)) = named(channel).find(|(own, _)| *own == word) else {
         let fault = unknown_word("waveform", word, &words_of(channel));
         log.problem(section.value_span("waveform"), fault);
         return None;
     };
-    let source = Arc::new(NamedSource::new(named.file, named.text.to_owned()));
-    let columns = Columns::split(named.text, named.file, "");
+    let file = format!("cases/waveforms/{}.csv", named.stem);
+    let columns = Columns::split(named.text, &file, "");
     let read = columns.and_then(|columns| column_points(&columns, 1));
+    let source = Arc::new(NamedSource::new(file, named.text.to_owned()));
     Samples::in_text(source, read, named.interpolation, log)
 }
 

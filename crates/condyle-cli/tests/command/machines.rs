@@ -1,6 +1,6 @@
 //! Machines by joints at the command: their list, their files, their reports.
 
-use crate::bench::Bench;
+use crate::bench::{Bench, SMALL};
 
 const ORBITAL: &str = "[femur]\nshape = \"sphere\"\nradius_mm = 14.0\n\
                        [insert]\nshape = \"cup\"\nedge_mm = 2.5\nlayers = 2\n\
@@ -36,16 +36,50 @@ fn machines_are_listed_shown_and_checked() {
     assert!(presets.contains(&"stanmore-force") && presets.contains(&"iso-22622-like"));
     for preset in presets {
         let shown = bench.say(&["machine", "show", preset]).out;
-        if shown.contains("[[joints]]") {
-            bench.write("rig.toml", &shown);
-            let checked = bench.say(&["machine", "check", "rig.toml"]).out;
-            assert!(
-                checked.contains("the machine is good"),
-                "{preset}: {checked}"
-            );
-        } else {
-            assert!(shown.contains("[machine.springs]"), "{preset}: {shown}");
+        bench.write("rig.toml", &shown);
+        let checked = bench.say(&["machine", "check", "rig.toml"]).out;
+        assert!(
+            checked.contains("the machine is good"),
+            "{preset}: {checked}"
+        );
+    }
+}
+
+/// Returns the lines of a file of results without those of computing time and inputs.
+fn computed(bench: &Bench, file: &str) -> Vec<String> {
+    let bytes = std::fs::read(bench.path(file)).unwrap();
+    let text = String::from_utf8_lossy(&bytes);
+    let lines = text.lines().map(str::to_owned);
+    lines
+        .filter(|line| !line.contains("wall_s") && !line.contains("inputs_blake3"))
+        .collect()
+}
+
+#[test]
+fn a_shown_knee_simulator_has_the_results_of_its_preset() {
+    for preset in ["stanmore-force", "stanmore-displacement"] {
+        let bench = Bench::new();
+        bench.write("rig.toml", &bench.say(&["machine", "show", preset]).out);
+        for (out, machine) in [
+            ("by-file", "file = \"rig.toml\"".to_owned()),
+            ("by-word", format!("preset = {preset:?}")),
+        ] {
+            bench.write("case.toml", &format!("{SMALL}[machine]\n{machine}\n"));
+            bench.run_into(out);
         }
+        let files = [
+            "wear.csv",
+            "kinematics.csv",
+            "insert_0001.vtu",
+            "summary.json",
+        ];
+        for file in files {
+            let [by_file, by_word] =
+                ["by-file", "by-word"].map(|out| computed(&bench, &format!("{out}/{file}")));
+            assert_eq!(by_file, by_word, "{preset}: {file}");
+        }
+        let summary = computed(&bench, "by-file/summary.json").concat();
+        assert!(summary.contains("\"ap_range_mm\"") && summary.contains("medial"));
     }
 }
 

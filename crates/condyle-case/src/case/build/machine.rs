@@ -3,92 +3,92 @@
 use condyle::Vec3;
 use condyle::evolve::Activity;
 use condyle::machine::knee::{self, KNEE};
-use condyle::machine::{
-    Channel, Drive, JointDescription, JointIndex, JointKind, Machine, Spring, Waveform,
-};
+use condyle::machine::{Channel, Drive, JointIndex, JointKind, Machine, Waveform};
 
 use crate::case::contents::Case;
-use crate::case::drive::DriveWord;
-use crate::case::frame::Side;
 use crate::case::machine as case;
-use crate::case::machine::{Freedom, StiffnessOf};
+use crate::case::machine::{Freedom, Springs, StiffnessOf};
 use crate::case::rig::Rig;
-
-const TONNE_PER_KG: f64 = 1e-3;
-const TONNE_MM2_PER_KG_M2: f64 = 1e3;
-const NMM_PER_NM: f64 = 1e3;
+use crate::case::rig_joint::RigJointKeys;
+use crate::case::rig_spring::OffsetSpring;
 
 impl case::Machine {
-    /// Builds the machine around an insert whose dishes are lowest at `low_point_mm`; ligaments are of a joint of `side`.
-    pub(super) fn build(&self, low_point_mm: Vec3, side: Side) -> Machine {
-        let settings = &self.settings;
-        let mut machine = Machine::new(&KNEE);
-        for index in JointIndex::ALL {
-            let (joint, freedom) = (machine.joint_mut(index), self.freedoms.get(index));
-            joint.drive = self.drive(joint.description, freedom);
-            (joint.inertia, joint.damping) = match joint.description.kind() {
-                JointKind::Translation => (freedom.inertia * TONNE_PER_KG, freedom.damping),
-                JointKind::Rotation => (
-                    freedom.inertia * TONNE_MM2_PER_KG_M2,
-                    freedom.damping * NMM_PER_NM,
-                ),
-            };
+    /// Returns the machine by joints: that of the case, or the knee simulator's with the keys of the case.
+    fn by_joints(&self) -> Rig {
+        if let Some(rig) = &self.rig {
+            return rig.clone();
         }
-        machine.joint_mut(knee::VV).axis_point_mm = Vec3::new(
-            0.0,
-            low_point_mm.y - settings.vv_axis_below_mm,
-            -settings.vv_axis_medial_mm,
-        );
-        machine.joint_mut(knee::IE).axis_point_mm =
-            Vec3::new(settings.ie_axis_anterior_mm, 0.0, 0.0);
-        let springs = &self.springs;
-        // Two springs act in parallel: each of a pair has half of its stiffness.
-        let share = match springs.stiffness_of {
-            StiffnessOf::Pair => 0.5,
-            StiffnessOf::Each => 1.0,
-        };
-        let spring = |side: f64| Spring {
-            along: knee::AP,
-            about: knee::IE,
-            offset_mm: side * springs.lateral_offset_mm,
-            positive_stiffness: share * springs.anterior_n_per_mm,
-            negative_stiffness: share * springs.posterior_n_per_mm,
-            free_play: springs.free_play_mm,
-            rest: 0.0,
-        };
-        machine.springs = vec![spring(1.0), spring(-1.0)];
-        let ligaments = self.ligaments.iter();
-        machine.ligaments = ligaments.map(|ligament| ligament.build(side)).collect();
-        machine.frequency_hz = settings.frequency_hz;
-        machine
-    }
-
-    fn drive(&self, joint: &JointDescription, freedom: &Freedom) -> Drive {
-        match freedom.drive {
-            DriveWord::Prescribed => Drive::Prescribed(self.inside(joint.motion)),
-            DriveWord::Loaded => Drive::Loaded(self.inside(joint.load_channel())),
-            DriveWord::Locked => {
-                let unit = joint.kind().file_unit_in_solver();
-                Drive::Locked(freedom.locked_at * unit)
+        let settings = &self.settings;
+        let mut rig = settings.preset.machine().clone();
+        rig.keys.frequency_hz = settings.frequency_hz;
+        for (joint, index) in rig.joints.iter_mut().zip(JointIndex::ALL) {
+            let freedom = self.freedoms.get(index);
+            freedom.set(&mut joint.keys);
+            joint.waveform = self.waveform(freedom.drive.channel(KNEE.joint(index)));
+            match index {
+                knee::VV => {
+                    let (below, medial) = (settings.vv_axis_below_mm, settings.vv_axis_medial_mm);
+                    joint.keys.point_mm = Some([0.0, -below, -medial]);
+                }
+                knee::IE => joint.keys.point_mm = Some([settings.ie_axis_anterior_mm, 0.0, 0.0]),
+                _ => {}
             }
         }
+        for spring in &mut rig.springs {
+            self.springs.set(spring);
+        }
+        rig.ligaments.clone_from(&self.ligaments);
+        rig
     }
 
-    /// Returns the waveform of a channel in mm, rad, N or N mm with the sign of its joint; zero without a channel.
-    fn inside(&self, channel: Option<&'static Channel>) -> Waveform {
-        let given = channel.and_then(|channel| Some((channel, self.waveforms.get(channel)?)));
-        let Some((channel, waveform)) = given else {
-            return Waveform::constant(0.0);
-        };
-        let (settings, waveform) = (&self.settings, waveform.clone());
-        // Offset and signs of the machine are in the unit of files.
+    /// Returns the waveform of a channel in the unit of files, with the sign of its joint.
+    fn waveform(&self, channel: Option<&'static Channel>) -> Option<Waveform> {
+        let (channel, settings) = (channel?, &self.settings);
+        let waveform = self.waveforms.get(channel)?.clone();
         let adjusted = match channel.name {
             "flexion" => waveform.shifted(settings.flexion_offset_deg),
             "ap_force" => waveform.scaled(settings.ap_force_sign.0),
             "ie_torque" => waveform.scaled(settings.ie_torque_sign.0),
             _ => waveform,
         };
-        adjusted.scaled(channel.factor())
+        Some(adjusted.scaled(channel.sign))
+    }
+}
+
+impl Freedom {
+    /// Sets drive, inertia and damping of a joint.
+    fn set(&self, keys: &mut RigJointKeys) {
+        keys.drive = self.drive;
+        let (locked_at, inertia, damping) = match keys.kind {
+            JointKind::Translation => (
+                &mut keys.locked_at_mm,
+                &mut keys.inertia_kg,
+                &mut keys.damping_n_s_per_mm,
+            ),
+            JointKind::Rotation => (
+                &mut keys.locked_at_deg,
+                &mut keys.inertia_kg_m2,
+                &mut keys.damping_nm_s_per_rad,
+            ),
+        };
+        *locked_at = Some(self.locked_at);
+        *inertia = Some(self.inertia);
+        *damping = Some(self.damping);
+    }
+}
+
+impl Springs {
+    /// Sets one spring of the pair, which keeps its side.
+    fn set(&self, spring: &mut OffsetSpring) {
+        // Two springs act in parallel: each of a pair has half of its stiffness.
+        let share = match self.stiffness_of {
+            StiffnessOf::Pair => 0.5,
+            StiffnessOf::Each => 1.0,
+        };
+        let both = [self.anterior_n_per_mm, self.posterior_n_per_mm];
+        spring.stiffness_n_per_mm = both.map(|stiffness| share * stiffness);
+        spring.offset_mm = spring.offset_mm.signum() * self.lateral_offset_mm;
+        spring.free_play_mm = self.free_play_mm;
     }
 }
 
@@ -105,18 +105,15 @@ pub(super) fn start_flexion_rad(machine: &Machine) -> f64 {
 
 impl Case {
     pub(in crate::case) fn built_activities(&self, low_point_mm: Vec3) -> Vec<Activity> {
-        let side = self.heading.side;
-        let build = |machine: &case::Machine, rig: &Option<Rig>| match rig {
-            Some(rig) => rig.build(side),
-            None => machine.build(low_point_mm, side),
-        };
+        let build = |rig: Rig| rig.build(low_point_mm, self.heading.side);
         if self.activities.is_empty() {
-            let machine = build(&self.machine, &self.machine.rig);
+            let machine = build(self.machine.by_joints());
             return vec![Activity::only("gait", machine)];
         }
         let activities = self.activities.iter().zip(self.activities.shares());
         let built = activities.map(|(activity, share)| {
             let (mut machine, keys) = (self.machine.clone(), &activity.keys);
+            machine.rig.clone_from(&activity.rig);
             machine.waveforms = activity.waveforms.clone();
             let own = &mut machine.settings;
             own.frequency_hz = keys.frequency_hz.unwrap_or(own.frequency_hz);
@@ -125,7 +122,7 @@ impl Case {
             own.ie_torque_sign = keys.ie_torque_sign.unwrap_or(own.ie_torque_sign);
             Activity {
                 name: keys.name.clone(),
-                machine: build(&machine, &activity.rig),
+                machine: build(machine.by_joints()),
                 share,
             }
         });
@@ -143,10 +140,13 @@ mod tests {
     use std::path::Path;
 
     use super::*;
+    use crate::case::frame::Side;
+    use condyle::machine::Spring;
 
     fn machine(text: &str) -> Machine {
         let case = Case::parse(text, "case.toml", Path::new("")).unwrap();
-        case.machine.build(Vec3::new(0.0, 1.0, 23.0), Side::Right)
+        let low_point_mm = Vec3::new(0.0, 1.0, 23.0);
+        case.machine.by_joints().build(low_point_mm, Side::Right)
     }
 
     fn driven(machine: &Machine, joint: JointIndex, phase: f64) -> f64 {

@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use crate::case::Case;
+use crate::case::{Case, Preset, template};
 
 const HIP: &str = r#"
 [femur]
@@ -43,14 +43,10 @@ fn a_machine_by_joints_is_written_and_read_back() {
     let case = Case::parse(HIP, "case.toml", Path::new("")).unwrap();
     let again = Case::parse(&case.to_toml(), "case.toml", Path::new("")).unwrap();
     assert_eq!(case, again);
-    for preset in crate::case::Preset::ALL
-        .iter()
-        .filter(|preset| preset.rig().is_some())
-    {
-        let preset = *preset;
-        let text = crate::case::template(preset);
-        let case = Case::parse(&text, "case.toml", Path::new("")).unwrap();
-        assert!(case.machine.rig.is_some());
+    for &preset in Preset::ALL {
+        let case = Case::parse(&template(preset), "case.toml", Path::new("")).unwrap();
+        let is_by_joints = case.machine.rig.is_some();
+        assert_ne!(is_by_joints, preset.machine().is_knee_simulator());
     }
 }
 
@@ -152,7 +148,7 @@ fn a_cup_needs_a_machine_for_hips() {
     let (_, message) =
         refusal("[femur]\nshape = \"sphere\"\nradius_mm = 14.0\n[insert]\nshape = \"cup\"\n");
     assert!(
-        message.contains("a cup needs a machine by joints"),
+        message.contains("a cup needs another machine than the knee simulator"),
         "{message}"
     );
 }
@@ -299,6 +295,70 @@ fn a_joint_of_a_case_replaces_that_of_its_preset() {
     let (key, said) = refusal(&with("press"));
     assert!(
         key.ends_with("joints") && said.contains("no joint \"press\""),
+        "{key}: {said}"
+    );
+}
+
+/// Returns the machine of a case around a bearing that is lowest at y = 1 mm.
+fn machine_of(text: &str) -> condyle::machine::Machine {
+    let case = Case::parse(text, "case.toml", Path::new("")).unwrap();
+    let mut activities = case.built_activities(condyle::Vec3::new(0.5, 1.0, 23.0));
+    activities.remove(0).machine
+}
+
+#[test]
+fn a_knee_simulator_by_its_file_is_that_of_its_preset() {
+    for preset in [Preset::StanmoreForce, Preset::StanmoreDisplacement] {
+        let by_file = preset
+            .text()
+            .replace("[[joints]]", "[[machine.joints]]")
+            .replace("[joints.", "[machine.joints.")
+            .replace("[[offset_springs]]", "[[machine.offset_springs]]");
+        let by_file = machine_of(&format!("[machine]\n{by_file}"));
+        let by_word = machine_of(&format!("[machine]\npreset = {:?}\n", preset.word()));
+        assert_eq!(by_file, by_word);
+        assert_eq!(*by_file.mechanism, condyle::machine::knee::KNEE);
+    }
+}
+
+#[test]
+fn a_spring_beside_a_joint_that_the_machine_lacks_is_refused_at_its_place() {
+    let spring = |along: &str, about: &str| {
+        format!(
+            "[[machine.offset_springs]]\nname = \"left\"\nalong = \"{along}\"\nabout = \"{about}\"\n\
+             offset_mm = 28\nstiffness_n_per_mm = [1, 2]\n"
+        )
+    };
+    let (key, said) = refusal(&format!("{HIP}{}", spring("flexion", "flexion")));
+    assert!(
+        key.starts_with("machine.offset_springs")
+            && said.contains("no joint with kind = \"translation\" has that name"),
+        "{key}: {said}"
+    );
+    let (_, said) = refusal(&format!("{HIP}{}", spring("press", "turn")));
+    assert!(
+        said.contains("acts about \"turn\", and no joint with kind = \"rotation\""),
+        "{said}"
+    );
+    let case = format!("{HIP}{}", spring("press", "flexion"));
+    let case = Case::parse(&case, "case.toml", Path::new("")).unwrap();
+    let again = Case::parse(&case.to_toml(), "case.toml", Path::new("")).unwrap();
+    assert_eq!(case, again);
+}
+
+#[test]
+fn a_joint_takes_the_shipped_waveforms_of_its_unit() {
+    let with =
+        |waveform: &str| HIP.replace("knots_n = [[0, 3000]]", &format!("waveform = {waveform:?}"));
+    let case = Case::parse(&with("iso-like-axial-force"), "case.toml", Path::new("")).unwrap();
+    let load = case.machine.rig.unwrap().joints[0]
+        .waveform
+        .clone()
+        .unwrap();
+    assert_eq!(load.at(0.13).0, 2600.3);
+    let (key, said) = refusal(&with("iso-like-ie-torque"));
+    assert!(
+        key.ends_with("waveform") && said.contains("cannot be \"iso-like-ie-torque\""),
         "{key}: {said}"
     );
 }
