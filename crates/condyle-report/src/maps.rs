@@ -108,7 +108,7 @@ impl MappedField {
             values: surface.field(self.field)?,
             directions,
             range: ColourRange::Own,
-            px_per_mm,
+            px_per_mm: readable(px_per_mm, surface),
         })
     }
 }
@@ -119,6 +119,15 @@ pub(crate) struct DrawnMap {
     pub(crate) file: &'static str,
     pub(crate) caption: &'static str,
     pub(crate) svg: String,
+}
+
+/// Returns a scale at which the labels of a map, which have one size, do not cover each other on a small surface: that of the
+/// page, or more.
+fn readable(px_per_mm: f64, surface: &SurfaceFields) -> f64 {
+    /// Least length of the longer side.
+    const LEAST_PX: f64 = 200.0;
+    let [x_mm, z_mm] = surface.bounds().map(|(low, high)| high - low);
+    px_per_mm.max(LEAST_PX / x_mm.max(z_mm))
 }
 
 /// Draws the maps of those of the fields that a run has, then the slip paths; `draw` makes a picture of a map, its
@@ -148,7 +157,7 @@ pub(crate) fn drawn(
         values: &bare,
         directions: results.directions(),
         range: ColourRange::Own,
-        px_per_mm,
+        px_per_mm: readable(px_per_mm, surface),
     };
     let paths = results.slip_paths.as_ref();
     let paths = paths
