@@ -11,31 +11,31 @@ class Summary:
     """The entries of ``summary.json`` as attributes; a run does not have all of them."""
 
     cycles: float
-    """Cycles that the insert has gone through."""
+    """Gait cycles of the test."""
     mass_loss_mg: float
-    """Mass worn. In mg."""
+    """Worn mass. In mg."""
     volume_loss_mm3: float
-    """Volume worn, from depth. In mm3."""
+    """Worn volume, from depth. In mm3."""
     volume_loss_mesh_mm3: float
-    """Volume worn, from the mesh. In mm3."""
+    """Worn volume, from the mesh. In mm3."""
     max_depth_mm: float
     """Wear depth at the deepest node. In mm."""
     wear_over_conventional: float
-    """Wear of cross-linked over conventional polyethylene."""
+    """Wear of cross-linked relative to conventional polyethylene."""
     peak_pressure_mpa: float
     """Highest contact pressure. In MPa."""
     peak_pressure_cycle: float
-    """Cycles done before the cycle with the peak pressure."""
+    """Cycles before the cycle with the peak pressure."""
     first_cycle_peak_pressure_mpa: float
     """Peak pressure of the first cycle. In MPa."""
     last_cycle_peak_pressure_mpa: float
     """Peak pressure of the last cycle. In MPa."""
     pressure_law_peak_error_percent: float
-    """Error of the peak pressure by the pressure law. In %."""
+    """Error of the peak pressure of the fitted pressure law. In %."""
     peak_contact_area_mm2: float
     """Largest contact area. In mm2."""
     peak_contact_area_cycle: float
-    """Cycles done before the cycle with the largest contact area."""
+    """Cycles before the cycle with the largest contact area."""
     first_cycle_contact_area_mm2: float
     """Largest contact area of the first cycle. In mm2."""
     last_cycle_contact_area_mm2: float
@@ -49,7 +49,7 @@ class Summary:
     peak_max_shear_depth_mm: float
     """Depth of the largest shear stress. In mm."""
     peak_max_shear_cycle: float
-    """Cycles done before the cycle with the largest shear stress."""
+    """Cycles before the cycle with the largest shear stress."""
     peak_max_shear_percent: float
     """Instant of the largest shear stress in its cycle. In %."""
     first_cycle_max_shear_mpa: float
@@ -69,7 +69,7 @@ class Summary:
     backside_lift_mm: float
     """Largest lift of the backside off the tray. In mm."""
     backside_lifted_percent: float
-    """Largest part of the backside that lifts at once. In %."""
+    """Largest part of the backside that is lifted at the same time. In %."""
     backside_slip_mm: float
     """Longest slip of the backside in a cycle. In mm."""
     backside_lock_force_n: float
@@ -89,21 +89,21 @@ class Summary:
     updates: int
     """Updates of the geometry."""
     increments: int
-    """Increments a cycle."""
+    """Increments per cycle."""
     cycles_solved: float
-    """Cycles solved in all."""
+    """Number of cycles solved."""
     cycles_not_repeating: int
-    """Updates whose motion did not repeat itself within the tolerance."""
+    """Updates whose motion did not become periodic within the tolerance."""
     newton_iterations: int
-    """Newton iterations in all."""
+    """Number of Newton iterations."""
     contact_evaluations: int
-    """Contact evaluations in all."""
+    """Number of contact evaluations."""
     newton_iterations_per_cycle: float
-    """Newton iterations of a cycle solved, on average."""
+    """Mean number of Newton iterations per solved cycle."""
     contact_evaluations_per_cycle: float
-    """Contact evaluations of a cycle solved, on average."""
+    """Mean number of contact evaluations per solved cycle."""
     step_halvings: int
-    """Steps in time that were halved."""
+    """Halved steps in time."""
     explicit_steps: int
     """Steps of central differences."""
     added_inertia: float
@@ -113,23 +113,23 @@ class Summary:
     articulating_nodes: int
     """Nodes of the articulating surface."""
     worst_quality: float
-    """Smallest scaled Jacobian of any update's mesh."""
+    """Smallest scaled Jacobian of the mesh at any update."""
     wall_s: float
     """Time of the solver. In s."""
     plausibility: list[dict[str, Any]]
-    """Reasons to doubt the numbers, the worst first, each with ``message`` and ``advice``."""
+    """Findings that make the numbers doubtful, the worst first, each with ``message`` and ``advice``."""
     notes: list[dict[str, Any]]
-    """Remarks on the physics that leave the numbers sound, each with ``message`` and its effect in ``advice``."""
+    """Remarks on the physics that do not make the numbers doubtful, each with ``message`` and its effect in ``advice``."""
     prediction: dict[str, Any]
-    """What laboratories would weigh: medians and 90 % intervals of mass and depth, and the sources of their width."""
+    """Predicted results of laboratories: medians and 90 % intervals of mass and depth, and the sources of their width."""
     error: dict[str, Any] | None
     """Estimated discretisation errors by their parts; null if the case does not ask for them."""
     wear_laws: list[dict[str, Any]]
-    """Wear by every law for the same histories, that of the run first; only that one moved the surface."""
+    """Wear by every law for the same histories, that of the run first; only this law moves the surface."""
     activities: list[dict[str, Any]]
-    """Motion, loads and wear of each of several activities."""
+    """Motion, loads and wear of each activity."""
     creep: dict[str, Any]
-    """Creep of an insert that creeps, and its separation from wear."""
+    """Creep, and its separation from wear."""
     joint: str
     """The joint whose replacement the machine tests, such as ``hip``."""
     motions: list[dict[str, Any]]
@@ -137,7 +137,7 @@ class Summary:
     neutral_pose: dict[str, Any]
     """Pose of the settled femur in the insert frame: there AP, ML and IS read zero."""
     warnings: list[str]
-    """Corrections and doubts of the input."""
+    """Corrections of the input, and doubts about it."""
     version: str
     """Version of condyle."""
     inputs_blake3: str

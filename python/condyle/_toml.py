@@ -33,7 +33,7 @@ def document(tables: Mapping[str, Any]) -> str:
 
 
 def _json(value: Any) -> str:
-    """``value`` as JSON, of which every value without a ``null`` has its like in TOML."""
+    """``value`` as JSON without ``null``, all of whose values exist in TOML."""
     try:
         return json.dumps(_plain(value), allow_nan=False)
     except (TypeError, ValueError) as error:

@@ -31,13 +31,13 @@ ANSWER_WITHIN_S = 20.0
 
 
 class Cluster:
-    """The scheduler of a ``dask.distributed.Client``, whose death a future never reports."""
+    """The scheduler of a ``dask.distributed.Client``, whose failure futures do not report."""
 
     def __init__(self, client: Any) -> None:
         self._client = client
 
     def answers(self) -> bool:
-        """Whether the scheduler answers in time."""
+        """True if the scheduler answers in time."""
         client = self._client
         try:
             client.sync(client.scheduler.identity, callback_timeout=ANSWER_WITHIN_S)
@@ -139,7 +139,7 @@ def _run_all(
 
 
 def _resume(study: str, out: str) -> str:
-    """What resumes a study that lost its cluster."""
+    """The command that resumes a study after the loss of its cluster."""
     again = "the same call with a new client resumes"
     # A study from text has no file that the command could read.
     return f"{again}, or: condyle study {quote(study)} --out {quote(out)}" if Path(study).is_file() else again

@@ -113,9 +113,9 @@ class StudyInterrupted(CondyleError):
     """Number of tests."""
 
     cause: str
-    """What stopped the study."""
+    """The reason for the end of the study."""
     resume: str
-    """What resumes it."""
+    """The command or call that resumes it."""
 
     def __init__(self, kept: int, tests: int, cause: str = "interrupted", resume: str = "the same call resumes") -> None:
         super().__init__(kept, tests, cause, resume)

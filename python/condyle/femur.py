@@ -21,7 +21,7 @@ def rows_of_cycle(cycles: NDArray[np.float64], cycle: Literal["first", "last"]) 
 def femur_points_at(result: Result, increment: int, cycle: Literal["first", "last"] = "first") -> NDArray[np.float64]:
     """Vertices of the femur at the end of an increment, from 0, of one of the two cycles, mm: shape (vertices, 3).
 
-    The result has the vertices at neutral; they are moved back to the femoral frame, and a point p of it to R p + t.
+    The vertices of the result, in the neutral pose, are converted to the femoral frame and then moved to R p + t.
     """
     import numpy as np
 

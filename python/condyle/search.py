@@ -66,7 +66,7 @@ class Search:
         may change that.
 
         Raises:
-            BadInput: a study that is no search.
+            BadInput: a study that is not a search.
         """
         pending = [self._values(design) for design in self._pending]
         asked = self._held.ask(self._study._raw, pending, count)
@@ -87,7 +87,7 @@ class Search:
                 minimised or limited are necessary; for a test that failed, the exception or its reason as text.
 
         Raises:
-            BadInput: values that are no test of the study, and results that lack an output; nothing is stored then.
+            BadInput: values outside the study, and results that lack an output; nothing is stored then.
         """
         if len(designs) != len(results):
             raise ValueError(f"there are {len(designs)} designs and {len(results)} results; tell one result for each design")

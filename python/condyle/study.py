@@ -133,7 +133,7 @@ class Study:
             out: a folder for the database, the table, the answers and their page, as ``condyle study`` writes them. A
                 stopped or killed study resumes.
             progress: ``True`` for a bar, or a function that is called with a :class:`StudyProgress` as tests are stored.
-                The study stops with :class:`StudyInterrupted` if it returns ``False``, and if it raises.
+                The study stops with :class:`StudyInterrupted` if it returns ``False`` or raises.
             threads: parallel tests in this process; by default as many as processors.
             executor: an executor of ``concurrent.futures``, or an object with the same ``submit``, that runs the tests
                 instead. Its workers need condyle, and the files of study and case under the same paths.

@@ -43,7 +43,7 @@ class Table(Mapping[str, "NDArray[np.float64]"]):
         [1.5, 1.5]
 
         Raises:
-            BadInput: a row that does not fit the header, or a cell that is no number.
+            BadInput: a row that does not fit the header, or a cell that is not a number.
         """
         import numpy as np
 

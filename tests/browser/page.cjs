@@ -93,13 +93,13 @@ async function numbers(page, summary) {
 async function sliders(page) {
   const before = [await picture(page), await number(page, "mass_loss_mg")];
   const began = Date.now();
-  await ran(page, () => page.getByLabel("Radius of the dish from the side").fill("90"));
+  await ran(page, () => page.getByLabel("Sagittal radius of the dish").fill("90"));
   const solved_ms = Date.now() - began;
   assert.notStrictEqual(await picture(page), before[0], "the slider does not move the picture");
   assert.notStrictEqual(await number(page, "mass_loss_mg"), before[1], "the slider does not change the mass");
   assert.match(await page.locator("#case-text").inputValue(), /sagittal_radius_mm = 90/);
   // The keyboard moves it too.
-  await page.getByLabel("Radius of the dish from the side").focus();
+  await page.getByLabel("Sagittal radius of the dish").focus();
   await ran(page, () => page.keyboard.press("ArrowLeft"));
   assert.match(await page.locator("#case-text").inputValue(), /sagittal_radius_mm = 89/);
   return solved_ms;
@@ -121,7 +121,7 @@ async function dragged(page) {
   for (const [label, key, [right, down], isLarger] of [
     ["Thickness", "thickness_mm", [0, 0.02], true],
     ["Distal radius", "distal_radius_mm", [0, 0.02], true],
-    ["Radius from the front", "coronal_radius_mm", [0, -0.02], false],
+    ["Coronal radius of the femur", "coronal_radius_mm", [0, -0.02], false],
   ]) {
     await picture(page);
     const box = await page.locator(".stage canvas").boundingBox();

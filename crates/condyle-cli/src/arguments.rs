@@ -12,7 +12,8 @@ use condyle_study::Shard;
 #[command(
     name = "condyle",
     version,
-    after_help = "Exit codes: 0 done, 2 bad input or no room for output, 3 the physics could not be solved, 130 interrupted and resumable."
+    after_help = "Exit codes: 0 done, 2 bad input or output that cannot be written, 3 the physics could not be solved, \
+                  130 interrupted and resumable."
 )]
 pub struct Arguments {
     #[command(subcommand)]
@@ -23,37 +24,36 @@ pub struct Arguments {
 pub enum Command {
     /// Run a case into a results folder.
     Run(Run),
-    /// Check a case without running it: its bodies, where they settle, what a run will need.
+    /// Check a case without running it: its bodies, their position at rest, time and memory of a run.
     Check(Check),
     /// Write a new case file to start from.
     New(New),
-    /// Print a JSON schema of case files, with which an editor completes their keys and underlines what is wrong; or of
-    /// results.
+    /// Print the JSON schema of case files, for editors, or of results.
     Schema(Schema),
     /// List the machines, print one as a file to start from, or check a machine file.
     #[command(subcommand)]
     Machine(Machine),
     /// Write the contact of a deformable insert at one pose as an input file of CalculiX and Abaqus.
     Export(Export),
-    /// Write the report page of a results folder again; of several, one page with all of them side by side.
+    /// Write the report page of a results folder again, or one page that compares several folders.
     Report(Report),
     /// Write the pictures of a results folder as files, without a browser.
     Plot(Plot),
     /// List the numbers, curves and maps in which two runs differ, with their discretisation errors.
     Diff(Diff),
-    /// Run a case over finer and finer values of one of its numbers, and see what changes.
+    /// Run a case with finer and finer values of one of its numbers, and compare the results.
     Converge(Converge),
-    /// Run a case again with each of its assumptions changed, and compare the results.
+    /// Run a case with one assumption changed at a time, and compare the results.
     Sensitivity(Sensitivity),
-    /// Run a case many times with inputs that scatter as they do from test to test, and report the scatter of its results.
+    /// Run a case many times with randomly varied inputs, and report the scatter of its results.
     Uncertainty(Uncertainty),
-    /// Run a study: designs of tests, sensitivity, ranking of designs, the best design within limits.
+    /// Run many tests with varied inputs: scatter, sensitivity, ranking, the best design within limits.
     Study(Study),
     /// Compare a run with measured kinematics, weighed wear and a scanned surface.
     Compare(Compare),
-    /// Fit a pressure law with which the rigid model follows the deformable insert, and report the remaining errors.
+    /// Fit the pressure law of a foundation to the deformable insert, and report the remaining errors.
     Calibrate(Calibrate),
-    /// Find the constants of the wear law with which runs reproduce the measured wear rates.
+    /// Find the constants of the wear law that reproduce measured wear rates.
     CalibrateWear(CalibrateWear),
     /// Print the completions of commands and options for a shell.
     Completions {
@@ -64,7 +64,7 @@ pub enum Command {
     Man {
         /// The folder; it is created if it does not exist.
         folder: PathBuf,
-        /// Replace files of others in that folder.
+        /// Replace existing files in that folder.
         #[arg(long)]
         force: bool,
     },
@@ -85,7 +85,7 @@ pub struct Run {
     pub force: bool,
     #[command(flatten)]
     pub changes: Changes,
-    /// Threads for the one-time work on a mesh; the results are the same on any number.
+    /// Threads for the preparation of a mesh; the results do not depend on it.
     #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u16).range(1..=256))]
     pub threads: u16,
     /// Print the summary as JSON, and nothing else on standard output.
@@ -108,7 +108,7 @@ pub struct Check {
     pub case: PathBuf,
     #[command(flatten)]
     pub changes: Changes,
-    /// Print the case as it would run, every default written out.
+    /// Print the case with all its defaults.
     #[arg(long, conflicts_with = "json")]
     pub print: bool,
     /// Print the findings as JSON, and nothing else on standard output.
@@ -120,7 +120,7 @@ pub struct Check {
     /// Replace the picture if it exists.
     #[arg(long, requires = "picture")]
     pub force: bool,
-    /// Threads for the one-time work on a mesh; the findings are the same on any number.
+    /// Threads for the preparation of a mesh; the findings do not depend on it.
     #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u16).range(1..=256))]
     pub threads: u16,
 }
@@ -155,19 +155,19 @@ pub struct New {
     /// The joint, for its usual simulator.
     #[arg(long, value_parser = joints(), conflicts_with = "preset")]
     joint: Option<Preset>,
-    /// A mesh or STEP file of the femoral component: its unit and axes are concluded from the shape. STEP files are converted next to the case by the Python package.
+    /// Mesh or STEP file of the femoral component, whose unit and axes are derived from its shape. The Python package converts STEP files.
     #[arg(long, value_name = "MESH", requires = "insert")]
     pub femur: Option<PathBuf>,
-    /// A mesh or STEP file of the insert, closed or its articulating surface.
+    /// Mesh or STEP file of the insert: a closed surface, or the articulating surface alone.
     #[arg(long, value_name = "MESH", requires = "femur")]
     pub insert: Option<PathBuf>,
-    /// The side of the knee, right or left; by default the side that the femur's trochlea shows.
+    /// Side of the knee; by default derived from the trochlea of the femur.
     #[arg(long, value_parser = sides(), requires = "femur")]
     pub side: Option<Side>,
-    /// A mesh or STEP file of the head of a hip: its ball is found in it.
+    /// Mesh or STEP file of the head of a hip, to which a sphere is fitted.
     #[arg(long, value_name = "MESH", requires = "cup", conflicts_with_all = ["femur", "insert"])]
     pub head: Option<PathBuf>,
-    /// A mesh or STEP file of the cup of a hip, closed: its socket and the direction in which it opens are found in it.
+    /// Closed mesh or STEP file of the cup of a hip, whose socket and opening direction are derived from its shape.
     #[arg(long, value_name = "MESH", requires = "head")]
     pub cup: Option<PathBuf>,
 }
@@ -182,10 +182,10 @@ pub struct Export {
     /// Replace the input file if it exists.
     #[arg(long)]
     pub force: bool,
-    /// Place in the first cycle, %: the femur is pressed to the pose that it has there.
+    /// Position in the first cycle, %: the file contains the contact at the pose of the femur there.
     #[arg(long, value_name = "PERCENT", value_parser = percent)]
     pub pressed_at: f64,
-    /// Threads for the one-time work on a mesh; the file is the same on any number.
+    /// Threads for the preparation of a mesh; the file does not depend on it.
     #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u16).range(1..=256))]
     pub threads: u16,
 }
@@ -219,7 +219,7 @@ pub struct Plot {
     /// Pixels of a PNG per point of the picture.
     #[arg(long, value_name = "N", default_value_t = 2, value_parser = clap::value_parser!(u8).range(1..=8))]
     pub dots: u8,
-    /// Only these formats [default: SVG, and PNG if built with the feature `png`].
+    /// Write only this format [default: SVG, and PNG if built with the feature `png`].
     #[arg(long, value_name = "FORMAT", value_enum)]
     pub format: Vec<PictureFormat>,
 }
@@ -227,9 +227,9 @@ pub struct Plot {
 /// The format of a picture.
 #[derive(Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
 pub enum PictureFormat {
-    /// Lines and letters, at any size.
+    /// Vector graphics.
     Svg,
-    /// Dots.
+    /// Pixels.
     Png,
 }
 
@@ -242,9 +242,9 @@ pub struct Schema {
 
 #[derive(Args)]
 pub struct Diff {
-    /// The results folder that the other is compared with.
+    /// The results folder of the first run.
     pub first: PathBuf,
-    /// The other results folder.
+    /// The results folder of the second run; differences are the second minus the first.
     pub second: PathBuf,
     /// Print the differences as JSON, and nothing else on standard output.
     #[arg(long)]
@@ -269,7 +269,7 @@ pub struct Converge {
     /// Resume the study that was stopped in that folder.
     #[arg(long)]
     pub resume: bool,
-    /// Runs at the same time, as many as the machine has cores if not given; the results are the same on any number.
+    /// Simultaneous runs, by default one per core; the results do not depend on it.
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=256))]
     pub threads: Option<u16>,
     /// Print converge.json, and nothing else on standard output.
@@ -281,7 +281,7 @@ pub struct Converge {
 pub struct Sensitivity {
     /// The case file.
     pub case: PathBuf,
-    /// Runs at the same time, as many as the machine has cores if not given; the results are the same on any number.
+    /// Simultaneous runs, by default one per core; the results do not depend on it.
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=256))]
     pub threads: Option<u16>,
     /// Print the results and their changes as JSON, and nothing else on standard output.
@@ -293,13 +293,13 @@ pub struct Sensitivity {
 pub struct Uncertainty {
     /// The case file.
     pub case: PathBuf,
-    /// Runs with other inputs.
+    /// Number of runs with varied inputs.
     #[arg(long, value_name = "N", default_value_t = 200, value_parser = clap::value_parser!(u32).range(2..=1_000_000))]
     pub runs: u32,
     /// Seed of the random inputs: the same seed gives the same numbers.
     #[arg(long, value_name = "N", default_value_t = 1)]
     pub seed: u64,
-    /// Runs at the same time, as many as the machine has cores if not given; the results are the same on any number.
+    /// Simultaneous runs, by default one per core; the results do not depend on it.
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=256))]
     pub threads: Option<u16>,
     /// Print the results as JSON, and nothing else on standard output.
@@ -319,10 +319,10 @@ pub struct Study {
     /// Folder for study.db, table.csv, answers.json, the pictures and study.html [default: results/ and the study's name].
     #[arg(short, long, value_name = "DIR")]
     pub out: Option<PathBuf>,
-    /// Tests at the same time, as many as the machine has cores if not given; the table is the same on any number.
+    /// Simultaneous tests, by default one per core; the table does not depend on it.
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=256))]
     pub threads: Option<u16>,
-    /// Only every N-th test, from test i on: for many machines. `condyle study merge` joins the parts.
+    /// Run only every N-th test, starting with test i; `condyle study merge` joins the shards.
     #[arg(long, value_name = "i/N")]
     pub shard: Option<Shard>,
     /// Print answers.json, and nothing else on standard output.
@@ -387,7 +387,7 @@ pub struct Compare {
     /// Folder for compare.json, the pictures and the table of depths [default: compare in the results folder].
     #[arg(short, long, value_name = "DIR")]
     pub out: Option<PathBuf>,
-    /// Replace files of others in that folder.
+    /// Replace existing files in that folder.
     #[arg(long)]
     pub force: bool,
     /// Print compare.json, and nothing else on standard output.
@@ -397,7 +397,7 @@ pub struct Compare {
 
 #[derive(Args)]
 pub struct Calibrate {
-    /// The case file; with either model of contact.
+    /// The case file, with either model of contact.
     pub case: PathBuf,
     /// Folder for pressure_table.csv, the case that uses it, calibration.md and calibration.json; an existing one is kept without --force.
     #[arg(short, long, value_name = "DIR")]
@@ -407,7 +407,7 @@ pub struct Calibrate {
     pub force: bool,
     #[command(flatten)]
     pub changes: Changes,
-    /// Also report the errors of the table on this case, which it is not fitted to; may be given several times.
+    /// Also report the errors of the table for this case, which is not part of the fit; may be given several times.
     #[arg(long, value_name = "CASE")]
     pub hold_out: Vec<PathBuf>,
     /// Print calibration.json, and nothing else on standard output.
@@ -418,11 +418,10 @@ pub struct Calibrate {
 #[derive(Args)]
 pub struct CalibrateWear {
     /// A results folder and the TOML file that names its measured data, which needs `[gravimetric]`; give as many such
-    /// pairs as there are tests. The cases are run again with other constants, and nothing in the folders is changed.
+    /// pairs as there are tests. The cases are run again with other constants; the folders are not changed.
     #[arg(required = true, num_args = 2.., value_names = ["RESULTS", "MEASURED"])]
     pub tests: Vec<PathBuf>,
-    /// Find this constant of the law, such as cross_shear_exponent; may be given several times. Without it, the
-    /// amount of wear is fitted, whatever the cycle.
+    /// Find this constant of the law, such as cross_shear_exponent; may be given several times. Without it, a common factor on the wear is fitted.
     #[arg(long, value_name = "NAME")]
     pub constant: Vec<String>,
     /// Predict the mass loss of this case with the constants found, with its interval; may be given several times.

@@ -37,8 +37,8 @@ pub fn calibrate(arguments: &Calibrate) -> Done {
     }
     let mut lines = Lines::default();
     lines.line(law.table_of_left().trim_end());
-    lines.line(format!("the peak pressure in stance differs by up to {} %, in the first and the last cycle; every run with the table \
-         reports this",
+    lines.line(format!("with the table, the peak pressure in stance differs by up to {} % from the deformable insert, \
+                        in the first and the last cycle; every run with the table reports this",
         law.peak_error_percent));
     let (page, case) = (out.join(PAGE), out.join(CASE));
     lines.line(format!(

@@ -140,7 +140,9 @@ fn add_gravimetric(gravimetric: &GravimetricComparison, lines: &mut Lines) {
     let missed = missed.filter(|weighing| weighing.in_line && weighing.predicted_loss_mg.is_none());
     let count = missed.count();
     if count > 0 {
-        lines.line(format!("note: the run ends before {count} of the weighings, which the prediction's line leaves out"));
+        lines.line(format!(
+            "note: the run ends before {count} of the weighings, which the predicted line omits"
+        ));
     }
     lines.line("");
 }

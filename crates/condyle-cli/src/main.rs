@@ -25,8 +25,8 @@ use output::{Done, Failure};
 fn main() -> ExitCode {
     if !condyle_lab::is_processor_supported() {
         return Failure::bad_input(
-            "this condyle was built for x86 processors with AVX2 and FMA, and this one lacks them; build it with \
-                RUSTFLAGS=\"-C target-cpu=x86-64\" cargo build --release, and it runs at about half the speed",
+            "this build of condyle needs AVX2 and FMA, which this processor lacks; build it with RUSTFLAGS=\"-C \
+             target-cpu=x86-64\" cargo build --release, which runs at about half the speed",
         )
         .exit();
     }

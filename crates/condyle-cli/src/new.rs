@@ -116,7 +116,7 @@ fn converted(file: &Path, arguments: &New) -> Result<PathBuf, Failure> {
     command.args(["-m", "condyle.cad"]).args([file, &mesh]);
     let failed = |why: &str| {
         Failure::bad_input(format_args!(
-            "{}: a STEP file needs the Python package to be converted: {}\nInstall it with: {python} -m pip install 'condyle[cad]'\n\
+            "{}: the Python package is needed to convert a STEP file: {}\nInstall it with: {python} -m pip install 'condyle[cad]'\n\
              Or convert the file with another program, to STL with a chord error of at most 0.03 mm",
             file.display(),
             why.trim_end()

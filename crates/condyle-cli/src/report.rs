@@ -18,7 +18,7 @@ pub fn report(arguments: &Report) -> Done {
         [folder] if arguments.out.is_none() => {
             let (page, left_out) = condyle_report::write_readable_report(folder)?;
             let left_out = left_out.iter();
-            output::warn(left_out.map(|why| format!("left out of the page: {why}")));
+            output::warn(left_out.map(|why| format!("omitted from the page: {why}")));
             note_unfinished(folder);
             let mut written = vec![page];
             if arguments.pictures {
@@ -84,7 +84,7 @@ pub fn plot(arguments: &Plot) -> Done {
     if lines.text().is_empty() {
         let folder = arguments.results.display();
         return Err(Failure::bad_input(format_args!(
-            "{folder} holds nothing to draw"
+            "{folder} contains nothing to draw"
         )));
     }
     output::print(lines.text())
@@ -142,7 +142,7 @@ pub fn diff(arguments: &Diff) -> Done {
         differences.curves.iter().take(MAX_CURVES).map(curve_row),
         &mut lines,
     );
-    // The curves are ranked, so that those left out differ least.
+    // The curves are ranked, so that those omitted differ least.
     let left = differences.curves.len().saturating_sub(MAX_CURVES);
     if left > 0 {
         lines.line(format!("  and {left} more that differ less"));

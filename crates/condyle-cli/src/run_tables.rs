@@ -35,7 +35,7 @@ pub fn add_prediction(prediction: &Prediction, summary: &Summary, lines: &mut Li
     let sources = prediction.sources.iter();
     let sources = sources.map(|source| format!("{} x {:.2}", source.source, source.factor));
     lines.line(format_args!(
-        "interval by  {}",
+        "interval from {}",
         sources.collect::<Vec<_>>().join(", ")
     ));
 }
@@ -62,7 +62,7 @@ pub fn add_laws(laws: &[LawWear], wear_over_conventional: Option<f64>, lines: &m
     }
     if let Some(times) = wear_over_conventional {
         lines.line(format_args!(
-            "   cross-linked polyethylene: every law, fitted to conventional one, times {times}, whatever pressure and cross-shear"
+            "   cross-linked polyethylene: the wear of every law times {times}, at any pressure and cross-shear"
         ));
     }
 }
@@ -114,7 +114,7 @@ pub fn add_activities(activities: &[ActivitySummary], lines: &mut Lines) {
         ));
     }
     lines.line(format_args!(
-        "   wear is shared out by pressure times sliding at each place; {motions} of first cycles"
+        "   wear is attributed to activities by pressure times sliding at each place; {motions} of first cycles"
     ));
 }
 

@@ -44,8 +44,8 @@ pub struct AtRest {
     pub(crate) nodes_near: usize,
 }
 
-/// Distance from the middle of the dishes to a side, as a share of that of their lowest points, up to which a place is
-/// on the eminence; the contact of knees begins at about 0.6.
+/// Half-width of the eminence, relative to the distance of the lowest points of the dishes from the
+/// middle; the contact of knees begins at about 0.6.
 const EMINENCE: f64 = 0.4;
 /// Share of the load on the eminence beyond which a femur stands there; sound knees have none.
 const MAX_ON_EMINENCE: f64 = 0.05;

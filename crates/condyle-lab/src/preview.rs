@@ -64,8 +64,8 @@ pub struct Preview {
 }
 
 impl Preview {
-    /// Carries out a run of the case at `case_path`, with some of its values changed, up to its first cycle: it reads
-    /// the file and the meshes, and settles the femur on the insert.
+    /// Prepares a run of the case at `case_path`, with some of its values changed, up to its first
+    /// cycle: reads the file and the meshes, and settles the femur on the insert.
     ///
     /// # Errors
     /// The errors of a run that cannot start.

@@ -382,7 +382,7 @@ fn what_cannot_be_estimated_says_why() {
     case.time.increments = 40;
     let error = run(&case).error.expect("the other parts can");
     assert_eq!(error.of(&catalogue::MASS_LOSS_MG).percent.updates, None);
-    assert!(error.not_estimated["updates"].contains("one update has no other"));
+    assert!(error.not_estimated["updates"].contains("a single update cannot be compared"));
     assert!(
         error
             .of(&catalogue::MASS_LOSS_MG)

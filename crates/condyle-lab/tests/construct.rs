@@ -192,7 +192,7 @@ fn assert_wears_as_alone_among_shells(text: &str, insert: &TriangleMesh) {
     let shells = unwrapped(built(text, &with_shells_below(insert)));
     let is_told = |warning: &BuildWarning| {
         let text = warning.to_string();
-        text.contains("left out, since they are no part")
+        text.contains("removed, since they are not part")
             && text.matches(" triangles ").count() == 2
     };
     assert!(shells.warnings.iter().any(is_told), "{:?}", shells.warnings);

@@ -41,7 +41,7 @@ use sheets::write_text;
 
 /// Writes `report.html` into a results folder and returns its path.
 ///
-/// Parts that the folder lacks are left out of the page, which names them.
+/// Parts that the folder lacks are excluded from the page, which names them.
 ///
 /// # Errors
 /// The folder is missing or holds no result at all, a file in it is damaged,
@@ -50,7 +50,7 @@ pub fn write_report(results_dir: &Path) -> Result<PathBuf, ReportError> {
     write_page(results_dir, &Results::read(results_dir)?)
 }
 
-/// Writes `report.html` of the readable part of a results folder; returns its path, and the files that are left out with
+/// Writes `report.html` of the readable part of a results folder; returns its path, and the files that are omitted with
 /// reasons.
 ///
 /// # Errors

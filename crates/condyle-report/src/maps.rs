@@ -60,7 +60,7 @@ pub(crate) static MAPS: [MappedField; 6] = [
             ["map-sliding", "Sliding distance", "mm", "Highest"],
             CIVIDIS,
         ),
-        "Distance that the counterface slides over each place while it presses on it, in one cycle, at the last update.",
+        "Sliding distance of the counterface over each place under pressure in one cycle, at the last update.",
     ),
     mapped(
         "cross_shear",
@@ -69,7 +69,8 @@ pub(crate) static MAPS: [MappedField; 6] = [
             ["map-cross-shear", "Cross-shear ratio", "", "Highest"],
             MAGMA,
         ),
-        "The part of pressure times sliding that goes across the main direction of each place, at the last update: 0 where the counterface slides to and fro along a line, 0.5 where it slides around a circle.",
+        "The part of pressure times sliding across the principal direction of each place, at the last update: 0 for \
+         sliding along a line, 0.5 for a circle.",
     ),
     mapped(
         "creep_depth_mm",
@@ -170,7 +171,10 @@ pub(crate) fn drawn(
         );
         maps.push(DrawnMap {
             file: SLIP_PATHS_PICTURE,
-            caption: "Slip of the counterface past the deepest place of each region and past four places around it, while they are loaded, in one cycle, at the last update. Each path is drawn about the dot of its place at 0.4 of its length and 1.6 of its width, so four times as wide as it is: the wider, the more cross-shear.",
+            caption: "Slip of the counterface past the deepest place of each region and past four places around it, \
+                      while they are loaded, in one cycle, at the last update. Each path is drawn around the dot of \
+                      its place, with its length times 0.4 and its width times 1.6, so its width is exaggerated by a \
+                      factor of four. Wide paths have more cross-shear.",
             svg: draw(&map, &desc, &paths.concat()),
         });
     }

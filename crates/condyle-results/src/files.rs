@@ -16,7 +16,7 @@ use thiserror::Error;
 /// at any time leaves the old file or the new one, never half of one.
 ///
 /// # Errors
-/// The file cannot be written; the old one is left, and nothing next to it.
+/// The file cannot be written; the old file is unchanged, and no temporary file remains.
 pub fn replace_file(path: &Path, bytes: &[u8]) -> io::Result<()> {
     if is_device(path) {
         return fs::write(path, bytes);

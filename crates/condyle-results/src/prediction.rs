@@ -21,14 +21,14 @@ const INPUTS_LOG_SD: f64 = 0.08;
 /// Factor by which the logistic function is within 0.01 of the normal distribution.
 const LOGISTIC: f64 = 1.702;
 /// The wear of conventional inserts in force-controlled knee simulators [haider-garvin2008]; [reinders2014] found 8.0 +/- 0.9.
-const MEASURED_KNEES: &str = "knee simulators have weighed 8.1 +/- 2.6 mg/Mc";
+const MEASURED_KNEES: &str = "measured on knee simulators: 8.1 +/- 2.6 mg/Mc";
 /// The wear of conventional cups of 28 mm (not read) on a machine of ISO 14242-1 in two lubricants [kaddick2001].
-const MEASURED_HIPS: &str = "hip simulators have weighed 22 and 27 mg/Mc";
+const MEASURED_HIPS: &str = "measured on hip simulators: 22 and 27 mg/Mc";
 /// 90 % of a normal distribution are within this many deviations.
 const DEVIATIONS_OF_90_PERCENT: f64 = 1.645;
 /// Pressure that the factors of the draws refer to, MPa.
 const REFERENCE_PRESSURE_MPA: f64 = 1.1;
-/// Factor either way beyond which the parts of an interval that depend on the run make it too wide to decide anything.
+/// Factor either way above which an interval, without the scatter of laboratories, is too wide for a conclusion.
 pub const MAX_FACTOR_OF_RUN: f64 = 2.5;
 /// The [`Source`] that is the same for every run.
 const LABORATORY: &str = "laboratory";

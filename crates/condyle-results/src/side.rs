@@ -33,7 +33,7 @@ impl Side {
     pub fn about(self) -> &'static str {
         match self {
             Self::Right => "A right knee.",
-            Self::Left => "A left knee, mirrored on the way in and out.",
+            Self::Left => "A left knee, mirrored on input and output.",
         }
     }
 

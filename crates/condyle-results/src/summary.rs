@@ -33,7 +33,7 @@ pub struct Summary {
     pub prediction: Option<Prediction>,
     /// Estimated discretisation errors; none if the case does not request them.
     pub error: Option<ErrorEstimate>,
-    /// Wear by every law for the same histories, that of the run first; only that one moved the surface.
+    /// Wear by every law for the same histories, that of the run first; only this law moves the surface.
     pub wear_laws: Vec<LawWear>,
     /// Each of several activities; motions and ranges of the summary are those of the first.
     pub activities: Vec<ActivitySummary>,
@@ -191,7 +191,7 @@ impl<'de> Deserialize<'de> for Summary {
     }
 }
 
-/// Takes a part out of the entries; its default where it is missing, or of another form in another version.
+/// Removes a part from the entries; returns its default if it is missing or has the form of another version.
 fn part<T: DeserializeOwned + Default>(entries: &mut Map<String, Value>, key: &str) -> T {
     // A summary of another version is read as far as it can be, so that old results stay readable.
     let entry = entries.remove(key).map(serde_json::from_value);

@@ -137,7 +137,8 @@ pub fn femur_pose_csv(march: &March, side: Side) -> String {
     text
 }
 
-/// Returns the rows of the first and the last cycle with the cycles before each, once where both are the same.
+/// Returns the rows of the first and the last cycle with the number of cycles before each; one
+/// entry if both are the same.
 fn rows_of(cycles: Option<&(CycleRecord, CycleRecord)>) -> impl Iterator<Item = (f64, &CycleRow)> {
     let both = cycles.into_iter().flat_map(|(first, last)| {
         let last = Some(last).filter(|last| last.cycles != first.cycles);

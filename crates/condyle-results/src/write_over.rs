@@ -23,8 +23,8 @@ impl ResultsFolder {
     /// nothing.
     ///
     /// # Errors
-    /// A folder with files of a run's names that has no checkpoint, so that they may belong to
-    /// another program; one of whose files the new run reads; a file in its place.
+    /// The folder contains files with the names of a run but no checkpoint, so they may belong to
+    /// another program; the new run reads one of its files; the path is a file.
     pub fn may_be_written_over(path: &Path, read: &[&Path]) -> Result<(), ResultsError> {
         let Some(file) = Self::sign_of_a_run(path)? else {
             return Ok(());

@@ -1,4 +1,5 @@
-//! Tests that are added where the emulator of an output is least certain, until it is known as well as stated.
+//! Adaptive designs: tests are added where the emulator of an output is least certain, until the
+//! output is known to the given accuracy.
 
 use std::iter;
 
@@ -17,7 +18,7 @@ use crate::{
     store::Store,
 };
 
-/// The share of all errors that are at most as large as the stated one.
+/// Fraction of the errors that are at most as large as the stated error.
 const SHARE: f64 = 0.9;
 /// The quantile of the standard normal distribution that this share of the magnitudes stays below.
 const NORMAL_90: f64 = 1.644_854;
@@ -65,8 +66,8 @@ pub(crate) fn next_tests(plan: &Plan, known: &[Known]) -> Option<Vec<Test>> {
     Some(tests).filter(|tests| !tests.is_empty())
 }
 
-/// Returns the state of an adaptive study, and the emulator by which it is judged, while too few tests are done without one; none
-/// for other studies.
+/// Returns the state of an adaptive study and the emulator of its output, if there are enough tests
+/// for one; `None` for other studies.
 fn standing(plan: &Plan, known: &[Known]) -> Option<(Aim, Option<Seen>)> {
     let (output, part) = plan.study().aim()?;
     let before = batches(plan.study().inputs.len());

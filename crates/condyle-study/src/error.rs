@@ -59,7 +59,8 @@ impl StudyError {
     }
 
     pub(crate) fn no_shards() -> Self {
-        let problem = "the tests of this design depend on earlier ones, so that it cannot be cut into shards; run it on one machine";
+        let problem = "the tests of this design depend on earlier ones, so it cannot be divided into shards; run it on \
+                       one machine";
         Self::Plan(problem.to_owned())
     }
 

@@ -243,7 +243,7 @@ fn distributions(answers: &Answers) -> Option<Picture> {
     let caption = if answers.spreads.iter().all(|spread| spread.is_sample) {
         "Percent of the tests; the vertical lines are the 5th, the 50th and the 95th percentile."
     } else {
-        "Percent of the tests. They are no random sample: shares of them are not probabilities."
+        "Percent of the tests. They are not a random sample, so fractions of them are not probabilities."
     };
     if all.is_empty() {
         return None;
@@ -350,7 +350,7 @@ fn front(front: &Front) -> Option<Picture> {
     if let Some(part) = front.hypervolume {
         let percent = 100.0 * part;
         caption += &format!(
-            " The front beats {percent:.1} % of the rectangle from its best to the worst values (its hypervolume)."
+            " The front dominates {percent:.1} % of the rectangle from its best to the worst values (its hypervolume)."
         );
     }
     Some(("pareto.svg", caption, svg))

@@ -46,7 +46,7 @@ pub struct Test {
 pub struct TestOutputs {
     /// Values in the order of [`catalogue::outputs`].
     pub values: Vec<f64>,
-    /// Names of the plausibility checks that the test does not pass, separated by spaces; empty for a sound one.
+    /// Names of the plausibility checks that the test fails, separated by spaces.
     pub doubts: String,
 }
 
@@ -85,7 +85,7 @@ impl Plan {
         if inputs > most {
             let design = study.design.word();
             return Err(StudyError::Plan(format!(
-                "a design of the kind `{design}` takes {most} inputs at most, and the study has {inputs}; let fewer inputs vary, or use \
+                "a design of the kind `{design}` takes at most {most} inputs, and the study has {inputs}; let fewer inputs vary, or use \
                  kind = \"latin-hypercube\""
             )));
         }
@@ -94,7 +94,7 @@ impl Plan {
             let correlated = Copula::new(inputs, &study.correlations);
             copula = Some(correlated.ok_or_else(|| {
                 let problem =
-                    "the correlations cannot all hold at once; make them weaker, or leave one out";
+                    "the correlations contradict each other; make them weaker, or omit one";
                 StudyError::Plan(problem.to_owned())
             })?);
         }

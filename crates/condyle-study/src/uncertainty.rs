@@ -74,7 +74,8 @@ impl Scatter {
         format!("{} {unit}", self.deviation)
     }
 
-    /// Returns the input of a study whose values count standard deviations; without keys if the case has none.
+    /// Returns the input of a study with values in standard deviations; its keys are empty if the
+    /// case has none of them.
     fn input(&self, case: &Case) -> Input {
         let variation = Variation::TruncatedNormal(TruncatedKeys {
             mean: Some(0.0),
@@ -84,7 +85,7 @@ impl Scatter {
         });
         let scaled = self.keys.iter().filter_map(|&key| {
             let mean = case.number_at_or_written(key)?;
-            // A part of a value of 0 is no scatter: such a key is left out.
+            // A part of a value of 0 is no scatter: such a key is omitted.
             let scale = if self.is_part { mean } else { 1.0 };
             let standard_deviation = scale * self.deviation;
             (standard_deviation != 0.0).then_some(ScaledKey {

@@ -37,7 +37,7 @@ impl LeePienkowski {
     /// The parameter B.
     pub const STRAIN_PER_DECADE: Parameter = Parameter {
         name: "strain_per_decade_per_mpa",
-        about: "Strain by creep that each tenfold of time adds under 1 MPa.",
+        about: "Strain by creep per decade of time under 1 MPa.",
         default: 7.966e-4,
         least: 0.0,
         most: 0.005,
@@ -47,7 +47,7 @@ impl LeePienkowski {
     /// The parameter r.
     pub const RECOVERING: Parameter = Parameter {
         name: "recovering_fraction",
-        about: "Part of the creep that recovers once the load is gone.",
+        about: "Part of the creep that recovers after unloading.",
         default: 0.5,
         least: 0.0,
         most: 1.0,

@@ -157,7 +157,8 @@ impl<Of: Body, In: Body> Twist<Of, In> {
         Self::new(Vec3::zeros(), direction)
     }
 
-    /// Returns the Lie bracket: the derivative of `other`, which this screw carries, by its position.
+    /// Returns the Lie bracket: the derivative of the screw `other` with respect to the position of
+    /// this joint, which moves it.
     pub fn bracket(&self, other: &Self) -> Self {
         Self::new(
             self.angular.cross(&other.angular),

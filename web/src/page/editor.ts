@@ -15,7 +15,7 @@ export class Editor {
     spellcheck: "false",
     autocapitalize: "off",
     wrap: "off",
-    "aria-label": "The case as text; Ctrl and space offer words",
+    "aria-label": "The case as text; Ctrl and space complete words",
     "aria-describedby": "case-help",
   });
   private readonly gutter = element("div", { class: "gutter", "aria-hidden": "true" });

@@ -13,7 +13,7 @@ import pin from "../../../cases/pin-on-disc.toml";
 // The first line of a case names a schema file for editors on the disk.
 const cases: [title: string, text: string][] = [
   ["Knee, Stanmore simulator", knee],
-  ["Knee that also creeps", creep],
+  ["Knee with creep", creep],
   ["Knee, ISO 14243-1", kneeIso],
   ["Knee on six axes, with ligaments", kneeLigaments],
   ["Hip, ISO 14242-1", hip],

@@ -209,7 +209,7 @@ class Page {
     const files = await this.laboratory.kept();
     if (!files) return this.say(NOTHING_TO_SAVE);
     save("results.zip", await zip(files));
-    this.say("results.zip is saved: unpacked, it is a folder for the command");
+    this.say("results.zip is saved; it contains a results folder");
   }
 
   private async saveReport(): Promise<void> {

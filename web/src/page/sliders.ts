@@ -27,7 +27,7 @@ const GROUPS: [heading: string, moved: Moved[]][] = [
     [
       { table: "femur", key: "distal_radius_mm", label: "Distal radius", unit: "mm", least: 25, most: 60, step: 0.5, silent: 38, shape: "generic" },
       { table: "femur", key: "posterior_radius_mm", label: "Posterior radius", unit: "mm", least: 15, most: 30, step: 0.5, silent: 22, shape: "generic" },
-      { table: "femur", key: "coronal_radius_mm", label: "Radius from the front", unit: "mm", least: 15, most: 29, step: 0.5, silent: 24, shape: "generic" },
+      { table: "femur", key: "coronal_radius_mm", label: "Coronal radius of the femur", unit: "mm", least: 15, most: 29, step: 0.5, silent: 24, shape: "generic" },
     ],
   ],
   [
@@ -36,7 +36,7 @@ const GROUPS: [heading: string, moved: Moved[]][] = [
       {
         table: "insert",
         key: "sagittal_radius_mm",
-        label: "Radius of the dish from the side",
+        label: "Sagittal radius of the dish",
         unit: "mm",
         least: 42,
         most: 120,
@@ -47,7 +47,7 @@ const GROUPS: [heading: string, moved: Moved[]][] = [
       {
         table: "insert",
         key: "coronal_radius_mm",
-        label: "Radius of the dish from the front",
+        label: "Coronal radius of the dish",
         unit: "mm",
         least: 25,
         most: 100,
@@ -69,7 +69,7 @@ const GROUPS: [heading: string, moved: Moved[]][] = [
   [
     "Test",
     [
-      { table: "machine.axial_force", key: "scale", label: "Load, times that of the waveform", unit: "", least: 0.4, most: 1.6, step: 0.05, silent: 1 },
+      { table: "machine.axial_force", key: "scale", label: "Load, relative to the waveform", unit: "", least: 0.4, most: 1.6, step: 0.05, silent: 1 },
       { table: "contact", key: "friction", label: "Friction", unit: "", least: 0, most: 0.2, step: 0.01, silent: 0.07 },
       { table: "march", key: "cycles", label: "Cycles", unit: "million", least: 0.5, most: 20, step: 0.5, silent: 5, times: 1e6 },
     ],

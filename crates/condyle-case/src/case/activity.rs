@@ -15,9 +15,9 @@ settings! {
     ActivityKeys {
         /// Its name: small letters, digits and hyphens.
         name: String;
-        /// Its share of all cycles; those of all activities sum up to 1.
+        /// Its share of all cycles; those of all activities add up to 1.
         share: Option<f64> = None, in within(1e-6, 1.0);
-        /// Instead of `share`: its cycles in a sequence that repeats, such as 17 of walking and 3 of stairs.
+        /// Instead of `share`: its cycles in a repeating sequence, such as 17 of walking and 3 of stairs.
         cycles_in_sequence: Option<u64> = None, in within(1.0, 1e9);
         /// Machine file of the activity on a machine by joints, relative to the case file: the joints of `[machine]` with other drives, waveforms and springs; `[machine]` itself if not given. Joints that stand here replace those of the same name.
         file: Option<DataFile> = None;
@@ -50,9 +50,7 @@ pub struct Activities {
 }
 
 const ACTIVITIES: &str = "
-One table for each thing that the machine does, each with every waveform that its freedoms need as \
-`[activity.axial_force]`, `[activity.flexion]` and so on, with the keys of the waveforms above; `[machine]` then has \
-none. On a machine by joints, an activity has a [machine file](machines.md#activities) instead. [Activities and creep](activities-and-creep.md) shows how.
+One table for each activity, with every waveform that its freedoms need, as `[activity.axial_force]`, `[activity.flexion]` and so on, with the keys of the waveforms above; `[machine]` then has none ([Activities and creep](activities-and-creep.md)). On a machine by joints, an activity has a [machine file](machines.md#activities) instead.
 ";
 
 impl Activities {
@@ -177,7 +175,7 @@ impl Activity {
             let name = &keys.name;
             let message =
                 format!("the activity \"{name}\" has no load: its axial force is never above 0 N");
-            let fault = Fault::new(message, "give it an axial force that presses");
+            let fault = Fault::new(message, "give it an axial force above 0 N");
             log.problem(section.key_span(knee::AXIAL_FORCE.name), fault);
             return None;
         }
@@ -255,7 +253,7 @@ fn check_shares(sections: &[Section<'_>], all: &[Activity], log: &mut Log<'_>) {
         let name = &activity.keys.name;
         let (message, advice) = match (activity.keys.share, has_cycles(activity)) {
             (None, false) => (
-                format!("the activity \"{name}\" does not say how many of the cycles it is"),
+                format!("the activity \"{name}\" has no share of the cycles"),
                 "write `share = 0.15`, or in all of them `cycles_in_sequence = 3`",
             ),
             (Some(_), true) => (
@@ -278,8 +276,8 @@ fn check_shares(sections: &[Section<'_>], all: &[Activity], log: &mut Log<'_>) {
         && (sum - 1.0).abs() > WHOLE
     {
         let fault = Fault::new(
-            format!("the shares of the activities sum up to {sum:.4} and not to 1"),
-            "change them so that they do, or write `cycles_in_sequence`",
+            format!("the shares of the activities add up to {sum:.4} instead of 1"),
+            "correct them, or write `cycles_in_sequence`",
         );
         log.problem(last.value_span("share"), fault);
     }

@@ -28,7 +28,7 @@ pub struct AssignmentError(String);
 /// A case that cannot be read with values set from outside.
 #[derive(Clone, Debug, Error)]
 pub enum ChangeError {
-    /// Problems of the case, as it is or changed.
+    /// Problems of the case, before or after the changes.
     #[error(transparent)]
     Case(#[from] Problems),
     /// A value that cannot be set.
@@ -113,7 +113,7 @@ impl fmt::Display for Assignment {
 /// Values to be set in a document, as lines below the text of the file: problems with a value are shown at its line.
 pub(super) struct Lines<'c> {
     changes: &'c [Assignment],
-    /// For each change a text with blanks up to the place of the value.
+    /// For each change, a text that is blank up to the value.
     padded: Vec<(Range<usize>, String)>,
     pub shown: String,
 }
@@ -295,8 +295,8 @@ impl Case {
         let is_auto = matches!(self.march.update, Update::Auto(_));
         if written == "updates" && is_auto {
             return Err(AssignmentError(
-                "the march of this case determines its updates, since it has update = \"auto\"; refine what it goes by, such as \
-                 depth_tolerance_fraction=0.1,0.03,0.01, or write update = \"fixed\""
+                "the march of this case determines its updates, since it has update = \"auto\"; vary its tolerance, \
+                 such as depth_tolerance_fraction=0.1,0.03,0.01, or write update = \"fixed\""
                     .to_owned(),
             ));
         }

@@ -34,7 +34,7 @@ settings! {
 
     /// The insert as a body of finite elements on its tray.
     DeformableContact {
-        /// Friction: regularised, it goes with the sliding speed by slip_tolerance_mm_per_s; stick-slip, the surface yields along itself, and each node sticks or slides by Coulomb's law, without a tolerance, which takes some seven times the time and the implicit integrator.
+        /// Friction: regularised, a function of the sliding speed, with slip_tolerance_mm_per_s; or stick-slip, with which the surface deflects tangentially and each node sticks or slides by Coulomb's law, without a tolerance. Stick-slip takes about seven times as long and requires the implicit integrator.
         friction_model: FrictionModel = FrictionModel::Regularised;
         /// Yield of the insert.
         [flat] plasticity: PlasticityChoice;
@@ -52,7 +52,7 @@ settings! {
 
     /// Plasticity of von Mises with isotropic and kinematic hardening.
     J2Plasticity [check] {
-        /// Equivalent stress (von Mises) at which polyethylene begins to yield. The default is approximate: quoted from memory, not checked at the source.
+        /// Von Mises stress at which polyethylene begins to yield. The default is approximate: quoted from memory, not checked at the source.
         yield_stress_mpa: f64 = 14.0, in within(0.1, 10_000.0);
         /// Modulus of linear kinematic hardening: stress of the centre of the yield surface over plastic strain, in tension.
         kinematic_modulus_mpa: f64 = 0.0, in within(0.0, 10_000.0);
@@ -73,11 +73,11 @@ settings_of! {
     ContactSettings {
         /// Coulomb coefficient of friction.
         friction: f64 = 0.07, in within(0.0, 2.0);
-        /// Sliding speed at which friction is nearly full: smaller values are more accurate and slower.
+        /// Sliding speed at which friction has 71 % of its full value: smaller values are more accurate and slower.
         slip_tolerance_mm_per_s: f64 = 0.3, in within(1e-6, 1000.0);
-        /// Search for the nodes that may touch; the results are the same, brute force is the slow reference.
+        /// Search for the nodes that may touch. The results are the same; brute force is the slow reference.
         search: Search = Search::Coherent;
-        /// Motion up to which a sample of the femur is extrapolated rather than computed again, which changes the force by less than a hundred-thousandth; 0 computes every sample.
+        /// Largest motion over which a sample of the femur is extrapolated, which changes the force by less than 1e-5; 0 computes every sample.
         sample_reuse_mm: f64 = ContactSettings::SAMPLE_REUSE_MM, in within(0.0, 0.02);
     }
 }
@@ -85,7 +85,7 @@ settings_of! {
 variants! {
     /// The model of the insert in contact.
     ContactModelChoice by
-    /// Model of the insert: an elastic foundation, quick, whose pressure follows a law; or a deformable body of finite elements, exact for small strains, which has no law.
+    /// Model of the insert: a fast elastic foundation, whose pressure follows a law, or a deformable body of finite elements with small strains, which needs no law.
     model = "foundation" {
         /// An elastic foundation: its pressure law.
         Foundation(@table FoundationContact) = "foundation",
@@ -95,7 +95,7 @@ variants! {
 
     /// Pressure against overclosure; the modulus comes from the material.
     PressureLawChoice by
-    /// Form of pressure against overclosure.
+    /// Pressure as a function of overclosure.
     law = "linear" {
         /// p = K d / h.
         Linear = "linear",
@@ -121,7 +121,7 @@ variants! {
 
     /// Support of the backside of a deformable insert.
     BacksideChoice by
-    /// Support of the backside on its tray: a bond, or the tray alone, from which it lifts and along which it slips with friction, which takes some five times the time and the implicit integrator.
+    /// Support of the backside: bonded to the tray, or resting on it, with lift and frictional slip. Resting takes about five times as long and requires the implicit integrator.
     backside = "bonded" {
         /// It neither lifts nor slips.
         Bonded = "bonded",
@@ -168,7 +168,7 @@ impl PressureLawChoice {
 }
 
 /// Plastic strain and yield stress, MPa, of ultra-high-molecular-weight polyethylene beyond its first yield: the
-/// three-network model of Bergstrom and Bischoff (2010) in compression at 1 % a second, run by us, less the elastic strain
+/// three-network model of Bergstrom and Bischoff (2010) in compression at 1 % a second, run by us, minus the elastic strain
 /// of 463 MPa. Approximate.
 const CURVE: [(f64, f64); 4] = [
     (0.0099, 23.2),

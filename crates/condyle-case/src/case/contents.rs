@@ -25,14 +25,13 @@ use crate::config::*;
 const OPENING: &str = "\
 # The case file
 
-A case is a TOML file. Every key that has a default may be left out; every number has its unit in
-its name; paths are relative to the folder of the case file. This page is generated from the declarations
-that the program reads a case with.
+A case is a TOML file. This page lists all its keys. Keys with a default may be omitted, the names of numbers end with
+their units, and paths are relative to the folder of the case file.
 
-Editors complete the keys, show the meaning, unit and range of each, and underline errors, by the schema that
-`condyle schema > condyle.schema.json` writes. A case names it in its first line, `#:schema condyle.schema.json`, as the
-shipped cases do and `condyle new` writes it, with the schema next to it; taplo and the extension Even Better TOML of VS Code read that line. `condyle check` checks more than the
-schema: files that must exist, and values that must fit each other.
+Editors complete keys, show their meaning, unit and range, and underline errors with the schema that
+`condyle schema > condyle.schema.json` writes. taplo and the extension Even Better TOML of VS Code find it by the first
+line of the case, `#:schema condyle.schema.json`, which the shipped cases have and `condyle new` writes. `condyle check`
+also checks that files exist and that values fit each other.
 
 ## Top of the file
 

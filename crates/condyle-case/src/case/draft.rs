@@ -109,7 +109,7 @@ fn refuse_others(femur: &Concluded<'_>, insert: &Concluded<'_>) -> Result<(), Dr
         return Err(DraftError::Exchanged { femur, insert });
     }
     for (body, likeness) in [(femur, of_femur), (insert, of_insert)] {
-        // One of both alone may be mistaken, where its shape is unusual; only spheres are told in any unit.
+        // One body alone may be misjudged if its shape is unusual; only spheres are recognised in any unit.
         let is_other = |one: &Likeness| match one {
             Likeness::Femur | Likeness::Insert => false,
             Likeness::Head(_) | Likeness::Cup => true,
@@ -136,7 +136,7 @@ fn centre_femur(femur: &mut TriangleMesh, keys: &mut String) -> String {
     let origin = Vec3::new(x, y, z);
     *femur = mem::take(femur).mapped(|vertex| vertex - origin);
     format!(
-        "  origin_mm on its flexion axis, since the file has its own {:.0} mm from there.",
+        "  origin_mm on its flexion axis, since the origin of the file is {:.0} mm from there.",
         origin.norm()
     )
 }
@@ -150,10 +150,10 @@ fn with_reason(given: Option<Side>, femur: &TriangleMesh) -> (Side, String) {
     let side = given.or(shown.map(|(side, _)| side)).unwrap_or(Side::Right);
     let of_shape = match shown {
         Some((shown, lead_mm)) => format!(
-            "likely a {} knee, since one flange of the trochlea stands out by {lead_mm:.1} mm there",
+            "likely a {} knee, since one flange of the trochlea extends {lead_mm:.1} mm further there",
             shown.word()
         ),
-        None => "the shape does not show it, since both sides of it are alike".to_owned(),
+        None => "not visible from the shape, since both sides are alike".to_owned(),
     };
     let why = match given {
         Some(_) => "as given",
@@ -262,7 +262,7 @@ impl<'a> Concluded<'a> {
         let size = high - low;
         let mut remarks = vec![
             format!(
-                "{}, concluded from the shape of {}:",
+                "{}, derived from the shape of {}:",
                 self.body,
                 self.written.display()
             ),
@@ -283,7 +283,7 @@ impl<'a> Concluded<'a> {
             remarks.push(start.to_owned());
         } else if !shell.closed {
             let thickness =
-                "  The surface is open: thickness_mm is assumed, write that of the insert.";
+                "  The surface is open and thickness_mm is assumed: write that of the insert.";
             remarks.push(thickness.to_owned());
         }
         remarks
@@ -291,13 +291,13 @@ impl<'a> Concluded<'a> {
 
     fn how_sure(&self, lies: &WrittenRotation) -> String {
         let Some(Upright { recognition, .. }) = &self.upright else {
-            return "cannot be concluded, since the shape is not that of a whole knee: check them"
+            return "cannot be derived, since the shape is not that of a whole knee: check them"
                 .to_owned();
         };
         match recognition.sureness() {
-            Some(Sureness::Certain) => "for certain".to_owned(),
+            Some(Sureness::Certain) => "certain".to_owned(),
             Some(Sureness::Likely) => {
-                "likely, since only one sign of the shape distinguishes back from front: check them"
+                "likely, since only one feature of the shape distinguishes back from front: check them"
                     .to_owned()
             }
             None => {
@@ -309,7 +309,7 @@ impl<'a> Concluded<'a> {
                 let others: Vec<String> =
                     others.map(|other| format!("{:?}", other.words())).collect();
                 format!(
-                    "not for certain, since {} fits about as well: check them",
+                    "uncertain, since {} fits about as well: check them",
                     others.join(" or ")
                 )
             }
@@ -380,7 +380,7 @@ impl Alone {
         self.shell.mesh = mem::take(&mut self.shell.mesh).mapped(|vertex| vertex - middle);
         *keys += "origin = \"centre\"\n";
         Some(format!(
-            "  origin \"centre\", since the file has its own {:.0} mm from the middle of the dishes.",
+            "  origin \"centre\", since the origin of the file is {:.0} mm from the middle of the dishes.",
             middle.norm()
         ))
     }
@@ -390,7 +390,7 @@ impl Alone {
         let parts = self.shell.left_out.len();
         if parts > 0 {
             remarks.push(format!(
-                "  The file has {parts} more parts, below or next to the insert: they are left out."
+                "  The file has {parts} more parts, below or next to the insert: they are removed."
             ));
         }
         match &self.underside {

@@ -119,10 +119,7 @@ impl<'a> Round<'a> {
             ""
         };
         vec![
-            format!(
-                "{body}, concluded from the shape of {}:",
-                self.file.display()
-            ),
+            format!("{body}, derived from the shape of {}:", self.file.display()),
             format!(
                 "  {part} of {:.3} mm radius with length_unit \"{}\"; its vertices are {rms_mm:.4} mm from it in the mean{doubt}.",
                 self.radius_mm(),

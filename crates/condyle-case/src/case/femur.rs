@@ -44,9 +44,9 @@ settings! {
         file: DataFile;
         /// Unit of length of the file.
         length_unit: LengthUnit = LengthUnit::Millimetre;
-        /// Directions of x, y and z of the file.
+        /// Anatomical directions of x, y and z of the file.
         axes: Axes = Axes::ISB;
-        /// Turn of the body after `axes`, about z, then x, then y of the frame; given as [x, y, z].
+        /// Rotation of the body after `axes`, about z, then x, then y of the frame; given as [x, y, z].
         rotation_deg: Option<[f64; 3]> = None, in within(-180.0, 180.0);
         /// Point of the file that is the origin of the femoral frame, along its axes after `axes` and `rotation_deg`; the file's own if not given.
         origin_mm: Option<[f64; 3]> = None, in within(-100_000.0, 100_000.0);
@@ -128,7 +128,7 @@ impl Femur {
 settings! {
     /// Placement of the femoral component on its bone: turned about the flexion axis, first by flexion, then by varus, then by rotation, and then shifted; the axis stays.
     FemurPlacement {
-        /// Flexion of the component on the bone, + brings its front up and forward, as a flexed bone over a component that lies still.
+        /// Flexion of the component on the bone, + turns its front upwards and forwards: the bone is then flexed relative to the component.
         flexion_deg: f64 = 0.0, in within(-45.0, 45.0);
         /// Varus of the component on the bone, + lowers its lateral condyle.
         varus_deg: f64 = 0.0, in within(-30.0, 30.0);

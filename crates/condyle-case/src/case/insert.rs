@@ -20,7 +20,7 @@ settings! {
         [flat] shape: GenericInsertShape;
         /// Edge of a hexahedron, seen from above.
         edge_mm: f64 = Meshing::default().edge_mm, in within(0.1, 10.0);
-        /// Hexahedra through the thickness; the top one is as thick as an edge is long, if they suffice, and the others thicken downwards.
+        /// Hexahedra through the thickness. With enough of them, the top one is as thick as an edge is long, and the others are thicker downwards.
         layers: u64 = Meshing::default().layers as u64, in within(1.0, 40.0);
     }
 
@@ -30,17 +30,17 @@ settings! {
         file: DataFile;
         /// Unit of length of the file.
         length_unit: LengthUnit = LengthUnit::Millimetre;
-        /// Directions of x, y and z of the file.
+        /// Anatomical directions of x, y and z of the file.
         axes: Axes = Axes::ISB;
-        /// Turn of the body after `axes`, about z, then x, then y of the frame; given as [x, y, z].
+        /// Rotation of the body after `axes`, about z, then x, then y of the frame; given as [x, y, z].
         rotation_deg: Option<[f64; 3]> = None, in within(-180.0, 180.0);
         /// Edge of a hexahedron, seen from above.
         edge_mm: f64 = Meshing::default().edge_mm, in within(0.1, 10.0);
-        /// Hexahedra through the thickness; the top one is as thick as an edge is long, if they suffice, and the others thicken downwards.
+        /// Hexahedra through the thickness. With enough of them, the top one is as thick as an edge is long, and the others are thicker downwards.
         layers: u64 = Meshing::default().layers as u64, in within(1.0, 40.0);
-        /// Height along y of the insert frame below which the mesh is cut away and closed flat: for an insert that its file fuses with the tray.
+        /// Height along y of the insert frame below which the mesh is cut off and closed flat, for an insert in one piece with its tray.
         clip_below_mm: Option<f64> = None, in within(-500.0, 500.0);
-        /// Smallest thickness: only for an open articulating surface, which has no thickness.
+        /// Smallest thickness; only for an open articulating surface.
         thickness_mm: Option<f64> = None, in within(1.0, 50.0);
     }
 
@@ -50,13 +50,13 @@ settings! {
         file: DataFile;
         /// Unit of length of the file.
         length_unit: LengthUnit = LengthUnit::Millimetre;
-        /// Directions of x, y and z of the file.
+        /// Anatomical directions of x, y and z of the file.
         axes: Axes = Axes::ISB;
-        /// Turn of the body after `axes`, about z, then x, then y of the frame; given as [x, y, z].
+        /// Rotation of the body after `axes`, about z, then x, then y of the frame; given as [x, y, z].
         rotation_deg: Option<[f64; 3]> = None, in within(-180.0, 180.0);
-        /// Name in the file of the surface that articulates; found from above if not given.
+        /// Name of the articulating surface in the file; by default the surface visible from above.
         articulating_surface: Option<String> = None;
-        /// Name in the file of the backside; found from below if not given.
+        /// Name of the backside in the file; by default the surface visible from below.
         backside: Option<String> = None;
     }
 
@@ -66,7 +66,7 @@ settings! {
         [flat] shape: CupShape;
         /// Edge of a hexahedron along the surface.
         edge_mm: f64 = 1.0, in within(0.1, 10.0);
-        /// Hexahedra through the thickness; the top one is as thick as an edge is long, if they suffice, and the others thicken downwards.
+        /// Hexahedra through the thickness. With enough of them, the top one is as thick as an edge is long, and the others are thicker downwards.
         layers: u64 = 6, in within(1.0, 40.0);
     }
 
@@ -84,7 +84,7 @@ settings! {
         anteversion_deg: f64 = CupShape::default().anteversion_deg, in within(-90.0, 90.0);
         /// Edge of a hexahedron along the surface.
         edge_mm: f64 = 1.0, in within(0.1, 10.0);
-        /// Hexahedra through the thickness; the top one is as thick as an edge is long, if they suffice, and the others thicken downwards.
+        /// Hexahedra through the thickness. With enough of them, the top one is as thick as an edge is long, and the others are thicker downwards.
         layers: u64 = 6, in within(1.0, 40.0);
     }
 
@@ -94,7 +94,7 @@ settings! {
         [flat] shape: TroughShape;
         /// Edge of a hexahedron, seen from above.
         edge_mm: f64 = 1.0, in within(0.1, 10.0);
-        /// Hexahedra through the thickness; the top one is as thick as an edge is long, if they suffice, and the others thicken downwards.
+        /// Hexahedra through the thickness. With enough of them, the top one is as thick as an edge is long, and the others are thicker downwards.
         layers: u64 = 6, in within(1.0, 40.0);
     }
 
@@ -116,7 +116,7 @@ settings! {
         thickness_mm: f64 = GenericInsertShape::default().thickness_mm, in within(1.0, 50.0);
         /// Edge of a hexahedron, seen from above.
         edge_mm: f64 = Meshing::default().edge_mm, in within(0.1, 10.0);
-        /// Hexahedra through the thickness; the top one is as thick as an edge is long, if they suffice, and the others thicken downwards.
+        /// Hexahedra through the thickness. With enough of them, the top one is as thick as an edge is long, and the others are thicker downwards.
         layers: u64 = Meshing::default().layers as u64, in within(1.0, 40.0);
     }
 }
@@ -136,11 +136,11 @@ settings_of! {
 
 settings_of! {
     CupShape {
-        /// Inner radius of the cup: that of the head and the radial clearance.
+        /// Inner radius of the cup: that of the head plus the radial clearance.
         radius_mm: f64 = Self::default().radius_mm, in within(5.0, 100.0);
         /// Thickness of the wall.
         thickness_mm: f64 = Self::default().thickness_mm, in within(1.0, 50.0);
-        /// Angle between its axis and its rim, seen from the centre: 90 of a hemisphere, 20 to 50 of a shallow dish.
+        /// Angle between its axis and its rim, seen from the centre: 90 for a hemisphere, 20 to 50 for a shallow dish.
         opening_deg: f64 = Self::default().opening_deg, in within(10.0, 90.0);
         /// Angle between the plane of the opening and the plane across the load, in the frontal plane: on a machine about 10 to 15 degrees less than in a patient.
         inclination_deg: f64 = Self::default().inclination_deg, in within(0.0, 90.0);
@@ -151,7 +151,7 @@ settings_of! {
 
 settings_of! {
     TroughShape {
-        /// Radius of the cylinder: that of the counterface and the radial clearance.
+        /// Radius of the cylinder: that of the counterface plus the radial clearance.
         radius_mm: f64 = Self::default().radius_mm, in within(5.0, 200.0);
         /// Length along x.
         length_mm: f64 = Self::default().length_mm, in within(5.0, 100.0);
@@ -246,7 +246,7 @@ settings! {
         posterior_slope_deg: f64 = 0.0, in within(-30.0, 30.0);
         /// Tilt in the frontal plane, + lowers the medial edge: a component in varus.
         coronal_tilt_deg: f64 = 0.0, in within(-30.0, 30.0);
-        /// Turn about the long axis, + internal: the front goes medially.
+        /// Rotation about the long axis, + internal: the front turns medially.
         axial_rotation_deg: f64 = 0.0, in within(-90.0, 90.0);
     }
 }

@@ -22,7 +22,7 @@ const START: KeyLocation = (
     &["start_mm", "length_unit", "axes", "file", "shape"],
 );
 
-/// A material softer than this, MPa, is likelier at fault for a deep overlap than the shapes.
+/// Young's modulus, MPa, below which the material is a likelier cause of a deep overlap than the shapes.
 const SOFT_MPA: f64 = 100.0;
 
 impl Case {

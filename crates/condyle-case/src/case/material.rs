@@ -36,7 +36,7 @@ const HIGH: Parameter = CrossLinked::HIGH;
 settings! {
     /// Moderately cross-linked polyethylene.
     ModeratelyCrossLinked {
-        /// Wear relative to that of conventional polyethylene by the same law; by default the bound of Abdelgaied 2013, whose pins wore less.
+        /// Wear relative to that of conventional polyethylene by the same law; by default the upper bound of Abdelgaied 2013, measured on pins.
         wear_over_conventional: f64 = MODERATE.default, in limits_of(&MODERATE);
     }
 
@@ -50,13 +50,13 @@ settings! {
 variants! {
     /// Degree of cross-linking of the polyethylene.
     CrossLinking by
-    /// Degree of cross-linking: every law of wear, fitted to conventional polyethylene, is multiplied by a factor. Elasticity and creep stay as given.
+    /// Degree of cross-linking: the wear by every law is multiplied by a factor. Elasticity and creep are unchanged.
     cross_linking = "none" {
         /// Conventional polyethylene: laws as they were fitted.
         None = "none",
-        /// After some 50 kGy.
+        /// After about 50 kGy.
         Moderate(ModeratelyCrossLinked) = "moderate",
-        /// After some 100 kGy.
+        /// After about 100 kGy.
         High(HighlyCrossLinked) = "high",
     }
 }
@@ -88,7 +88,7 @@ settings_of! {
     LeePienkowski {
         /// Strain by creep after 10,000 min under 1 MPa. The default is approximate.
         strain_at_10000_min_per_mpa: f64 = A.default, in limits_of(&A);
-        /// Strain by creep that each tenfold increase of time adds under 1 MPa. The default is approximate.
+        /// Strain by creep per decade of time under 1 MPa. The default is approximate.
         strain_per_decade_per_mpa: f64 = B.default, in limits_of(&B);
         /// Part of the creep that recovers after unloading; a scan of an unloaded insert shows the rest.
         recovering_fraction: f64 = R.default, in limits_of(&R);

@@ -36,7 +36,7 @@ const BY_STRAIN: Form = Form {
 settings! {
     /// Error of a fitted table.
     TableError {
-        /// Largest error of the peak pressure with this table in stance, in the first and last cycle, against the deformable insert that it was fitted to; `condyle calibrate` writes it, and runs with the table report it.
+        /// Largest error of the peak pressure with this table in stance, in the first and last cycle, relative to the deformable insert; `condyle calibrate` writes it, and runs with the table report it.
         peak_error_percent: Option<f64> = None, in within(0.0, 1000.0);
     }
 }

@@ -49,7 +49,7 @@ impl CaseReader {
     /// Reads the case file at `path` with some of its values changed, the last of several for the same key.
     ///
     /// Messages show the changes as lines below the file. If a choice such as a wear law is set, the keys of the file
-    /// that do not apply to it are left out, with a warning when the case is built.
+    /// that do not apply to it are omitted, with a warning when the case is built.
     ///
     /// # Errors
     /// As [`Self::read`]; a name that no key has, or several.

@@ -1,4 +1,4 @@
-//! Files of the previous version: keys under their names then, and its default wear law, are still read, with a note.
+//! Files of the previous version: its names of keys and its default wear law are still read, with a note.
 
 use toml::{
     Spanned,

@@ -21,7 +21,7 @@ settings! {
 
     /// Updates of the worn shape as a tolerance on depth requires them.
     AutoUpdates {
-        /// Error of the maximum depth that one interval may add, as a fraction of the depth expected at the end; later intervals mostly wear it away.
+        /// Error of the maximum depth that one interval may add, as a fraction of the depth expected at the end. Later intervals remove most of it.
         depth_tolerance_fraction: f64 = 0.05, in within(1e-5, 0.5);
     }
 }
@@ -53,19 +53,19 @@ settings! {
     Time {
         /// Increments in a gait cycle.
         increments: u64 = TimeSettings::default().increments as u64, in within(20.0, 100_000.0);
-        /// An implicit increment is halved until its own error is estimated below this; rotations on a lever of 10 mm. 0 never halves for that.
+        /// An implicit increment is halved until its estimated error is below this value, with rotations on a lever of 10 mm; 0 disables this.
         increment_error_mm: f64 = TimeSettings::default().increment_error_mm, in within(0.0, 10.0);
         /// Largest residual force of a converged increment.
         force_tolerance_n: f64 = TimeSettings::default().force_tolerance_n, in within(1e-9, 10.0);
-        /// Largest number of cycles until one repeats the one before.
+        /// Largest number of cycles until the motion is periodic.
         most_cycles_to_repeat: u64 = TimeSettings::default().most_cycles_to_repeat as u64, in within(1.0, 1000.0);
-        /// Largest difference of a translation between two cycles that repeat.
+        /// Largest difference of a translation between two cycles of a periodic motion.
         repeat_tolerance_mm: f64 = TimeSettings::default().repeat_tolerance_mm, in within(1e-9, 10.0);
-        /// Largest difference of a rotation between two cycles that repeat.
+        /// Largest difference of a rotation between two cycles of a periodic motion.
         repeat_tolerance_deg: f64 = TimeSettings::default().repeat_tolerance_rad.to_degrees(), in within(1e-9, 10.0);
         /// Integration of an increment: implicit in one step, or explicit in many short ones.
         integrator: IntegratorWord = IntegratorWord::Implicit;
-        /// Explicit: inertia is added wherever a stable step would be shorter than this; 0 adds none.
+        /// For the explicit integrator: inertia is added where a stable step would be shorter than this; 0 adds none.
         explicit_step_s: f64 = 0.0, in within(0.0, 1e-3);
     }
 }
@@ -73,7 +73,7 @@ settings! {
 settings! {
     /// Estimates of the accuracy of a run.
     Accuracy {
-        /// Estimate discretisation errors after the run, by solving the unworn cycle more coarsely.
+        /// Estimate discretisation errors after the run.
         estimate: bool = true;
     }
 }
@@ -81,7 +81,7 @@ settings! {
 settings! {
     /// Limits on the use of the computer.
     Limits {
-        /// Memory that a run may use; a case that needs more is refused before it begins.
+        /// Memory that a run may use; a case that needs more is an error before the start.
         memory_gb: f64 = Limits::DEFAULT_GB, in within(0.1, 10_000.0);
     }
 }

@@ -275,8 +275,8 @@ pub(crate) fn no_column(column: &str, file: &str, columns: &[&str]) -> Fault {
 
 pub(crate) fn other_unit(column: &str, unit: &str, suffix: &str) -> Fault {
     Fault::new(
-        format!("column `{column}` is in another unit than {unit}, which is needed here"),
-        format!("let its name end in `{suffix}`, with values in {unit}"),
+        format!("column `{column}` has another unit than {unit}, which is needed here"),
+        format!("let its name end with `{suffix}`, and give the values in {unit}"),
     )
 }
 

@@ -27,14 +27,14 @@ pub(crate) fn type_fault(key: &str, wanted: &str, found: &str) -> Fault {
 
 pub(crate) fn idle(key: &str, needs: &str) -> Fault {
     Fault::new(
-        format!("`{key}` means nothing here: it needs {needs}"),
+        format!("`{key}` has no effect here: it needs {needs}"),
         format!("remove `{key}`, or add what it needs"),
     )
 }
 
 pub(crate) fn both(section: &str, first: &str, second: &str) -> Fault {
     Fault::new(
-        format!("{section} has both `{first}` and `{second}`, which say the same thing twice"),
+        format!("{section} has both `{first}` and `{second}`, which are alternatives"),
         format!("keep `{first}` or `{second}`, not both"),
     )
 }
@@ -105,14 +105,14 @@ pub(crate) fn syntax(message: &str) -> Fault {
 pub(crate) fn missing_file(key: &str, path: &Path) -> Fault {
     let holds = |name: &str| path.iter().any(|part| part == name);
     let advice = if holds("dm-knee") {
-        "data are not part of condyle: fetch the Grand Challenge subject DM meshes and gait \
-         (Fregly et al. 2012; in jam-resources, models/knee_tka/grand_challenge/DM) and put them \
-         there; see the comment at the top of the case"
+        "data are not part of condyle: fetch meshes and gait of subject DM of the Grand Challenge (Fregly et al. 2012; \
+         in jam-resources, models/knee_tka/grand_challenge/DM) and put them there; see the comment at the top of the \
+         case"
     } else if holds("data") {
         "data are not part of condyle: the comment at the top of the case names their \
          source"
     } else {
-        "correct the path; it counts from the folder of the file that names it"
+        "correct the path; it is relative to the folder of the file that names it"
     };
     let message = format!("`{key}`: there is no file {}", path.display());
     Fault::new(message, advice)
@@ -195,7 +195,7 @@ fn likeness(written: &str, known: &str) -> f64 {
     whole.max(base)
 }
 
-/// Synonyms of keys, in small letters and without a unit; of several keys, the first that a table has is meant.
+/// Synonyms of keys, in small letters and without a unit; of several keys, the first in the table is meant.
 pub(crate) const SYNONYMS: &[(&str, &str)] = &[
     ("mu", "friction"),
     ("cof", "friction"),

@@ -121,7 +121,7 @@ impl Choices {
 }
 
 impl Item {
-    /// Returns the entry as one that may be left out.
+    /// Returns the entry as one that may be omitted.
     pub fn optional(mut self) -> Self {
         if let Self::Key(key) = &mut self {
             key.silent = WhereSilent::LeftOut;

@@ -32,7 +32,7 @@ impl Key {
         }
     }
 
-    /// Declares a key that may be left out.
+    /// Declares a key that may be omitted.
     pub fn optional(name: &'static str, doc: impl Into<Cow<'static, str>>, kind: Kind) -> Self {
         Self {
             name,

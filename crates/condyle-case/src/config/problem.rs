@@ -17,7 +17,7 @@ pub(crate) type Source = Arc<NamedSource<String>>;
 /// A fault and its place in a text that the context defines.
 pub(crate) type Placed = (Range<usize>, Fault);
 
-/// Reads a file; the name under which problems show it is its path.
+/// Reads a file; messages name it by its path.
 pub(crate) fn read_source(files: &dyn Files, path: &Path) -> Result<Source, Fault> {
     let name = path.display().to_string();
     let unreadable = |why: &str| Fault::new(format!("the file {name} cannot be read: {why}"), "");

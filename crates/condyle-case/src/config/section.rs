@@ -154,7 +154,7 @@ impl<'a> Section<'a> {
         item.map_or(self.value_span(name), Spanned::span)
     }
 
-    /// Returns the value behind `key` or its default; reports a missing or wrong one.
+    /// Returns the value of `key` or its default; reports a missing or wrong value.
     pub fn setting<T: Setting>(
         &self,
         key: &Key,
@@ -197,7 +197,8 @@ impl<'a> Section<'a> {
     }
 }
 
-/// Parses the file `source` and returns what `read` makes of it; files that it names are looked for from `base`.
+/// Parses the file `source` and returns the result of `read`; paths in the file are relative to
+/// `base`.
 ///
 /// # Errors
 /// Every problem; only the syntax errors if there are any.
@@ -242,14 +243,14 @@ pub(crate) fn read_part<'a, T>(
     }
 }
 
-/// Reports texts with characters that steer a terminal: names reach tables, pages and pictures as they are written.
+/// Reports texts with control characters: names are written unchanged to tables, pages and pictures.
 fn report_steering<'a>(values: impl Iterator<Item = &'a Spanned<DeValue<'a>>>, log: &mut Log<'_>) {
     for value in values {
         match value.get_ref() {
             DeValue::String(text) => {
                 if let Some(found) = text.chars().find(|&one| steers(one) && one != '\n') {
                     let message = format!(
-                        "this text holds the control character {}",
+                        "this text contains the control character {}",
                         found.escape_unicode()
                     );
                     log.problem(value.span(), Fault::new(message, "remove it"));

@@ -16,10 +16,10 @@ pub(crate) trait Setting: Sized {
     /// Reads the value, or reports why it cannot be used.
     fn read(value: &Spanned<DeValue<'_>>, key: &Key, log: &mut Log<'_>) -> Option<Self>;
 
-    /// Returns the value in TOML; `None` for a value that is left out.
+    /// Returns the value in TOML; `None` for a value that is omitted.
     fn text(&self) -> Option<String>;
 
-    /// Writes the value with the meaning of its key; one that is left out as a comment.
+    /// Writes the value with the meaning of its key; one that is omitted as a comment.
     fn write(&self, key: &Key, out: &mut Writer) {
         match self.text() {
             Some(text) => out.line(&format!("{} = {text}", key.name), &key.doc),
@@ -131,7 +131,7 @@ impl Setting for u64 {
     }
 }
 
-/// A list of numbers that the limits of its key hold for.
+/// A list of numbers, each within the limits of its key.
 impl<const N: usize> Setting for [f64; N] {
     fn kind() -> Kind {
         Kind::Numbers(N)

@@ -43,7 +43,7 @@ pub(super) fn growing(
     let problem = |pair: &[Cell]| {
         let (value, before) = (pair[1].value, pair[0].value);
         let message =
-            format!("`{column}` is {value}, after {before} in the row above: it must grow");
+            format!("`{column}` is {value}, after {before} in the row above: it must increase");
         let fault = Fault::new(message, "sort the rows, and keep one of each");
         (pair[1].span.clone(), fault)
     };
@@ -70,5 +70,5 @@ pub(super) fn outside(
 
 pub(super) fn too_few(column: &str, found: usize, needed: usize) -> Fault {
     let message = format!("`{column}` has {found} numbers where {needed} are needed");
-    Fault::new(message, "add rows, or leave the column out")
+    Fault::new(message, "add rows, or omit the column")
 }

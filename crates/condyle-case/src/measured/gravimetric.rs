@@ -22,7 +22,7 @@ settings! {
         soak_controls: Option<Names> = None;
         /// Confidence of the intervals.
         confidence_percent: f64 = 95.0, in within(50.0, 99.99);
-        /// Weighings before this many cycles are left out of the line, as running-in.
+        /// Weighings before this many cycles are excluded from the line, as running-in.
         fit_from_cycles: f64 = 0.0, in within(0.0, 1e10);
         /// The independent observations of the interval that calibration uses.
         interval: IntervalWord = IntervalWord::Weighings;
@@ -71,7 +71,7 @@ impl Gravimetric {
         let rows = cycles.iter().skip(1).filter(is_counted).count();
         if rows < MIN_WEIGHINGS {
             let fault = Fault::new(
-                format!("{rows} weighings are left for the line, of which three are needed"),
+                format!("{rows} weighings remain for the line, and three are needed"),
                 "add weighings, or lower `fit_from_cycles`; the first row starts the test, and its loss of 0 does not count",
             );
             log.problem(section.value_span("file"), fault);
@@ -123,7 +123,7 @@ fn soak_columns(
         let file = keys.file.name();
         let fault = Fault::new(
             format!("every column of {file} is a soak control: there is no specimen"),
-            "name the soak controls in `soak_controls`, and leave the specimens out of it",
+            "name only the soak controls in `soak_controls`",
         );
         log.problem(section.value_span("soak_controls"), fault);
         return None;
@@ -154,8 +154,11 @@ fn weighed(columns: &Columns<'_>) -> Result<(Vec<f64>, Vec<Specimen>), Vec<Place
 fn specimen(columns: &Columns<'_>, index: usize) -> Result<Specimen, Vec<Placed>> {
     let column = columns.names()[index];
     let Some(name) = column.strip_suffix("_mg") else {
-        let message = format!("the name `{column}` does not end in the unit of a mass, _mg");
-        let fault = Fault::new(message, "let its name end in `_mg`, with masses in mg");
+        let message = format!("the name `{column}` does not end with the unit of a mass, _mg");
+        let fault = Fault::new(
+            message,
+            "let its name end with `_mg`, and give the masses in mg",
+        );
         return Err(vec![(columns.name_span(index), fault)]);
     };
     let cells = columns.numbers(index)?;

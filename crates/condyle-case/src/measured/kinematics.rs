@@ -58,7 +58,7 @@ pub struct Kinematics {
 pub struct MeasuredCurve {
     /// Its name, one of [`COLUMNS`], which ends in the unit.
     pub column: &'static str,
-    /// Its points, percent growing; cells that are empty are left out.
+    /// Its points, by increasing percent, without empty cells.
     pub samples: Vec<Sample>,
 }
 

@@ -26,7 +26,7 @@ settings! {
         file: DataFile;
         /// Unit of length of a surface file; a CSV has it in its header.
         length_unit: LengthUnit = LengthUnit::Millimetre;
-        /// Directions of x, y and z of the file.
+        /// Anatomical directions of x, y and z of the file.
         axes: Axes = Axes::ISB;
         /// Added to every point, in the frame of the results, before the registration starts.
         start_mm: [f64; 3] = [0.0; 3], in within(-1000.0, 1000.0);
@@ -38,7 +38,7 @@ settings! {
         fit_x_mm: Option<[f64; 2]> = None, in within(-1000.0, 1000.0);
         /// Range of z, in the frame of the results, with `fit = "region"`.
         fit_z_mm: Option<[f64; 2]> = None, in within(-1000.0, 1000.0);
-        /// Points of the scan farther than this from the registered surface are left out.
+        /// Points of the scan farther than this from the registered surface are omitted.
         farthest_mm: f64 = 2.0, in within(0.01, 50.0);
     }
 }

@@ -52,7 +52,7 @@ impl Answers {
             .map(|two| two.0.iter().map(|name| output("pareto", name)).collect());
         let outputs = outputs?;
         let Some(&first) = outputs.first() else {
-            let advice = "name one, such as `mass_loss_mg`, or leave the key out";
+            let advice = "name one, such as `mass_loss_mg`, or omit the key";
             let fault = Fault::new("the study names no output", advice);
             log.problem(section.value_span("outputs"), fault);
             return None;

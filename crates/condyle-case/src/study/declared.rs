@@ -2,7 +2,7 @@
 
 use crate::config::*;
 
-/// Tests of a study, at most.
+/// Largest number of tests of a study.
 pub(super) const MAX_TESTS: f64 = 1e9;
 
 settings! {
@@ -150,7 +150,8 @@ settings! {
 
     /// Tests that are added where the emulator of an output is least certain.
     AdaptiveKeys {
-        /// When to stop, such as "mass_loss_mg known to 1 %": 90 % of the errors of the emulator are at most this part of the output.
+        /// Stopping rule, such as "mass_loss_mg known to 1 %": 90 % of the errors of the emulator
+        /// are at most this part of the output.
         until: String;
         /// Largest number of tests.
         size: u64 = 200, in within(10.0, 256.0);

@@ -12,14 +12,14 @@ use crate::config::*;
 /// values 63 lie beyond.
 const NORMAL_REACH: f64 = 4.0;
 
-/// Power of the distance from the least value, in scales, up to which a case must accept a Weibull input: it exceeds as
-/// many values as the reach of a normal one, ln(2 / 63e-6).
+/// Power of the distance from the smallest value, in scales, up to which a case must accept a Weibull input: it is
+/// exceeded as often as four standard deviations of a normal input, ln(2 / 63e-6).
 const WEIBULL_REACH: f64 = 10.4;
 
 /// Up to this many levels, all are tried on the case.
 const FEW_LEVELS: usize = 64;
 
-/// Inputs of a study, and designs that it compares: each costs a reading of the case.
+/// Largest number of inputs of a study, and of designs that it compares: the case is read once for each.
 const MAX_LISTED: usize = 256;
 
 /// One input of a study.
@@ -317,7 +317,7 @@ impl EmpiricalKeys {
         let is_constant = sorted.first() == sorted.last();
         if is_constant || sorted.len() < self.values.0.len() {
             let fault = Fault::new(
-                "measured values need two different numbers at least, and no words",
+                "measured values must be numbers, at least two of them different",
                 "give `file` or `values = [0.03, 0.04, 0.06]`",
             );
             log.problem(span, fault);

@@ -13,8 +13,8 @@ use crate::case::{Assignment, Case, CaseReader, ChangeError};
 use crate::config::*;
 use condyle_mesh::files::{Disk, Files};
 
-/// Values that are tried on the case before the first test: thousands of files would take a while, and values beyond
-/// these fail as rows.
+/// Largest number of values that are checked on the case before the first test, since thousands of
+/// files would take too long; invalid values beyond these fail as rows.
 const MAX_TRIED: usize = 512;
 
 const TABLES: &[&str] = &[
@@ -182,7 +182,7 @@ fn correlation(section: &Section<'_>, inputs: &[Input], log: &mut Log<'_>) -> Op
         if found.is_none() {
             let fault = Fault::new(
                 format!("`{key}` is not an input with a distribution"),
-                "give it a `[[vary]]` with a distribution, or leave the correlation out",
+                "give it a `[[vary]]` with a distribution, or omit the correlation",
             );
             log.problem(span.clone(), fault);
         }
@@ -244,8 +244,8 @@ impl Study {
                     Level::Word(word) => format!("{word:?}"),
                 };
                 let advice = if advice.is_empty() {
-                    "choose values that the case accepts; a normal distribution is tried at four standard deviations, and a \
-                     truncated-normal one at its given ends"
+                    "choose values that the case accepts; a normal distribution is checked at four standard \
+                     deviations, a truncated-normal one at its ends"
                         .to_owned()
                 } else {
                     advice
@@ -282,7 +282,7 @@ impl Study {
         if !self.correlations.is_empty() && !is_sample {
             let fault = Fault::new(
                 format!("inputs of a design of the kind `{design}` cannot be correlated"),
-                "use `kind = \"latin-hypercube\"` or `\"sobol\"`, or leave the correlation out",
+                "use `kind = \"latin-hypercube\"` or `\"sobol\"`, or omit the correlation",
             );
             log.problem(span.clone(), fault);
         }
@@ -293,8 +293,8 @@ impl Study {
             )
         {
             let fault = Fault::new(
-                format!("designs cannot be compared in a design of the kind `{design}`"),
-                "use `kind = \"latin-hypercube\"`, or leave the alternatives out",
+                format!("alternatives cannot be compared in a design of the kind `{design}`"),
+                "use `kind = \"latin-hypercube\"`, or omit the alternatives",
             );
             log.problem(span, fault);
         }
@@ -315,16 +315,14 @@ impl Study {
         }
     }
 
-    /// Reports an aim that cannot be read, and inputs that no emulator takes.
+    /// Reports an aim that cannot be read, and inputs without an emulator.
     fn check_adaptive(&self, keys: &AdaptiveKeys, section: &Section<'_>, log: &mut Log<'_>) {
         match keys.aim() {
             Some((name, _)) => drop(output(name, "until", section, log)),
             None => {
-                let problem = format!(
-                    "`{}` does not state how well an output is to be known",
-                    keys.until
-                );
-                let advice = "write an output and a part from 0.01 to 50 %, such as `until = \"mass_loss_mg known to 1 %\"`";
+                let problem = format!("`{}` does not state an output and its accuracy", keys.until);
+                let advice = "write an output and a percentage from 0.01 to 50 %, such as `until = \"mass_loss_mg \
+                              known to 1 %\"`";
                 log.problem(section.value_span("until"), Fault::new(problem, advice));
             }
         }
@@ -332,7 +330,7 @@ impl Study {
             if matches!(&input.variation, Variation::Levels(keys) if !are_different_numbers(&keys.levels))
             {
                 let problem = format!("an emulator needs numbers, and `{}` has none", input.key);
-                let advice = "give a distribution, or two or more numbers as `levels`; compare words in studies of their own";
+                let advice = "give a distribution, or two or more numbers as `levels`; compare words in separate studies";
                 log.problem(input.span.clone(), Fault::new(problem, advice));
             }
         }
@@ -357,7 +355,7 @@ impl Study {
         let chosen = self.chosen();
         if chosen == 0 {
             let advice = "remove `disturbance = true` from an input with `low` and `high`";
-            let fault = Fault::new("a search needs an input that is no disturbance", advice);
+            let fault = Fault::new("a search needs an input that is not a disturbance", advice);
             log.problem(section.span(), fault);
         }
         if keys.minimise == PARETO && chosen < self.inputs.len() {
@@ -367,7 +365,7 @@ impl Study {
             log.problem(section.value_span("minimise"), fault);
         }
         if keys.percentile.is_some() && chosen == self.inputs.len() {
-            let advice = "add `[[vary]]` with a distribution and `disturbance = true`, or leave the percentile out";
+            let advice = "add `[[vary]]` with a distribution and `disturbance = true`, or omit the percentile";
             let fault = Fault::new("a percentile needs disturbances", advice);
             log.problem(section.value_span("percentile"), fault);
         }

@@ -84,7 +84,7 @@ fn a_shell_that_crosses_itself() {
 fn normals_inside_out_are_turned_round_with_a_warning() {
     let (insert, femur) = (inside_out(shapes::insert()), inside_out(shapes::femur()));
     let bench = knee(&format!("{MESH_INSERT}{MESH_FEMUR}"), &insert, &femur);
-    let turned = |file: &str| format!("{file}: the triangles faced inwards and were turned round");
+    let turned = |file: &str| format!("{file}: the triangles faced inwards and were reversed");
     assert_runs(&bench, &[&turned("insert.stl"), &turned("femur.stl")]);
     let sound = knee_of(&format!("{MESH_INSERT}{MESH_FEMUR}"));
     sound.run_into("out");

@@ -130,7 +130,7 @@ fn what_cannot_be_calibrated_is_said() {
     refuses(
         "cycles,k_g\n0,900\n",
         2,
-        &["does not end in the unit of a mass"],
+        &["does not end with the unit of a mass"],
     );
     let heavy = "cycles,k_mg\n0,90000\n1e6,81000\n2e6,72000\n3e6,63000\n";
     refuses(heavy, 3, &["with wear_factor_mm3_per_nm = ", "update"]);

@@ -44,7 +44,7 @@ fn characters_that_steer_a_terminal_are_refused_on_the_command_line_too() {
     let bench = Bench::with_case(SMALL);
     for title in ["title=a\u{1b}[31mb", "title=\"a\u{202e}b\""] {
         let said = bench.say(&["check", "case.toml", "--set", title]);
-        said.assert_refused(2, &["this text holds the control character"]);
+        said.assert_refused(2, &["this text contains the control character"]);
     }
 }
 

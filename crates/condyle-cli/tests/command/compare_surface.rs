@@ -337,7 +337,7 @@ fn bad_scans_are_refused_with_their_place() {
     );
     refuses(
         "file = \"scan.csv\"\nfit_x_mm = [-5, 5]",
-        &["`fit_x_mm` means nothing here", "fit = \"region\""],
+        &["`fit_x_mm` has no effect here", "fit = \"region\""],
     );
     refuses(
         "file = \"scan.csv\"\naxes = [\"anterior\", \"superior\", \"left\"]",

@@ -178,7 +178,7 @@ fn bad_masses_are_refused_with_their_place() {
     );
     refuses(
         &format!("cycles,k_g,soak_mg\n{rows}"),
-        &["`k_g` does not end in the unit of a mass", "`_mg`"],
+        &["`k_g` does not end with the unit of a mass", "`_mg`"],
     );
     refuses(
         &format!("cycles,k_mg,k_mg\n{rows}"),

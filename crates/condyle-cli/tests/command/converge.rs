@@ -278,7 +278,7 @@ fn help_says_how_a_key_is_given() {
     assert_eq!(said.code, Some(0));
     let words = said.out.split_whitespace().collect::<Vec<_>>().join(" ");
     for expected in [
-        "Run a case over finer and finer values of one of its numbers",
+        "Run a case with finer and finer values of one of its numbers",
         "insert.edge_mm=2,1,0.5",
         "[default: updates=1,2,5,10,20,40]",
         "it must be empty",

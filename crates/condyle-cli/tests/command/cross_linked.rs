@@ -13,7 +13,7 @@ fn verify_a_cross_linked_insert_wears_less_by_every_law_and_everything_says_so()
     let linked = ["--set", "material.cross_linking=high"];
     let said = bench.say(&[&["run", "case.toml", "-o", "linked"][..], &linked].concat());
     assert_eq!(said.code, Some(0), "{}", said.err);
-    let told = "cross-linked polyethylene: every law, fitted to conventional one, times 0.2";
+    let told = "cross-linked polyethylene: the wear of every law times 0.2";
     assert!(said.out.contains(told), "{}", said.out);
     let read =
         |run: &str, file: &str| fs::read_to_string(bench.path(&format!("{run}/{file}"))).unwrap();

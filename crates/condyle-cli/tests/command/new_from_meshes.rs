@@ -32,7 +32,7 @@ fn a_case_of_two_meshes_checks_and_runs_at_one_attempt() {
     assert!(said.err.contains("length_unit \"cm\""), "{}", said.err);
     let text = fs::read_to_string(bench.path("my.toml")).unwrap();
     assert!(
-        text.contains("# femur, concluded from the shape of f.stl:"),
+        text.contains("# femur, derived from the shape of f.stl:"),
         "{text}"
     );
     assert_eq!(text.matches("length_unit = \"cm\"").count(), 2, "{text}");
@@ -204,7 +204,7 @@ fn step_files_are_converted_by_the_package_or_the_command_is_named() {
     let (code, err) = say_with_python(&bench, missing, &new);
     assert_eq!(code, Some(2), "{err}");
     for words in [
-        "f.step: a STEP file needs the Python package",
+        "f.step: the Python package is needed to convert a STEP file",
         "No module named",
         "pip install 'condyle[cad]'",
     ] {

@@ -43,7 +43,7 @@ fn no_file_of_a_run_names_an_absolute_path() {
     let case = fs::read_to_string(bench.path("results/out/case.toml")).unwrap();
     assert!(case.contains("file = \"../../meshes/femur.stl\""), "{case}");
     let warnings = bench.summary("results/out").warnings;
-    let words = "insert.stl: the triangles faced inwards and were turned round";
+    let words = "insert.stl: the triangles faced inwards and were reversed";
     assert_eq!(warnings, [words]);
 }
 

@@ -195,7 +195,7 @@ fn doubts_travel_with_the_tests() {
     let page = fs::read_to_string(bench.path("out/study.html")).unwrap();
     assert!(page.contains("2 of 2 tests are doubtful"));
     let said = bench.say(&["uncertainty", "case.toml", "--runs", "3"]);
-    assert!(said.out.contains("3 of them are doubtful"), "{}", said.out);
+    assert!(said.out.contains("Doubtful runs: 3"), "{}", said.out);
 }
 
 #[test]
@@ -443,7 +443,7 @@ fn what_is_wrong_with_a_study_is_said_with_its_place() {
                 "low = 0.01\nhigh = 0.1\ndisturbance = true\n[design]\nkind = \"optimise\"",
             ),
             vec![
-                "an input that is no disturbance",
+                "an input that is not a disturbance",
                 "remove `disturbance = true`",
             ],
         ),
@@ -498,7 +498,10 @@ fn what_is_wrong_with_a_study_is_said_with_its_place() {
         (
             vary("contact.friction", range)
                 + "[design]\nkind = \"adaptive\"\nuntil = \"mass_loss_mg known to 0 %\"\n",
-            vec!["how well an output is to be known", "from 0.01 to 50 %"],
+            vec![
+                "does not state an output and its accuracy",
+                "from 0.01 to 50 %",
+            ],
         ),
         (
             vary("contact.friction", range)

@@ -6,7 +6,7 @@ use condyle::{
 };
 use nalgebra::{Matrix2, Matrix6, Vector2, Vector6};
 
-/// Number of nodes whose mean depth a place between them takes.
+/// Number of neighbouring nodes whose mean depth is that of a place between them.
 const NEIGHBOURS: usize = 4;
 
 /// Number of nodes to which a paraboloid is fitted: a node of a grid and those around it.
@@ -55,8 +55,8 @@ impl WornSurface {
 
     /// Returns the depth between nodes beyond that of the deepest node, as a part of it.
     ///
-    /// The lowest place of the paraboloid that fits the nine nodes around best; none if the paraboloid is not a
-    /// hollow, or if its lowest place lies farther away than they do.
+    /// The depth is that of the lowest point of the paraboloid fitted to the nine nodes around it; none if the
+    /// paraboloid is not a hollow, or if its lowest point is farther away than the nodes.
     pub fn missed_between_nodes(&self) -> f64 {
         let deepest = self.0.iter().max_by(|a, b| a.1.total_cmp(&b.1));
         let Some(&(place, depth)) = deepest else {

@@ -15,7 +15,7 @@ const MILLION: f64 = 1e6;
 pub struct GravimetricComparison {
     /// Confidence of every interval, percent.
     pub confidence_percent: f64,
-    /// Weighings before this many cycles are left out of the lines.
+    /// Weighings before this many cycles are excluded from the lines.
     pub fit_from_cycles: f64,
     /// Number of soak controls; without any, nothing is corrected.
     pub soak_controls: usize,

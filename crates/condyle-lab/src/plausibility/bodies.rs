@@ -97,7 +97,7 @@ fn pressures<'a>(finished: &Finished<'a>) -> Vec<(&'static str, &'a [f64])> {
     [first].into_iter().chain(last).collect()
 }
 
-/// Warns of pressure that polyethylene cannot bear, since it flows at a lower one.
+/// Warns of pressure above that at which polyethylene flows.
 pub(crate) fn pressure_beyond_flow(finished: &Finished<'_>) -> Option<PlausibilityWarning> {
     let limit = FULL_FLOW * YIELD_MPA;
     let peak = finished.summary[&PEAK_PRESSURE_MPA];
@@ -113,8 +113,8 @@ pub(crate) fn pressure_beyond_flow(finished: &Finished<'_>) -> Option<Plausibili
 }
 
 /// The error of the pressure of a foundation by the linear law (`docs/src/three-models.md`).
-const FOUNDATION_PEAK: &str = " A linear foundation also overestimates it, by 18 to 40 % in three unworn knees. \
-                               --set contact.model=deformable computes it.";
+const FOUNDATION_PEAK: &str = " A linear foundation also overestimates it, by 18 to 40 % in three unworn knees; --set \
+                               contact.model=deformable avoids this.";
 
 /// Warns of pressure at which polyethylene would yield below the surface, for an insert that is modelled without
 /// yield.
@@ -134,8 +134,8 @@ pub(crate) fn pressure_beyond_yield(finished: &Finished<'_>) -> Option<Plausibil
     let is_solid = finished.march.state().under_surface.is_some();
     let foundation = if is_solid { "" } else { FOUNDATION_PEAK };
     let advice = format!(
-        "This insert does not model the local yield that occurs in ordinary knees; yield lowers the mass of the default knee by \
-         0.1 % and the depth by 2 %. The pressure there is an upper bound.{foundation}"
+        "The model does not include local yield, which occurs in ordinary knees and lowers the mass of the default \
+         knee by 0.1 % and its depth by 2 %. The pressure is an upper bound.{foundation}"
     );
     let value = (peak, limit, "MPa");
     (peak > limit && !yields).then(|| warning("pressure_beyond_yield", value, message, &advice))
@@ -151,7 +151,7 @@ fn extent(finished: &Finished<'_>, cycle: &str, pressures: &[f64], limit_mpa: f6
     let percents = solved.map(|one| one.percent_of_rows(|row| row.peak_pressure_mpa > limit_mpa));
     let percent = percents.fold(0.0, f64::max);
     format!(
-        "in the {cycle} cycle, {area_mm2:.0} mm2 exceed this pressure, during {percent:.0} % of it"
+        "in the {cycle} cycle, {area_mm2:.0} mm2 exceed this pressure, for {percent:.0} % of the cycle"
     )
 }
 
@@ -159,8 +159,8 @@ fn extent(finished: &Finished<'_>, cycle: &str, pressures: &[f64], limit_mpa: f6
 pub(crate) fn insert_rocks(finished: &Finished<'_>) -> Option<PlausibilityWarning> {
     let lift_mm = finished.summary.get(&BACKSIDE_LIFT_MM)?;
     let message = format!(
-        "the insert lifts off its tray by {lift_mm:.2} mm: it rocks, as under a load outside the flat part of its backside, and \
-             nothing in the model holds it down"
+        "the insert lifts off its tray by {lift_mm:.2} mm: it rocks, as under a load outside the flat part of its \
+         backside, since nothing in the model holds it down"
     );
     let advice = "The lock of a real tray would: check whether the load lies within the tray, and set [contact.deformable] \
                  backside = \"bonded\" if the insert is held down.";

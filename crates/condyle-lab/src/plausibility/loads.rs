@@ -146,7 +146,7 @@ struct Pulled {
     cycle: &'static str,
 }
 
-/// Warns of a spring farther beyond its free play than the springs of machines permit.
+/// Warns of a spring deflected farther beyond its free play than a machine permits.
 pub(crate) fn springs_far(finished: &Finished<'_>) -> Option<PlausibilityWarning> {
     let pulled = finished.cycles().flat_map(|cycle| {
         let machine = finished.machine(&cycle);

@@ -49,9 +49,10 @@ const REST: [Check; 12] = [
 /// Remarks on the physics of a sound run: most knees have them.
 const NOTES: [Check; 2] = [bodies::pressure_beyond_yield, bodies::thin_polyethylene];
 
-/// Reasons to doubt a finished march, the worst first, and the remarks that leave its numbers sound.
+/// Findings that make the numbers of a finished march doubtful, the worst first, and remarks that do not.
 ///
-/// In a batch, the gap at every node during the whole cycle is not examined: it would take a good part of a run's time.
+/// In a batch, the gaps of the nodes over the cycle are not examined, since this would take a large
+/// part of the time of a run.
 pub(crate) fn warnings(
     march: &March,
     summary: &Summary,
@@ -207,8 +208,8 @@ pub(crate) fn updates_overshoot(finished: &Finished<'_>) -> Option<PlausibilityW
     // Where nodes alternately wear and rest, all of the sum changes.
     let percent = percent_of(changed, sum);
     let message = format!(
-        "the last step of {:.0} cycles changes the wear rates of the nodes by {percent:.0} % of their sum: steps as long as that \
-             overshoot, and the error stated does not show it",
+        "the last step of {:.0} cycles changes the wear rates of the nodes by {percent:.0} % of their sum: such long \
+         steps overshoot, and the stated error does not show it",
         step.interval
     );
     let advice = "Take more updates, or update = \"auto\".";

@@ -373,22 +373,23 @@ impl CalibratedLaw {
     /// Returns a page in Markdown: the errors of a run, by increment, and on other cases, and the table.
     pub fn markdown(&self) -> String {
         let mut page = format!(
-            "# Calibrated pressure law\n\nWith this table the peak pressure of the rigid model in stance differs by up to \
-             {} %, in the first and the last cycle.\n\n",
+            "# Calibrated pressure law\n\nWith this table the peak pressure in stance differs by up to {} % from that \
+             of the deformable insert, in the first and the last cycle.\n\n",
             self.peak_error_percent
         );
-        page += "Differences from the deformable insert, with the law before and with the table; in stance the axial force is at \
-                 least a fifth of the highest:\n\n";
+        page += "Differences from the deformable insert, with the previous law and with the table. In stance the axial \
+                 force is at least a fifth of its maximum:\n\n";
         page += &self.table_of_left();
         if !self.held_out.is_empty() {
-            page += "\nCases that the table was not fitted to, with their own law and with the table:\n";
+            page +=
+                "\nCases that are not part of the fit, with their own law and with the table:\n";
         }
         for held_out in &self.held_out {
             let case = held_out.case.display();
             let table = table_of_errors(&held_out.left_before, &held_out.left);
             page += &format!("\n`{case}`\n\n{table}");
         }
-        page += "\nUnder the forces of the deformable insert, where it was fitted (unworn):\n\n";
+        page += "\nIncrements of the fit, on the unworn insert, under the forces of the deformable insert:\n\n";
         let head = "% of cycle|axial force, N|peak, MPa: deformable|table|area, mm2: deformable|table|\
                     force at the same approach, N|deeper by, mm";
         let mut rows = vec![head.split('|').map(str::to_owned).collect()];
@@ -430,7 +431,7 @@ fn table_of_errors(before: &RunErrors, after: &RunErrors) -> String {
 fn in_words(errors: &RunErrors) -> [(&'static str, String); 9] {
     let in_stance = |off: StanceErrors| {
         let (mean, most, highest) = (off.mean_percent, off.most_percent, off.of_highest_percent);
-        format!("{mean:.1} % (most {most:.1} %, of the highest {highest:+.1} %)")
+        format!("{mean:.1} % (largest {most:.1} %, at the peak {highest:+.1} %)")
     };
     let (first, last) = (&errors.first_cycle, &errors.last_cycle);
     let [pressure, last_pressure, area, last_area] = [

@@ -32,7 +32,7 @@ pub(super) struct TextRow {
 }
 
 impl TextRow {
-    /// Markers from left to right, their texts below their rings as far as there is room for all.
+    /// Markers from left to right, with their texts below their rings where there is room.
     pub(super) fn markers(self, rings: Vec<((f64, f64), [String; 2])>) -> Vec<Marker> {
         let mut middles: Vec<f64> = rings.iter().map(|((x, _), _)| self.inside(*x)).collect();
         if let [left, right] = middles.as_mut_slice() {

@@ -26,7 +26,7 @@ const SMALL: f64 = 5.4;
 
 /// Renders the report of a results folder as one HTML page without scripts.
 ///
-/// The page requests nothing outside itself; parts that `results` lacks are left out.
+/// The page requests nothing outside itself; parts that `results` lacks are omitted.
 pub fn report_html(results: &Results) -> String {
     page_of(results, None)
 }

@@ -136,7 +136,7 @@ fn is_hidden(key: &str) -> bool {
     NOT_LISTED.iter().any(|hidden| key.contains(hidden))
 }
 
-/// Creep, and entries that are not in the catalogue, in the words of their keys.
+/// Returns creep, and entries that are not in the catalogue, named by their keys.
 fn others(summary: &Summary) -> Vec<Listed> {
     let creep = summary
         .creep

@@ -278,7 +278,7 @@ pub(super) fn provenance(results: &Results) -> Vec<(String, String)> {
     facts
 }
 
-/// Returns the files that are not in the folder; damaged ones are left out with reasons.
+/// Returns the files that are not in the folder; damaged ones are omitted with reasons.
 pub(super) fn missing(results: &Results) -> Vec<&'static str> {
     let files = [
         ("summary.json", results.summary.is_none()),

@@ -164,8 +164,8 @@ impl Differences {
     }
 }
 
-/// Returns the part of laboratories in which the second run wears less, by the calibrated law; none unless both runs
-/// predict it.
+/// Returns the fraction of laboratories in which the second run wears less, by the calibrated law;
+/// `None` unless both runs predict it.
 fn ranking(first: &Run, second: &Run) -> Option<String> {
     let prediction = |run: &Run| run.results.summary.clone()?.prediction;
     let percent = 100.0 * prediction(second)?.part_below(&prediction(first)?)?;

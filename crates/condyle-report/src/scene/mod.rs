@@ -13,7 +13,7 @@ use crate::charts;
 use crate::figure::Panel;
 use crate::results::{Articulating, Results};
 
-/// The scene of a run; parts that are not there are left out and listed in `missing`.
+/// The scene of a run; parts that are not there are omitted and listed in `missing`.
 #[derive(Clone, Debug, Default)]
 pub struct Scene {
     insert: Option<SceneInsert>,

@@ -27,7 +27,7 @@ const MOVING_FILES: [(&str, &str); 4] = [
 ];
 
 impl Scene {
-    /// Reads the scene of a results folder; parts that are missing, damaged or from another version are left out and
+    /// Reads the scene of a results folder; parts that are missing, damaged or from another version are omitted and
     /// listed in `missing`.
     pub fn read(folder: &Path, results: &Results) -> Self {
         let wear = results.wear.as_ref();
@@ -160,7 +160,7 @@ impl SceneCycle {
         parts.zip(["first", "last"]).map(of_rows).collect()
     }
 
-    /// Adds the pressures of a table like `cycle_last_pressure.csv`; rows of unknown increments are left out.
+    /// Adds the pressures of a table like `cycle_last_pressure.csv`; rows of unknown increments are omitted.
     fn add_pressures(&mut self, table: &Table) {
         let column = |name| table.column(name).unwrap_or_default();
         // Both files write the same percent with the same digits: its bits are a key.

@@ -11,7 +11,7 @@ use super::finished::FinishedRun;
 use super::{Scalar, scalar::scalars};
 
 scalars! { "Below the surface";
-    /// Largest von Mises stress. At the centre of an element, at the instant of highest pressure of a cycle solved.
+    /// Largest von Mises stress. At the centre of an element, at the instant with the highest pressure of a solved cycle.
     PEAK_VON_MISES_MPA = Scalar::sometimes("peak_von_mises_mpa", "largest von Mises stress", 1, |run| Some(most_stressed(run)?.von_mises_mpa))
         .estimated();
 
@@ -19,7 +19,7 @@ scalars! { "Below the surface";
     PEAK_VON_MISES_DEPTH_MM = Scalar::sometimes("peak_von_mises_depth_mm", "depth of that stress", 1, |run| Some(most_stressed(run)?.von_mises_depth_mm))
         .continued();
 
-    /// Largest shear stress. At the centre of an element, at the instant of highest pressure of a cycle solved.
+    /// Largest shear stress. At the centre of an element, at the instant with the highest pressure of a solved cycle.
     PEAK_MAX_SHEAR_MPA = Scalar::sometimes("peak_max_shear_mpa", "largest shear stress", 1, |run| Some(most_sheared(run)?.1.max_shear_mpa))
         .estimated()
         .in_cycle("peak_max_shear_cycle");
@@ -28,7 +28,7 @@ scalars! { "Below the surface";
     PEAK_MAX_SHEAR_DEPTH_MM = Scalar::sometimes("peak_max_shear_depth_mm", "depth of that stress", 1, |run| Some(most_sheared(run)?.1.max_shear_depth_mm))
         .continued();
 
-    /// Cycles done before the cycle with the largest shear stress. 0 is the first cycle.
+    /// Cycles before the cycle with the largest shear stress. 0 is the first cycle.
     PEAK_MAX_SHEAR_CYCLE = Scalar::sometimes("peak_max_shear_cycle", "cycles before that stress", 0, |run| Some(run.state().cycles_before(most_sheared(run)?.0)))
         .listed();
 
@@ -36,7 +36,7 @@ scalars! { "Below the surface";
     PEAK_MAX_SHEAR_PERCENT = Scalar::sometimes("peak_max_shear_percent", "instant of that stress", 1, |run| Some(most_sheared(run)?.1.percent))
         .listed();
 
-    /// Largest shear stress of the first cycle. Of the unworn insert.
+    /// Largest shear stress of the first cycle. On the unworn insert.
     FIRST_CYCLE_MAX_SHEAR_MPA = Scalar::sometimes("first_cycle_max_shear_mpa", "largest shear stress, first cycle", 1, |run| Some(first(run)?.max_shear_mpa))
         .listed();
 
@@ -44,10 +44,10 @@ scalars! { "Below the surface";
     FIRST_CYCLE_MAX_SHEAR_DEPTH_MM = Scalar::sometimes("first_cycle_max_shear_depth_mm", "depth of that stress", 1, |run| Some(first(run)?.max_shear_depth_mm))
         .listed();
 
-    /// Largest permanent set. How far yielding has lowered the surface for good; wear is not included.
+    /// Largest permanent set. Permanent displacement of the surface by yield, without wear.
     MAX_PERMANENT_SET_MM = Scalar::sometimes("max_permanent_set_mm", "permanent set", 4, |run| Some(plastic(run)?.max_permanent_set_mm));
 
-    /// Largest permanent set of the first cycle. After the first cycle that repeats itself.
+    /// Largest permanent set of the first cycle. After the first periodic cycle.
     FIRST_CYCLE_PERMANENT_SET_MM = Scalar::sometimes("first_cycle_permanent_set_mm", "permanent set in the first cycle", 4, |run| {
         plastic(run)?;
         Some(first(run)?.plastic.map_or(0.0, |plastic| plastic.max_permanent_set_mm))
@@ -61,23 +61,22 @@ scalars! { "Below the surface";
     YIELDED_ELEMENTS = Scalar::sometimes("yielded_elements", "yielded elements", 0, |run| Some(plastic(run)?.yielded_elements as f64))
         .count();
 
-    /// Elements that still yield in every cycle. By a strain of more than 1e-5 in the last cycle; the other yielded
-    /// elements have shaken down.
+    /// Elements that still yield in every cycle. By a plastic strain of more than 1e-5 in the last cycle; the other yielded elements have shaken down.
     RATCHETING_ELEMENTS = Scalar::sometimes("ratcheting_elements", "ratcheting elements", 0, |run| Some(plastic(run)?.ratcheting_elements as f64))
         .count()
         .continued();
 
-    /// Largest lift of the backside off the tray. In the last cycle of any update, as all numbers of the backside.
+    /// Largest lift of the backside off the tray. In the last cycle of any update, like all numbers of the backside.
     BACKSIDE_LIFT_MM = Scalar::sometimes("backside_lift_mm", "lift of the backside", 4, |run| backside(run, |rest| rest.lift_mm));
 
-    /// Largest part of the backside that lifts at once.
-    BACKSIDE_LIFTED_PERCENT = Scalar::sometimes("backside_lifted_percent", "part of the backside that lifts", 0, |run| Some(100.0 * backside(run, |rest| rest.lifted_part)?))
+    /// Largest part of the backside that is lifted at the same time.
+    BACKSIDE_LIFTED_PERCENT = Scalar::sometimes("backside_lifted_percent", "part of the backside that is lifted", 0, |run| Some(100.0 * backside(run, |rest| rest.lifted_part)?))
         .continued();
 
-    /// Longest slip of the backside in a cycle. The path of a node along the tray while it presses, there and back.
+    /// Longest slip of the backside in a cycle. The length of the path of a node along the tray under pressure.
     BACKSIDE_SLIP_MM = Scalar::sometimes("backside_slip_mm", "slip of the backside", 4, |run| backside(run, |rest| rest.slip_mm));
 
-    /// Largest force on the lock. Along the tray; friction under the insert carries the rest.
+    /// Largest force on the lock. Along the tray; friction carries the rest.
     BACKSIDE_LOCK_FORCE_N = Scalar::sometimes("backside_lock_force_n", "force on the lock", 0, |run| backside(run, |rest| rest.lock_force_n));
 
     /// Largest moment on the lock. About the vertical axis.
@@ -85,7 +84,7 @@ scalars! { "Below the surface";
         .continued();
 }
 
-/// The numbers of the updates of a deformable insert, with their records; none of a foundation.
+/// Returns the stresses of the updates with their numbers; none for a foundation.
 fn records<'a>(
     run: &FinishedRun<'a>,
 ) -> impl DoubleEndedIterator<Item = (usize, &'a UnderSurfaceRecord)> {
@@ -106,7 +105,7 @@ fn most_sheared<'a>(run: &FinishedRun<'a>) -> Option<(usize, &'a UnderSurfaceRec
     records(run).max_by(|a, b| a.1.max_shear_mpa.total_cmp(&b.1.max_shear_mpa))
 }
 
-/// The yielding up to the last update; none of an insert that does not yield.
+/// Returns the yield up to the last update; `None` for an insert that does not yield.
 fn plastic(run: &FinishedRun<'_>) -> Option<PlasticRecord> {
     records(run).next_back()?.1.plastic
 }

@@ -5,10 +5,10 @@ use condyle::{
     machine::{CycleRow, TestedJoint, knee::KNEE},
 };
 
-/// Properties of a run that its march does not have.
+/// Properties of a run that are not part of its march.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct RunFacts {
-    /// Wear of cross-linked over conventional polyethylene; none of a conventional insert.
+    /// Wear of cross-linked relative to conventional polyethylene; `None` for a conventional insert.
     pub wear_over_conventional: Option<f64>,
     /// Largest difference of the peak pressure from that of the deformable insert that the pressure law was fitted to,
     /// %; none where the case does not give it.
@@ -22,7 +22,7 @@ pub struct RunFacts {
 pub struct FinishedRun<'a> {
     /// The march after its last update.
     pub march: &'a March,
-    /// Properties that the march does not have.
+    /// Properties that are not part of the march.
     pub facts: RunFacts,
     /// The first update.
     pub first: &'a UpdateRecord,
@@ -48,7 +48,7 @@ impl<'a> FinishedRun<'a> {
         })
     }
 
-    /// The joint; none of another mechanism.
+    /// Returns the tested joint; `None` for another mechanism.
     pub fn joint(&self) -> Option<TestedJoint> {
         let mechanism = self.march.test().machine().mechanism;
         // The results of knees are those of the joints of the simulator of knees.

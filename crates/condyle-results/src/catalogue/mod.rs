@@ -108,7 +108,7 @@ mod tests {
             );
         }
         let mass = &MASS_LOSS_MG;
-        assert_eq!(mass.description(), "Mass worn.");
+        assert_eq!(mass.description(), "Worn mass.");
         assert!(mass.definition().starts_with("Volume loss, from depth"));
     }
 }

@@ -7,13 +7,13 @@ use crate::parts::{joint_range, medial_load_share};
 use super::{Scalar, scalar::scalars};
 
 scalars! { "Motion";
-    /// Range of AP in the first cycle. Largest less smallest position of the insert, of the first activity.
+    /// Range of AP in the first cycle. Largest minus smallest position of the insert, in the first activity.
     AP_RANGE_MM = Scalar::new("ap_range_mm", "AP range, first cycle", 2, |run| joint_range(run.first_cycle, AP))
         .headline()
         .estimated()
         .of_knee();
 
-    /// Range of IE in the first cycle. Largest less smallest rotation of the insert, of the first activity.
+    /// Range of IE in the first cycle. Largest minus smallest rotation of the insert, in the first activity.
     IE_RANGE_DEG = Scalar::new("ie_range_deg", "IE range, first cycle", 2, |run| joint_range(run.first_cycle, IE))
         .headline()
         .estimated()

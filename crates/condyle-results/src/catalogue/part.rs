@@ -48,25 +48,25 @@ macro_rules! parts {
 
 parts! {
     plausibility: Objects, true, before Some(&CYCLES),
-        "Reasons to doubt the numbers, the worst first, each with `message` and `advice`.";
+        "Findings that make the numbers doubtful, the worst first, each with `message` and `advice`.";
     notes: Objects, true, before Some(&CYCLES),
-        "Remarks on the physics that leave the numbers sound, each with `message` and its effect in `advice`.";
+        "Remarks on the physics that do not make the numbers doubtful, each with `message` and its effect in `advice`.";
     prediction: Object, false, before Some(&CYCLES),
-        "What laboratories would weigh: medians and 90 % intervals of mass and depth, and the sources of their width.";
+        "Predicted results of laboratories: medians and 90 % intervals of mass and depth, and the sources of their width.";
     error: ObjectOrNull, true, before Some(&WEAR_OVER_CONVENTIONAL),
         "Estimated discretisation errors by their parts; null if the case does not ask for them.";
     wear_laws: Objects, true, before Some(&WEAR_OVER_CONVENTIONAL),
-        "Wear by every law for the same histories, that of the run first; only that one moved the surface.";
+        "Wear by every law for the same histories, that of the run first; only this law moves the surface.";
     activities: Objects, false, before Some(&PEAK_PRESSURE_MPA),
-        "Motion, loads and wear of each of several activities.";
+        "Motion, loads and wear of each activity.";
     creep: Object, false, before Some(&PEAK_PRESSURE_MPA),
-        "Creep of an insert that creeps, and its separation from wear.";
+        "Creep, and its separation from wear.";
     joint: Text, true, before Some(&UPDATES), "The joint whose replacement the machine tests, such as `hip`.";
     motions: Objects, true, before Some(&UPDATES),
         "The joints of the machine: `column` of `kinematics.csv`, `title`, and the `positive` direction.";
     neutral_pose: Object, true, before Some(&UPDATES),
         "Pose of the settled femur in the insert frame: there AP, ML and IS read zero.";
-    warnings: Texts, true, before Some(&WALL_S), "Corrections and doubts of the input.";
+    warnings: Texts, true, before Some(&WALL_S), "Corrections of the input, and doubts about it.";
     version: Text, true, before None, "Version of condyle.";
     inputs_blake3: Text, true, before None, "Hash of case and meshes.";
 }

@@ -266,7 +266,7 @@ impl Scalar {
         (&about[..end], about[end..].trim_start())
     }
 
-    /// Returns whether tests of a joint have it; none is a joint that is not in the list.
+    /// Returns true if tests of the joint have it; `None` is a joint that is not in the list.
     pub fn applies_to(&self, joint: Option<TestedJoint>) -> bool {
         self.joints.is_empty() || joint.is_some_and(|joint| self.joints.contains(&joint))
     }

@@ -169,7 +169,7 @@ pub(crate) fn elementary_effects(data: &Data<'_>) -> Vec<Elementary> {
     all
 }
 
-/// Returns the effects of every input, one for each walk; steps from or to a test that failed are left out.
+/// Returns the effects of every input, one for each walk; steps from or to a test that failed are omitted.
 fn of_walks(inputs: usize, walk: &dyn Fn(u64) -> Walk, values: &[f64]) -> Vec<Vec<f64>> {
     let mut effects = vec![Vec::new(); inputs];
     for (number, tests) in (0..).zip(values.chunks_exact(inputs + 1)) {

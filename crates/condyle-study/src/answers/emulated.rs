@@ -19,14 +19,14 @@ use crate::{
     statistics::{NORMAL_95, extent, mean, wilson_interval},
 };
 
-/// Smallest Q2 of an emulator that answers are computed from: it leaves a tenth of the variance unexplained, by which
-/// its indices may be wrong.
+/// Smallest Q2 of an emulator from which answers are computed: a tenth of the variance remains
+/// unexplained, and indices may be wrong by that much.
 pub(crate) const MIN_Q2: f64 = 0.9;
 /// Largest number of tests that condition an emulator.
 const MAX_TESTS: usize = 256;
 /// Values of an input in integrals over its distribution, each equally likely.
 const NODES: usize = 128;
-/// Groups of tests of which each is left out once.
+/// Groups of tests of which each is omitted once.
 const GROUPS: usize = 10;
 /// Points at which an emulator is compared with a limit.
 const POINTS: u64 = 20_000;
@@ -47,7 +47,8 @@ pub(crate) struct Emulated {
     pub exported: Exported,
 }
 
-/// An emulator as a file has it: coordinates of its points go from 0 at the low end of an input to 1 at the high end.
+/// An emulator as written to a file: coordinates of its points range from 0 at the low end of an
+/// input to 1 at the high end.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub(crate) struct Exported {
     output: &'static str,

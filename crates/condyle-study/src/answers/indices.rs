@@ -84,7 +84,7 @@ fn of_output(output: &'static str, inputs: &[&str], values: &[f64]) -> Vec<Indic
     inputs.iter().enumerate().map(index).collect()
 }
 
-/// The outputs of every base (A, A with each input from B, B) less the mean of all.
+/// The outputs of every base (A, A with each input from B, B) minus the mean of all.
 struct Bases(Vec<Vec<f64>>);
 
 impl Bases {

@@ -502,9 +502,9 @@ fn end_of_search(standing: &Standing, minimised: &str, unit: &str) -> String {
     let [improvement, error] =
         [standing.expected_improvement, standing.left_out_error.abs()].map(shown);
     let end = if standing.is_converged {
-        "The search has converged, and space-filling tests at its end promise nothing better"
+        "The search has converged, also after space-filling tests"
     } else {
-        "The optimum may be a local one, allow more tests"
+        "The optimum may be local; allow more tests"
     };
     format!(
         "{end}: another test is expected to lower {minimised} by {improvement} {unit} at most. Its emulator (Q2 {:.4}) predicts the \

@@ -227,7 +227,7 @@ impl Emulator {
         parameters(&self.logarithms).1
     }
 
-    /// Returns, for each test, its value less the prediction from the other tests, and the standard deviation of this
+    /// Returns, for each test, its value minus the prediction from the other tests, and the standard deviation of this
     /// prediction: (R^-1 (y - m))_i / Q_ii and s / sqrt(Q_ii) (Dubrule 1983). Lengths, nugget and s are those of all.
     pub fn left_out(&self) -> Vec<Prediction> {
         let precisions = self.process.precisions();
@@ -264,9 +264,9 @@ impl Emulator {
         Self::with(points, values, self.logarithms.clone())
     }
 
-    /// Returns the emulator with standard deviations enlarged by the factor by which errors exceed them, if they do. Tests
-    /// left out of the conditioning alone do not show it, since lengths and nugget suit them: emulators fitted to four
-    /// fifths of the tests predict the others.
+    /// Returns the emulator with standard deviations enlarged by the factor by which errors exceed them, if they do.
+    /// The factor is computed with emulators fitted to four fifths of the tests, which predict the others: leaving
+    /// tests out of the conditioning alone would not show it, since lengths and nugget are fitted to them.
     pub fn calibrated(mut self) -> Self {
         let ratios = (0..FOLDS).flat_map(|fold| self.ratios_without(fold));
         let squares: Vec<f64> = ratios.map(|ratio| ratio * ratio).collect();

@@ -17,7 +17,7 @@ use crate::{
     store::Store,
 };
 
-/// A value beyond its range by more than this part of it is refused; a smaller difference is a rounding error.
+/// Part of a range by which a value may exceed it as a rounding error.
 const ROUNDING: f64 = 1e-9;
 
 impl Store {

@@ -113,7 +113,7 @@ fn is_case_inside(study: &Study) -> bool {
 pub(crate) struct Standing {
     /// The improvement expected from the most promising test, with doubled standard deviations.
     pub expected_improvement: f64,
-    /// True if it is too small for another test, and space-filling tests at the end did not enlarge it.
+    /// True if the expected improvement is too small for another test, also after space-filling tests.
     pub is_converged: bool,
     /// Q2 of the emulator of the minimised output.
     pub q2: f64,
@@ -252,8 +252,8 @@ impl Observed {
         })
     }
 
-    /// Returns whether as many space-filling tests as a search begins with are at its end, in any order: an optimum of the
-    /// emulators may be a local one, and tests elsewhere show it.
+    /// Returns true if the search ends with as many space-filling tests as it begins with, in any
+    /// order: they show whether an optimum of the emulators is only local.
     fn is_checked(&self, seed: u64) -> bool {
         let (axes, tests) = (self.points.first().map_or(0, Vec::len), self.points.len());
         let first = first_tests(axes);

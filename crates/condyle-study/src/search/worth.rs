@@ -18,8 +18,8 @@ use crate::{
 /// Factor of all standard deviations where the optimum that the emulators predict is tested: it then lies within the
 /// predicted limits by about this part of them.
 pub(super) const SHARP: f64 = 0.1;
-/// Factor of all standard deviations where the search explores: with few tests, those of the emulators are too small
-/// far from all tests, and a search that trusts them ends too early.
+/// Factor on all standard deviations during exploration: with few tests, those of the emulators are
+/// too small far from all tests, and the search would end too early.
 pub(super) const WIDE: f64 = 2.0;
 /// Number of candidate points for each input and around the best test; the most promising become starting points.
 const CANDIDATES_PER_INPUT: usize = 64;

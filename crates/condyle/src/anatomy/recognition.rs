@@ -98,7 +98,7 @@ impl Recognition {
         self.nearest_after(&Mat3::identity())
     }
 
-    /// As [`Recognition::nearest`], of a body that was turned by `turn` before.
+    /// Returns [`Recognition::nearest`] for a body that was turned by `turn` before.
     pub fn nearest_after(&self, turn: &Mat3) -> Orientation {
         // The trace of a rotation is 1 + 2 cos(angle).
         let least_turn = |orientation: &Orientation| (orientation.rotation() * turn).trace();

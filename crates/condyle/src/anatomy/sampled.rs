@@ -123,7 +123,7 @@ impl Sampled {
         self.refined(best.unwrap_or(starts[0]), along, &[1.0, 0.5, 0.25])
     }
 
-    /// Improves a plane by turns of some degrees, and by shifts of as many hundredths of the extent.
+    /// Improves a plane by turns of a few degrees and shifts of a few hundredths of the extent.
     fn refined(&self, start: Mirror, along: Option<Vec3>, steps_deg: &[f64]) -> Mirror {
         // More steps of one length are not needed from a start near the best.
         const REPEATS: usize = 6;
@@ -198,7 +198,7 @@ impl Sampled {
 
     /// Returns the number of points on a sphere, and the sum of the cosines between their normals and its own.
     fn on_sphere(&self, centre: &Vec3, radius: f64) -> (f64, f64) {
-        /// Distance from the sphere, as a share of its radius: facets of 20 degrees come as near.
+        /// Largest distance from the sphere, relative to its radius: that of facets of 20 degrees.
         const WITHIN: f64 = 0.015;
         /// Cosine between the normals of such facets and those of the sphere.
         const ALONG: f64 = 0.98;

@@ -1,4 +1,4 @@
-//! The turn after which a body lies square to the axes: from the plane that mirrors it and from its flat backside.
+//! The rotation that aligns a body with the axes, from its plane of symmetry and its flat backside.
 
 use super::{
     recognition::{LIKELY_MARGIN, Recognition},

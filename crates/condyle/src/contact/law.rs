@@ -36,9 +36,9 @@ pub struct ContactSettings {
     /// Motion up to which a sample of the counterface is extrapolated to second order rather than recomputed, mm; with 0 every
     /// sample is recomputed.
     ///
-    /// This is the only approximation of the search. The second derivatives of a mesh's field vary by about 0.003/mm
-    /// from cell to cell: at 0.02 mm the gap errs by less than a millionth of a millimetre, and the force by a
-    /// hundred-thousandth.
+    /// This is the only approximation of the search. The second derivatives of a mesh's field vary
+    /// by about 0.003/mm from cell to cell: at 0.02 mm the error of the gap is less than a
+    /// millionth of a millimetre, and the force by a hundred-thousandth.
     pub sample_reuse_mm: f64,
 }
 

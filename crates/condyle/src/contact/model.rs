@@ -152,7 +152,7 @@ pub trait ContactModel {
 pub struct ContactMemory {
     /// The part on which results depend.
     pub state: ContactState,
-    /// The part that makes the next contact faster and changes none of its results.
+    /// The part that accelerates the next contact without changing its results.
     pub cache: ContactCache,
 }
 

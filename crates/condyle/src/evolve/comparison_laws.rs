@@ -5,7 +5,7 @@ use serde::{Deserialize, Serialize};
 use super::rates::{SolvedStep, mean_cycles, volume_mm3, worn};
 use crate::wear::{MeanCycle, NamedLaw, NodeWear, SharedCycle, WearLaw};
 
-/// The wear by a law so far on the surface of the march, which it does not change.
+/// The wear so far by a law on the surface of the march, without changing it.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct ComparisonLaw {
     /// Name of the law.

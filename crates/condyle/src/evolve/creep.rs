@@ -5,10 +5,10 @@ use serde::{Deserialize, Serialize};
 use super::WearTest;
 use crate::{creep::LeePienkowski, geometry::Insert, machine::Cycle, number::Mixing};
 
-/// The iteration ends where no side of the counterface sinks further at any instant by more than this part of the largest
-/// step of a node, ...
+/// Part of the largest step of a node by which no side of the counterface may still sink at any instant when the
+/// iteration has converged.
 const SETTLED: f64 = 1e-3;
-/// ... or at this limit.
+/// Largest number of iterations.
 const MAX_ITERATIONS: usize = 100;
 /// Number of instants of a cycle that represent it where the change of the pressure is predicted.
 const INSTANTS: usize = 16;

@@ -4,10 +4,9 @@ use serde::{Deserialize, Serialize};
 
 use crate::wear::{COLUMNS, FamilyConstants, MeanCycle, family_columns, weighted};
 
-/// The wear so far by every law of powers on the surface of the march, which it does not change.
+/// The wear so far by every law of the power-law family on the surface of the march, without changing it.
 ///
-/// Intervals are added by Euler's rule: it is a basis for ratios between laws of the family, from which the error of the
-/// rule cancels.
+/// Intervals are added by Euler's method, whose error cancels in ratios between laws of the family.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct FamilyWear {
     /// Columns of the worn volume.

@@ -6,7 +6,7 @@ use super::{
     step_rules::{accumulated_error_mm, exponential, extrapolated},
 };
 
-/// Largest share of the test that the first step takes, since the change of the rates is not known yet, ...
+/// Largest share of the test for the first step, since the change of the rates is not known yet, ...
 const FIRST_SHARE: f64 = 0.12;
 /// ... and the tolerance below which it takes less: the error of a step is second order.
 const FIRST_TOLERANCE: f64 = 0.05;

@@ -115,7 +115,7 @@ pub struct MarchState {
     pub outside_mm3: Option<f64>,
     /// The wear by the comparison laws.
     pub comparison_laws: Vec<ComparisonLaw>,
-    /// The wear by every law of powers; none unless the test asks for it.
+    /// The wear by every law of the power-law family; `None` unless the test requests it.
     pub law_family: Option<FamilyWear>,
     /// The history of the contact.
     pub contact: ContactState,

@@ -127,7 +127,7 @@ pub struct AccumulatedError {
 
 impl AccumulatedError {
     /// Adds the error of the step that led to `start`, now that the rates at its end are known:
-    /// the trapezoidal rule less the step.
+    /// the trapezoidal rule minus the step.
     pub(super) fn after(self, start: StepStart<'_>) -> Self {
         let Some(last) = start.last else {
             return self;
@@ -141,7 +141,7 @@ impl AccumulatedError {
         }
     }
 
-    /// Adds the error of the last step: the predicted wear less the step.
+    /// Adds the error of the last step: the predicted wear minus the step.
     pub(super) fn with_last(self, start: StepStart<'_>, step: &WearStep) -> Self {
         let area_mm2 = &start.rates.area_mm2;
         let predicted_mm3 = volume_mm3(area_mm2, &step.predicted_mm);

@@ -21,8 +21,8 @@ const STEM_SHARE: f64 = 0.5;
 const MIN_STEM_MM: f64 = 5.0;
 /// ... and largest length of a peg of the insert itself, where no ledge shows a plate, mm.
 const MAX_PEG_MM: f64 = 10.0;
-/// Smallest change of the area of a section at a ledge, as a share: a third of a millimetre all
-/// around a knee's insert.
+/// Smallest relative change of the area of a section at a ledge: a third of a millimetre all around
+/// the insert of a knee.
 const LEDGE_SHARE: f64 = 0.02;
 /// Largest height of a ledge, mm; a higher one is a bevel.
 const LEDGE_MM: f64 = 0.02;
@@ -32,7 +32,7 @@ const VERTEX_MM: f64 = 0.03;
 /// The end of the polyethylene in a body with two dishes, as far as its shape shows.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Underside {
-    /// The body shows only an insert.
+    /// The body is an insert alone.
     Whole,
     /// The insert stands on a larger plate: one ledge between the dishes and the plate's underside faces up.
     Ledge {
@@ -203,8 +203,8 @@ impl<'a> Profile<'a> {
     }
 }
 
-/// Offsets of the lines from round numbers, where edges of triangles lie, as shares of their distance: not equal,
-/// or the lines would lie on diagonals.
+/// Offsets of the lines from round numbers, where edges of triangles often are, relative to their
+/// distance; different, so that the lines are not on diagonals either.
 const OFFSET: (f64, f64) = (0.137, 0.291);
 /// Largest distance of two passes of one line through the common edge of two triangles, mm.
 const ONE_PASS_MM: f64 = 1e-6;

@@ -213,8 +213,8 @@ struct Hold {
 }
 
 impl Spring {
-    /// Returns the load on the joint, N or N mm, and its derivative at a displacement of the attachment of `moved`, mm or
-    /// rad.
+    /// Returns the load on the joint, N or N mm, and its derivative, for an attachment displaced by
+    /// `moved`, mm or rad.
     pub fn force(&self, moved: f64) -> (f64, f64) {
         let moved = moved - self.rest;
         if moved > self.free_play {

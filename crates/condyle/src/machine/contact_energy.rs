@@ -1,7 +1,7 @@
 //! The energy of a contact in explicit steps, by which steps that are not stable show.
 
-/// Depth to which a load presses the surface elastically at most, mm: several times that of any implant, so that a
-/// contact never holds more energy than its load over this way.
+/// Upper bound of the elastic depth of a contact, mm, several times that of any implant: a contact
+/// stores no more energy than its load times this depth.
 const STORED_MM: f64 = 1.0;
 
 /// The energy that the contact takes from the moving parts in a cycle. It is passive: it gives back what it held at the

@@ -78,8 +78,8 @@ impl Simulator<'_> {
 
     /// One step of `step` of the cycle that ends at `phase`, and the counterface's motion there.
     ///
-    /// v' = v + h/2 a, q1 = q + h v', a1 = a(q1, v' + h/2 a), v1 = v' + h/2 a1: leapfrog with the rates
-    /// at whole steps; the contact sees rates that are second order too.
+    /// v' = v + h/2 a, q1 = q + h v', a1 = a(q1, v' + h/2 a), v1 = v' + h/2 a1: leapfrog with the
+    /// rates at whole steps; the contact receives rates of second order too.
     fn explicit_step(
         &mut self,
         now: &Kinematics,

@@ -1,7 +1,7 @@
 //! The knee simulator as a table.
 //!
-//! The insert carries VV nearest to it, then IE, ML and AP towards the frame; the femur flexes on a
-//! carriage that moves IS. Case keys, result columns, messages and pages read these six descriptions.
+//! The insert carries VV nearest to it, then IE, ML and AP towards the frame; the femur flexes on a carriage that moves
+//! IS. Case keys, result columns, messages and pages use these six descriptions.
 
 use super::{
     Axis, Channel,

@@ -1,4 +1,4 @@
-//! One gait cycle, increment by increment, until it repeats itself.
+//! Solves gait cycles increment by increment until the motion is periodic.
 
 use std::ops::{ControlFlow, Range};
 
@@ -47,7 +47,7 @@ pub struct Simulator<'a> {
     pub counters: SolverCounters,
     /// The last solution of every increment, by the phase at its end; may be empty.
     pub warm_starts: Vec<Option<WarmStart>>,
-    /// The history of the cycle that runs; before it, any history whose memory may be reused.
+    /// The history of the present cycle; before it, any history whose memory may be reused.
     pub history: CycleHistory,
     /// Lengths of the residuals of all Newton iterations of the last implicit increment, N, moments on a lever of 10 mm.
     pub residuals_n: Vec<f64>,

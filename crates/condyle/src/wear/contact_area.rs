@@ -1,4 +1,4 @@
-//! Wear by the distance slid while pressed, whatever the pressure: Liu 2011, Abdelgaied 2011.
+//! Wear in proportion to the sliding distance under pressure, at any pressure: Liu 2011, Abdelgaied 2011.
 
 use std::sync::Arc;
 
@@ -8,8 +8,8 @@ use crate::parameter::{Known, Parameter};
 
 pub(super) const KIND: WearLawKind = WearLawKind {
     word: "contact-area",
-    about: "Depth per cycle = C S, S the distance slid while pressed and C = slope CS + offset of the cycle's \
-        cross-shear ratio CS, by one line below `cross_shear_between` and another from there.",
+    about: "Depth per cycle = C S, S the sliding distance under pressure and C = slope CS + offset of the cycle's \
+        cross-shear ratio CS, by one line below `cross_shear_between` and another above.",
     known: Known::Approximate,
     parameters: &[
         Parameter {
@@ -32,13 +32,13 @@ pub(super) const KIND: WearLawKind = WearLawKind {
         },
         Parameter {
             name: "high_offset",
-            about: "What the line of high cross-shear has without any, mm deep for each mm slid.",
+            about: "Intercept of the line of high cross-shear, mm deep for each mm slid.",
             default: 1.6e-9,
             ..COEFFICIENT
         },
         Parameter {
             name: "cross_shear_between",
-            about: "Cross-shear ratio from which it is high.",
+            about: "Cross-shear ratio between the two lines.",
             default: 0.04,
             most: 0.5,
             ..COEFFICIENT

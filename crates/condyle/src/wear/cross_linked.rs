@@ -55,7 +55,7 @@ impl CrossLinked {
 }
 
 const NAME: &str = "wear_over_conventional";
-const ABOUT: &str = "What it wears over what conventional polyethylene would wear by the same law.";
+const ABOUT: &str = "Wear relative to that of conventional polyethylene by the same law.";
 
 impl WearLaw for CrossLinked {
     fn wear(&self, cycle: &MeanCycle<'_>) -> NodeWear {

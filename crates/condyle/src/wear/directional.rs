@@ -18,7 +18,7 @@ pub(super) const KIND: WearLawKind = WearLawKind {
         },
         Parameter {
             name: "across_over_along",
-            about: "How much more the same work wears across the molecules than along them.",
+            about: "Wear by work across the molecules, relative to the same work along them.",
             default: 6.4,
             least: 1.0,
             most: 1000.0,

@@ -32,7 +32,7 @@ pub(super) const KIND: WearLawKind = WearLawKind {
         },
         Parameter {
             name: "decay_per_mpa",
-            about: "Constant c: how fast the wear factor falls with pressure.",
+            about: "Constant c: relative decrease of the wear factor with pressure.",
             default: 0.29,
             least: 0.0,
             most: 5.0,
@@ -41,7 +41,7 @@ pub(super) const KIND: WearLawKind = WearLawKind {
         },
         Parameter {
             name: "least_cross_shear",
-            about: "Where less cross-shear is taken for this much.",
+            about: "Smallest cross-shear ratio in the formula; smaller ratios count as this one.",
             default: 0.01,
             least: 1e-6,
             most: 0.5,

@@ -87,7 +87,7 @@ impl WearLawKind {
         }
     }
 
-    /// Returns whether its formula or any of its defaults is quoted from memory.
+    /// Returns true if the formula or any default is quoted from memory.
     pub fn is_approximate(&self) -> bool {
         let mut known = self.parameters.iter().map(|parameter| parameter.known);
         self.known == Known::Approximate || known.any(|known| known == Known::Approximate)
@@ -116,7 +116,7 @@ pub(super) const CIRCLE_FACTOR: Parameter = Parameter {
 /// Pressure of the tests behind [`CIRCLE_FACTOR`].
 pub(super) const MEASURED_AT: Parameter = Parameter {
     name: "measured_at_mpa",
-    about: "Pressure that the factor was measured at; wear under higher ones counts as outside.",
+    about: "Pressure at which the factor was measured; wear at higher pressures is outside of the fit.",
     default: 1.1,
     least: 0.0,
     most: 1000.0,

@@ -113,9 +113,8 @@ impl Case {
         };
         let is_explicit = self.time.integrator == IntegratorWord::Explicit;
         if model.friction_model == FrictionModel::StickSlip && is_explicit {
-            let message = "[contact.deformable] friction_model = \"stick-slip\" carries loads from one solved increment to the \
-                 next, and [time] integrator = \"explicit\" solves none; take integrator = \"implicit\", or \
-                 friction_model = \"regularised\"";
+            let message = "[contact.deformable] friction_model = \"stick-slip\" requires the implicit integrator; take \
+                           [time] integrator = \"implicit\", or friction_model = \"regularised\"";
             return Err(BuildError::conflict("time", &["integrator"], message));
         }
         self.check_backside(model, insert)?;
@@ -167,8 +166,8 @@ impl Case {
             return Ok(());
         }
         if self.time.integrator == IntegratorWord::Explicit {
-            let message = "[contact.deformable] backside = \"resting\" carries loads from one solved increment to the next, \
-                 and [time] integrator = \"explicit\" solves none; take integrator = \"implicit\", or backside = \"bonded\"";
+            let message = "[contact.deformable] backside = \"resting\" requires the implicit integrator; take [time] \
+                           integrator = \"implicit\", or backside = \"bonded\"";
             return Err(BuildError::conflict("time", &["integrator"], message));
         }
         let other = if contact.plasticity != PlasticityChoice::None {

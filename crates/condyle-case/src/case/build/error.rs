@@ -212,7 +212,7 @@ impl BuildWarning {
         matches!(self.finding, Finding::Bridged(..))
     }
 
-    /// Returns the hole of an insert that a place (x, z), mm, is in or next to.
+    /// Returns the hole of an insert that contains or adjoins the place (x, z), mm.
     pub fn hole_at(&self, place_mm: [f64; 2]) -> Option<&Hole> {
         let Finding::Bridged(holes, beside_mm) = &self.finding else {
             return None;

@@ -140,7 +140,7 @@ impl MeshFemur {
             if nodes > most {
                 let message = format!(
                     "the distance field would have {nodes} nodes, and more than {most} take more than the {memory_gb} GB that \
-                     [limits] memory_gb allows; cut away what never touches the insert, check length_unit, or allow more"
+                     [limits] memory_gb allows; cut away parts that never touch the insert, check length_unit, or allow more"
                 );
                 return Err(BuildError::mesh(path, &["length_unit", "file"], message));
             }

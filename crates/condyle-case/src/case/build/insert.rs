@@ -160,8 +160,8 @@ impl Case {
         if !holes.is_empty() {
             let edge_mm = meshing.edge_mm;
             let remark = format!(
-                "the surface is interpolated smoothly over a {}; nothing may press there or within {edge_mm} mm, which a \
-                 run verifies",
+                "the surface is interpolated smoothly over a {}; contact there or within {edge_mm} mm is an error, \
+                 which every update checks",
                 listed_holes(&holes)
             );
             let warning = BuildWarning::mesh(file, remark);
@@ -360,7 +360,7 @@ pub(super) fn without_tray(
     }
 }
 
-/// Returns the insert of a construct above a height, mm, with the parts of the file that were left out before.
+/// Returns the insert of a construct above a height, mm, with the parts of the file that were omitted before.
 pub(in crate::case) fn cut_at(
     whole: CheckedMesh,
     height_mm: f64,

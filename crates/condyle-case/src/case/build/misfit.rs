@@ -1,4 +1,4 @@
-//! Bodies that are not what their table says, or lie otherwise: the likely causes of a case that does not start.
+//! Bodies of another kind or orientation than the case states: the likely causes of a case that does not start.
 
 use condyle::Mat3;
 use condyle::anatomy::{Likeness, Upright};
@@ -92,7 +92,7 @@ impl<'a> Placed<'a> {
                 text: format!("{name}: this {body} is {likeness}; {advice}"),
             });
         }
-        // The shape of a femur shows its flexion to some 10 degrees only.
+        // The shape of a femur shows its flexion to about 10 degrees only.
         let (upright, off_deg) = match body {
             Body::Femur => Upright::of_femur(&self.mesh).map(|one| (one.clone(), one.lean_deg())),
             Body::Insert => {

@@ -76,7 +76,7 @@ impl Placing {
         })
     }
 
-    /// Returns the axes of a file whose body must be turned by `turn` after this placing.
+    /// Returns the axes that turn the body by `turn` in addition to this placing.
     pub(super) fn axes_turned(&self, turn: &Mat3) -> Axes {
         Axes::of(&self.rotation_turned(turn))
     }
@@ -188,7 +188,7 @@ pub(in crate::case) fn checked(
         })
 }
 
-/// Scatter beyond which a surface is noisy, mm: the same at the contact changes the highest pressure by some 5 %.
+/// Scatter beyond which a surface is noisy, mm; at the contact, it changes the highest pressure by about 5 %.
 const MAX_SCATTER_MM: f64 = 0.01;
 /// Largest noise of a scan of an implant, mm: beyond it, coarse facets scatter.
 const MAX_NOISE_MM: f64 = 0.3;
@@ -198,8 +198,7 @@ fn noise(mesh: &TriangleMesh) -> Option<String> {
     let scatter_mm = mesh.scatter_mm()?;
     (MAX_SCATTER_MM..MAX_NOISE_MM).contains(&scatter_mm).then(|| {
         format!(
-            "its vertices scatter by about {scatter_mm:.3} mm about a smooth surface, as by the noise of a scan or by decimation, \
-             and up to {MAX_SCATTER_MM} mm is acceptable; the highest pressure is unreliable: smooth the mesh, or use the \
+            "its vertices scatter by about {scatter_mm:.3} mm around a smooth surface, as after a scan or decimation, and up to {MAX_SCATTER_MM} mm is acceptable; the highest pressure is unreliable: smooth the mesh, or use the \
              body from CAD"
         )
     })
@@ -215,11 +214,11 @@ pub(super) fn warn(file: &DataFile, shell: &CheckedMesh, warnings: &mut Vec<Buil
     if !shell.left_out.is_empty() {
         let parts = parts_listed(&shell.left_out);
         remarks.push(format!(
-            "left out, since they are no part of the insert: {parts}"
+            "removed, since they are not part of the insert: {parts}"
         ));
     }
     if shell.turned_round {
-        remarks.push("the triangles faced inwards and were turned round".to_owned());
+        remarks.push("the triangles faced inwards and were reversed".to_owned());
     }
     let counted = [
         (
@@ -228,11 +227,11 @@ pub(super) fn warn(file: &DataFile, shell: &CheckedMesh, warnings: &mut Vec<Buil
         ),
         (
             shell.wrinkles,
-            "pairs of neighbouring triangles cross a little; they are left as they are",
+            "pairs of neighbouring triangles cross slightly; they are kept",
         ),
         (
             shell.removed_degenerate,
-            "triangles without area were left out",
+            "triangles without area were removed",
         ),
     ];
     let counted = counted.into_iter().filter(|(count, _)| *count > 0);
@@ -258,7 +257,7 @@ fn parts_listed(parts: &[LeftOut]) -> String {
     let listed = parts.iter().take(MAX_LISTED).map(|part| {
         let why = match part.why {
             WhyLeftOut::Below => "below it",
-            WhyLeftOut::Speck => "beside it",
+            WhyLeftOut::Speck => "next to it",
         };
         let ([x, y, z], [long, high, wide]) = (part.at_mm.into(), part.size_mm.into());
         format!(

@@ -19,7 +19,7 @@ use crate::case::run_options::Limits;
 /// Number of bodies of each kind that are kept, the newest: enough for a few levels or designs, whatever the number
 /// of cases.
 const MAX_KEPT: usize = 8;
-/// Number of elastic inserts that are kept, the newest: each takes some hundred megabytes.
+/// Number of elastic inserts that are kept, the newest ones; each takes hundreds of megabytes.
 const MAX_ELASTIC: usize = 2;
 
 /// Everything that determines an insert.

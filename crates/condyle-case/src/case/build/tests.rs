@@ -132,10 +132,12 @@ fn a_speck_near_the_insert_is_left_out_with_its_place() {
     let folder = with_stl("a.stl", &mesh);
     let built = built(MESH_INSERT, folder.path()).unwrap();
     let said = built.warnings.iter().map(ToString::to_string);
-    let said: Vec<String> = said.filter(|said| said.contains("left out")).collect();
+    let said: Vec<String> = said
+        .filter(|said| said.contains("removed, since they are not part"))
+        .collect();
     assert_eq!(said.len(), 1, "{:?}", built.warnings);
     assert!(
-        said[0].contains("12 triangles beside it around (12.0, 3.4, 0.0) mm"),
+        said[0].contains("12 triangles next to it around (12.0, 3.4, 0.0) mm"),
         "{}",
         said[0]
     );
@@ -209,7 +211,7 @@ fn inside_out_mesh_is_reversed_with_a_warning() {
     let folder = with_stl("a.stl", &inside_out);
     let built = built(MESH_INSERT, folder.path()).unwrap();
     let warning = built.warnings[0].to_string();
-    assert!(warning.ends_with("a.stl: the triangles faced inwards and were turned round"));
+    assert!(warning.ends_with("a.stl: the triangles faced inwards and were reversed"));
     assert!((built.test.insert.mesh().volume() - 4800.0).abs() < 1.0);
 }
 
@@ -472,10 +474,10 @@ fn placement_of_a_shape_that_has_none_is_idle() {
         Err(error) => error.to_string(),
     };
     let ball = said("[femur]\nshape = \"sphere\"\nvarus_deg = 1.0\n");
-    assert!(ball.contains("`varus_deg` means nothing here"), "{ball}");
+    assert!(ball.contains("`varus_deg` has no effect here"), "{ball}");
     let flat = said("[insert]\nshape = \"flat\"\nposterior_slope_deg = 1.0\n");
     assert!(
-        flat.contains("`posterior_slope_deg` means nothing here"),
+        flat.contains("`posterior_slope_deg` has no effect here"),
         "{flat}"
     );
 }

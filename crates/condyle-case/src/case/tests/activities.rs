@@ -94,14 +94,14 @@ fn shares_that_do_not_sum_up_are_refused_at_the_last() {
     assert_shows(
         &refusal(&two("share = 0.85", "share = 0.25")),
         &[
-            "the shares of the activities sum up to 1.1000 and not to 1",
+            "the shares of the activities add up to 1.1000 instead of 1",
             "share = 0.25",
-            "help: change them so that they do, or write `cycles_in_sequence`",
+            "help: correct them, or write `cycles_in_sequence`",
         ],
     );
     assert_shows(
         &refusal(&two("share = 0.85", "")),
-        &["\"stairs\" does not say how many of the cycles it is"],
+        &["\"stairs\" has no share of the cycles"],
     );
     assert_shows(
         &refusal(&two("share = 0.85", "cycles_in_sequence = 3")),

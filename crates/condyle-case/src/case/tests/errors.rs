@@ -221,7 +221,7 @@ fn friction_that_sticks_is_that_of_a_deformable_insert_and_of_solved_increments(
         &refused.to_string(),
         &[
             "friction_model = \"stick-slip\"",
-            "take integrator = \"implicit\"",
+            "take [time] integrator = \"implicit\"",
         ],
     );
 }
@@ -256,7 +256,7 @@ fn a_backside_that_rests_is_that_of_a_deformable_insert_alone_and_of_solved_incr
         ),
         (
             "[time]\nintegrator = \"explicit\"",
-            "take integrator = \"implicit\"",
+            "take [time] integrator = \"implicit\"",
         ),
     ] {
         let case = parsed(&format!("{resting}{beside}\n")).expect("its keys are good");
@@ -567,7 +567,7 @@ fn column_without_a_file_is_idle() {
     assert_shows(
         &shown,
         &[
-            "`column` means nothing here: it needs `file`",
+            "`column` has no effect here: it needs `file`",
             "^^^^^^",
             "remove `column`",
         ],
@@ -608,7 +608,7 @@ fn place_to_lock_a_free_freedom_is_idle() {
     assert_shows(
         &shown,
         &[
-            "`locked_at_deg` means nothing here: it needs `drive = \"locked\"`",
+            "`locked_at_deg` has no effect here: it needs `drive = \"locked\"`",
             "^^^^^^^^^^^^^",
         ],
     );

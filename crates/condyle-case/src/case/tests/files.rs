@@ -50,7 +50,7 @@ fn missing_file_shows_where_it_was_searched() {
             "`file`: there is no file cases/shapes/femur.stl",
             " 3 | file = \"shapes/femur.stl\"",
             "   :        ^^^^^^^^^^^^^^^^^^",
-            "help: correct the path; it counts from the folder of the file that names it",
+            "help: correct the path; it is relative to the folder of the file that names it",
         ],
     );
 }
@@ -63,7 +63,7 @@ fn missing_data_name_their_source() {
             .unwrap_err()
             .to_string()
     };
-    let advice = "fetch the Grand Challenge subject DM meshes";
+    let advice = "fetch meshes and gait of subject DM of the Grand Challenge";
     assert_shows(
         &fetch("data/dm-knee/none.stl"),
         &["there is no file", "help: ", advice],
@@ -111,11 +111,11 @@ fn csv_in_another_unit_is_refused_at_its_header() {
     assert_shows(
         &shown,
         &[
-            "column `knee_rad` is in another unit than degrees, which is needed here",
+            "column `knee_rad` has another unit than degrees, which is needed here",
             "wave.csv:1:9]",
             " 1 | percent,knee_rad",
             "   :         ^^^^^^^^",
-            "help: let its name end in `_deg`, with values in degrees",
+            "help: let its name end with `_deg`, and give the values in degrees",
         ],
     );
 }
@@ -264,10 +264,7 @@ fn pressure_table_may_come_from_a_file() {
     let shown = read("overclosure_m,pressure_mpa\n0,0\n1,1\n").unwrap_err();
     assert_shows(
         &shown,
-        &[
-            "column `overclosure_m` is in another unit than mm",
-            "^^^^^^",
-        ],
+        &["column `overclosure_m` has another unit than mm", "^^^^^^"],
     );
     let shown = read("overclosure_mm,pressure_mpa\n0,0\n1,x\n").unwrap_err();
     assert_shows(&shown, &["`x` in column `pressure_mpa`", "curve.csv:3:3]"]);

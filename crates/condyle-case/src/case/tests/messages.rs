@@ -51,7 +51,7 @@ fn control_characters_of_a_case_do_not_reach_the_terminal() {
     // A title that is otherwise good would reach pages and tables.
     assert_shows(
         &refusal("title = \"a\\u001b[31m\"\n"),
-        &["this text holds the control character \\u{1b}"],
+        &["this text contains the control character \\u{1b}"],
     );
 }
 

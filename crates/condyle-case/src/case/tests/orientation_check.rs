@@ -31,7 +31,7 @@ fn generic() -> Pair {
     }
 }
 
-/// The implant of the repository, and two that are not part of it; those that are not there are left out by name.
+/// The implant of the repository, and two that are not part of it; those that are not there are omitted by name.
 fn real(test: &str) -> Vec<Pair> {
     let own = pair(test, "cases/cad-knee", "femur.stl", "insert.stl", |v| {
         Vec3::new(v.y, v.z, v.x)
@@ -415,7 +415,7 @@ fn the_noise_of_a_scan_is_named_with_its_size() {
                 insert: scanned(&pair.insert, noise_mm),
             };
             let said = refused(&noisy, r#"["anterior", "superior", "right"]"#, "mm");
-            let is_named = said.contains("as by the noise of a scan");
+            let is_named = said.contains("as after a scan");
             assert_eq!(is_named, is_told, "{noise_mm} {said}");
         }
     }

@@ -450,7 +450,7 @@ mod tests {
     use super::*;
     use statrs::distribution::{ContinuousCDF, Normal};
 
-    /// Even numbers between 0 and 1 that repeat with the seed.
+    /// Returns the next uniform random number between 0 and 1.
     fn uniform(seed: &mut u64) -> f64 {
         *seed = seed
             .wrapping_mul(6_364_136_223_846_793_005)

@@ -48,7 +48,7 @@ pub struct Registration {
     pub angle_deg: f64,
     /// Motion of the middle of the fitted points.
     pub shift_mm: f64,
-    /// Points fitted, those without weight left out.
+    /// Points fitted, those without weight omitted.
     pub points: usize,
     /// Weighted root mean square of the remaining distances along the normals.
     pub residual_rms_mm: f64,

@@ -190,7 +190,7 @@ impl Separations {
         eight.radius_mm[i] = bound.radius_mm as f32;
     }
 
-    /// Marks a block as touching: it stays a candidate wherever the counterface moves.
+    /// Marks a block as touching: it remains a candidate for any motion of the counterface.
     #[inline(always)]
     pub fn touches(&mut self, block: u32) {
         let (eight, i) = self.place_of(block);
@@ -310,7 +310,7 @@ const EXTRAPOLATED_MM: f64 = 1e-4;
 /// the mean of their gradients, for the motion of their middle.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct SeparationBound {
-    /// Gap less reach, less the largest jump of the mean over a share between two arcs, mm.
+    /// Gap minus reach, minus the largest jump of the mean over a share between two arcs, mm.
     pub clear_mm: f64,
     /// Gradient of the gap by the middle's place in the counterface frame.
     pub slope: Vec3,

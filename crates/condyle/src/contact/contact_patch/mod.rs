@@ -1,4 +1,4 @@
-//! The contact patch of a rigid counterface, whichever law gives the pressure: shares under pressure, their tractions and sums.
+//! The contact patch of a rigid counterface, for any pressure law: shares under pressure, their tractions and sums.
 //!
 //! `near_blocks` finds the blocks near the counterface and samples it there. `traction` holds the tractions on a block and the
 //! sum of their derivatives. `peak` interpolates between the nodes and looks for the highest pressure there.

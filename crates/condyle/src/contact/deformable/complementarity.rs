@@ -214,7 +214,7 @@ impl Candidate {
     }
 }
 
-/// Largest overlap that counts as no overlap, mm: a millionth of the roughness of a surface.
+/// Largest overlap that counts as none, mm: a millionth of the roughness of a surface.
 const GAP_TOLERANCE_MM: f64 = 1e-10;
 
 /// A node is likely to overlap if its gap would be less than this, mm, with the deflection that was computed last.

@@ -63,9 +63,9 @@ pub(crate) struct DeformableContact<'a> {
 type Loads4 = [[f64; LANES]; 7];
 
 impl<'a> DeformableContact<'a> {
-    /// Creates the contact of bodies; the cache of another contact makes it faster. Histories resume from their own
-    /// part of the state; `memory` holds the other fields, which are passed on. With a history of friction,
-    /// `settings` have none.
+    /// Creates the contact of bodies; the cache of another contact makes it faster. Histories
+    /// resume from their own part of the state; `memory` holds the other fields, which are passed
+    /// on. With a history of friction, the friction of `settings` is zero.
     pub fn new(
         memory: ContactMemory,
         bodies: Bodies<'a>,
@@ -352,7 +352,7 @@ impl AlongNormal {
             pressure_mpa: force_n / area,
             area_mm2,
             covered_mm2: area_mm2,
-            // The derivative by a turn about the origin, less that by the motion of the material which the turn causes at
+            // The derivative by a turn about the origin, minus that by the motion of the material which the turn causes at
             // the share.
             load_by_turn: Vector::new(ax, ay, az) - cross(place, &load_by_motion),
             load_by_motion,

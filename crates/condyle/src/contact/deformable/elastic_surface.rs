@@ -186,7 +186,7 @@ impl ElasticSurface {
         let mesh = self.solid.mesh();
         let places: Vec<Vec3> = mesh.positions(&self.floor.nodes).collect();
         let (low, high) = bounds(&places);
-        // Points of a full grid over the floor: an upper bound, since points outside are left out.
+        // Points of a full grid over the floor: an upper bound, since points outside are omitted.
         let points = [0, 2].map(|axis| (high[axis] - low[axis]) / spacing_mm + 1.0);
         Tray::bytes(3.0 * points[0] * points[1], nodes, self.felt())
     }
@@ -202,7 +202,7 @@ impl ElasticSurface {
         size_of::<f32>() as f64 * rows * nodes.min(self.nodes.len() as f64)
     }
 
-    /// Returns whether it belongs to an insert with the given mesh nodes.
+    /// Returns true if it belongs to an insert with the given mesh nodes.
     pub fn is_of(&self, insert: &Insert, mesh_nodes: &[Vec3], rests: bool) -> bool {
         let mesh = self.solid.mesh();
         self.rests == rests

@@ -65,7 +65,7 @@ pub(crate) trait LoadHistory {
 
     fn reject(&mut self) {}
 
-    /// Ends an increment of the cycle, and adds to the nodes in contact what the history contributes.
+    /// Ends an increment of the cycle, and adds the contribution of the history to the nodes in contact.
     fn evaluate(&mut self, increment: usize, touched: &mut [TouchedNode]);
 
     /// See [`ContactModel::moved_in_a_cycle_mm`](crate::contact::ContactModel::moved_in_a_cycle_mm).

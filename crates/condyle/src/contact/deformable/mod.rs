@@ -277,7 +277,7 @@ const NODES_FIELD: &str = "compliance_nodes_mm";
 /// body.
 const ALONE: f64 = 1.9;
 
-/// The memory of an insert and its coarser twin, which the error estimate runs, over that of the insert.
+/// Memory of an insert together with that of the coarser insert of the error estimate, relative to the insert alone.
 const WITH_TWIN: f64 = 1.5;
 
 impl ContactLaw for Deformable {

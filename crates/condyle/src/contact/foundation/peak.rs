@@ -20,8 +20,7 @@ const MAX_MISSED: f64 = 0.3;
 /// there: it then curves differently from the surface.
 const MISSED_OF_RISE: f64 = 0.1;
 
-/// At an edge, the nodes on one side of it must determine a quadratic; twice as many nodes as in the interior are
-/// searched.
+/// Smallest number of nodes at an edge, where the nodes on one side must determine a quadratic.
 const NODES_ONE_SIDED: usize = 2 * MIN_NODES;
 
 /// The search for the highest pressure.

@@ -123,7 +123,7 @@ impl RestingInsert {
         self.set_mm[node as usize].unwrap_or_default()
     }
 
-    /// Resets the trial to the position in which the backside was left, displaced by `way_mm`.
+    /// Resets the trial to the last position of the backside, displaced by `way_mm`.
     fn reset_trial(&mut self, way_mm: Option<&[f64]>) {
         self.tried_mm.clone_from(&self.left_mm);
         for (tried, way) in self.tried_mm.iter_mut().zip(way_mm.unwrap_or_default()) {

@@ -15,8 +15,8 @@ use crate::{
     number::{Mixing, Symmetric},
 };
 
-/// Stiffness of the rim that locks the insert into its tray, against its mean slip, N/mm: a micrometre under a hundred
-/// newtons, far less than a load makes the insert slip within the rim. The rim carries the net force only.
+/// Stiffness of the rim that locks the insert into its tray, against its mean slip, N/mm. A hundred newtons displace it
+/// by a micrometre, far less than an insert slips under load. The rim carries the net force only.
 const LOCK_N_PER_MM: f64 = 1e5;
 
 /// Ratio of the stiffness of the search to the stiffness of a single point. This value took the fewest steps for the
@@ -103,7 +103,7 @@ impl Tray {
         self.stiffness_of_search.len()
     }
 
-    /// Returns the motion under forces, N, with each number pulled to `to_mm` by the stiffness of the search.
+    /// Returns the motion under forces, N, with a spring of the search's stiffness from each component to `to_mm`.
     fn pulled(&self, forces_n: &DVector<f64>, to_mm: &DVector<f64>) -> DVector<f64> {
         let stiffness = self.stiffness_of_search.iter();
         let pull = stiffness.zip(to_mm.iter()).map(|(own, to)| own * to);
