@@ -206,7 +206,7 @@ fn bad_masses_are_refused_with_their_place() {
     );
     refuses(
         "cycles,k_mg\n0,9\n1,8\n2,7\n",
-        &["2 weighings are left for the line", "fit_from_cycles"],
+        &["2 weighings remain for the line", "fit_from_cycles"],
     );
     refuses(
         "cycles\n0\n1\n",
@@ -243,7 +243,7 @@ fn a_bad_table_of_weighings_is_refused_with_its_place() {
     );
     refuses(
         "fit_from_cycles = 4.6e6\n",
-        &["1 weighings are left for the line"],
+        &["1 weighings remain for the line"],
     );
     std::fs::remove_file(bench.path("out/wear.csv")).unwrap();
     refuses("", &["wear.csv: there is no such file", "[gravimetric]"]);

@@ -109,6 +109,6 @@ mod tests {
         }
         let mass = &MASS_LOSS_MG;
         assert_eq!(mass.description(), "Worn mass.");
-        assert!(mass.definition().starts_with("Volume loss, from depth"));
+        assert!(mass.definition().starts_with("Volume loss from depth"));
     }
 }
