@@ -351,8 +351,7 @@ impl<'a> Again<'a> {
     fn wear_by_updates(&mut self) -> Found<OfWear> {
         let state = self.march.state();
         let last = state.updates.last().filter(|_| state.updates.len() > 1);
-        let last =
-            last.ok_or_else(|| "a single update cannot be compared with another".to_owned())?;
+        let last = last.ok_or_else(|| "a single update cannot be compared".to_owned())?;
         if self.march.test().creep.is_none() {
             let error = state.step_error;
             return Ok([

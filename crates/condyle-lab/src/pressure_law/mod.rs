@@ -381,8 +381,7 @@ impl CalibratedLaw {
                  force is at least a fifth of its maximum:\n\n";
         page += &self.table_of_left();
         if !self.held_out.is_empty() {
-            page +=
-                "\nCases that are not part of the fit, with their own law and with the table:\n";
+            page += "\nCases outside the fit, with their own law and with the table:\n";
         }
         for held_out in &self.held_out {
             let case = held_out.case.display();
