@@ -7,7 +7,7 @@ use std::ops::Range;
 use nalgebra::{DMatrix, DVector};
 use serde::Serialize;
 
-use self::process::{Process, correlation, parameters};
+use self::process::{Process, correlation, log_correlation_slope, parameters};
 use crate::{
     descent::minimum,
     distribution::normal_quantile,
@@ -157,6 +157,41 @@ impl Emulator {
             mean: self.centre + self.scale * mean,
             standard_deviation: self.scale * (self.process.variance * variance).sqrt(),
         }
+    }
+
+    /// Returns the slopes of mean and standard deviation of that prediction along the axes of `place`, whose correlations with the
+    /// tests are a factor of `with`; the slope of a standard deviation of zero is zero.
+    ///
+    /// With the correlations c, the variance is k - c^T R^-1 c + u^2 and u = (1 - 1^T R^-1 c) / sqrt(1^T R^-1 1), so that
+    /// its half slope is -(R^-1 c + u R^-1 1 / sqrt(1^T R^-1 1)) . dc.
+    pub fn slopes(&self, place: &[f64], with: &DVector<f64>, among: f64) -> [DVector<f64>; 2] {
+        let (process, last) = (&self.process, self.points.len());
+        let whitened = self.whitened(with);
+        let variance = self.covariance([&whitened, &whitened], among);
+        let mut half = whitened.rows(0, last).into_owned();
+        let lower = process.correlation.l_dirty();
+        lower.tr_solve_lower_triangular_mut(&mut half);
+        half += &process.ones * (whitened[last] / process.ones.sum().sqrt());
+        let per_deviation = if variance > 0.0 {
+            -(process.variance / variance).sqrt()
+        } else {
+            0.0
+        };
+        let along = |weights: &DVector<f64>, factor: f64| {
+            DVector::from_fn(place.len(), |axis, _| {
+                let tests = self.points.iter().zip(weights.iter().zip(with));
+                let parts = tests.map(|(own, (weight, with))| {
+                    weight
+                        * with
+                        * log_correlation_slope(place[axis], own[axis], self.lengths[axis])
+                });
+                factor * parts.sum::<f64>()
+            })
+        };
+        [
+            along(&process.weights, self.scale),
+            along(&half, self.scale * per_deviation),
+        ]
     }
 
     /// Returns L^-1 c, where R = L L^T, and below it (1 - 1^T R^-1 c) / sqrt(1^T R^-1 1), for the covariance of means of

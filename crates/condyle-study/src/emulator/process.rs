@@ -33,6 +33,17 @@ pub(super) fn correlation(lengths: &[f64], one: &[f64], other: &[f64]) -> f64 {
     product * (-distance).exp()
 }
 
+/// Returns the derivative of the logarithm of a correlation with respect to the place `one` along an axis.
+pub(super) fn log_correlation_slope(one: f64, other: f64, length: f64) -> f64 {
+    let a = scaled_distance(one, other, length);
+    -decay(a) * 5.0_f64.sqrt() / length * (one - other).signum()
+}
+
+/// Returns the relative decrease of the correlation along an axis with the scaled distance a.
+fn decay(a: f64) -> f64 {
+    a * (1.0 + a) / (3.0 + 3.0 * a + a * a)
+}
+
 impl Process {
     /// Conditions a process on values; none if rounding makes the correlation indefinite.
     pub fn new(
@@ -88,7 +99,7 @@ impl Process {
                 let both = 2.0 * factor(row, column) * correlation(&lengths, one, other);
                 for (axis, length) in lengths.iter().enumerate() {
                     let a = scaled_distance(one[axis], other[axis], *length);
-                    slope[axis] += both * a * a * (1.0 + a) / (3.0 + 3.0 * a + a * a);
+                    slope[axis] += both * a * decay(a);
                 }
             }
         }

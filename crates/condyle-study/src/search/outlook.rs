@@ -68,11 +68,23 @@ impl Outlook {
 
     /// Predicts the statistic of a design.
     pub fn predict(&self, design: &[f64]) -> Prediction {
+        let (with, among) = self.correlations(design);
+        self.emulator.predict_average(&with, among)
+    }
+
+    /// Returns the slopes of the mean and the standard deviation of the statistic along the axes of a design.
+    pub fn slopes(&self, design: &[f64]) -> [DVector<f64>; 2] {
+        // The weights are those of ranks, and constant where no two outputs change places.
+        let (with, among) = self.correlations(design);
+        self.emulator.slopes(design, &with, among)
+    }
+
+    /// Returns the mean correlations of the outputs of a design with the tests, and among each other.
+    fn correlations(&self, design: &[f64]) -> (DVector<f64>, f64) {
         let near = self.emulator.with_tests(0..design.len(), design);
         let weights = self.weights_at(&near);
         let with = self.with_tests.tr_mul(&weights).component_mul(&near);
-        let among = weights.dot(&(&self.among * &weights));
-        self.emulator.predict_average(&with, among)
+        (with, weights.dot(&(&self.among * &weights)))
     }
 
     /// Returns the weight of each disturbance for a design with these correlations with the tests.
