@@ -66,7 +66,10 @@ def main() -> None:
         ("a test of the study on one worker", f"{1000 * a_test:.0f} ms, {100 * (a_test / alone - 1):+.1f} %"),
         ("throughput of two workers relative to one", f"{one / two:.2f}"),
         (f"{WHOLE:,} tests on two workers, with their answers", f"{whole / 60:.1f} minutes"),
-        ("memory: one worker; two; two with the 10,000 tests", f"{memory_one:.0f} MB, {memory_two:.0f} MB, {memory_whole:.0f} MB"),
+        (
+            "memory: one worker; two; two with the 10,000 tests",
+            f"{memory_one:.0f} MB, {memory_two:.0f} MB, {memory_whole:.0f} MB",
+        ),
         ("table has the same bytes", "yes" if same else "no"),
     ]
     print("| quantity | measured |\n| --- | --- |")
