@@ -2,8 +2,8 @@
 
     study.py CONDYLE DATA OUT [--designs 1000] [--first 0] [--refine-every 10] [--perturb-every 10]
 
-DATA is the folder of the real implants. OUT gets results.csv, a row a design, and results.md. Ends with 1 if a design
-is silently wrong, did not end, or ended in a way that the command does not have.
+DATA is the folder of the real implants. OUT gets results.csv, a row a design, and results.md; a study that was stopped
+continues from its ended.jsonl. Ends with 1 if a design is silently wrong, did not end, or ended in a way that the command does not have.
 """
 
 import argparse
@@ -17,7 +17,7 @@ import sys
 import tempfile
 from collections import Counter
 from concurrent.futures import ThreadPoolExecutor
-from dataclasses import dataclass, field
+from dataclasses import asdict, dataclass, field
 from pathlib import Path
 
 from designs import design, perturbed, refined, toml
@@ -205,6 +205,10 @@ def table(all_ended):
     return "\n".join(lines) + "\n"
 
 
+def read(line):
+    return Ended(**json.loads(line))
+
+
 def main():
     arguments = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     arguments.add_argument("condyle")
@@ -223,9 +227,16 @@ def main():
         also_perturbed = number % given.perturb_every == given.perturb_every - 1
         return try_design(given.condyle, given.data.resolve(), number, also_refined, also_perturbed)
 
-    with ThreadPoolExecutor(os.cpu_count()) as pool:
-        all_ended = list(pool.map(one, numbers))
+    # Each design is kept when it ends: a study that was stopped continues.
     given.out.mkdir(parents=True, exist_ok=True)
+    kept = given.out / "ended.jsonl"
+    known = {ended.number: ended for ended in map(read, kept.read_text().splitlines())} if kept.exists() else {}
+    with ThreadPoolExecutor(os.cpu_count()) as pool, kept.open("a") as file:
+        for ended in pool.map(one, [number for number in numbers if number not in known]):
+            file.write(json.dumps(asdict(ended)) + "\n")
+            file.flush()
+            known[ended.number] = ended
+    all_ended = [known[number] for number in numbers]
     with (given.out / "results.csv").open("w", newline="") as file:
         csv.writer(file, lineterminator="\n").writerows([COLUMNS, *map(row, all_ended)])
     (given.out / "results.md").write_text(table(all_ended))
