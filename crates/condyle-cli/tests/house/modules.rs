@@ -50,7 +50,11 @@ const MAY_USE: &[(&str, &[&str])] = &[
     ),
     (
         "condyle_mesh::divided_mesh",
-        &["condyle_mesh::curved_mesh", "condyle_mesh::triangle_mesh"],
+        &[
+            "condyle_mesh::curved_mesh",
+            "condyle_mesh::repair",
+            "condyle_mesh::triangle_mesh",
+        ],
     ),
     (
         "condyle_mesh::columns",
