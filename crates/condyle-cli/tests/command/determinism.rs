@@ -74,22 +74,46 @@ fn the_implant_of_subject_dm() {
     }
 }
 
-#[test]
-fn a_conforming_implant() {
-    let insert = "cams-knee/tibia_inlay_JWI_meters.stl";
-    let Some(cases) = cases_with_data("a_conforming_implant", insert) else {
-        return;
-    };
+/// Returns the case of the conforming implant with edges of `edge_mm`, a single update and `increments`; none without its data.
+fn conforming(test: &str, edge_mm: f64, increments: usize) -> Option<String> {
+    let cases = cases_with_data(test, "cams-knee/tibia_inlay_JWI_meters.stl")?;
     let data = cases.join("../../shared/data/cams-knee");
     let text = std::fs::read_to_string(cases.join("cams-knee.toml")).unwrap();
-    let text = text
-        .replace(
+    Some(
+        text.replace(
             "../../shared/data/cams-knee",
             &data.canonicalize().unwrap().to_string_lossy(),
         )
-        .replace("edge_mm = 0.7", "edge_mm = 2.5")
-        .replace("updates = 50", "updates = 1\n[time]\nincrements = 60");
+        .replace("edge_mm = 0.7", &format!("edge_mm = {edge_mm:.1}"))
+        .replace(
+            "updates = 50",
+            &format!("updates = 1\n[time]\nincrements = {increments}"),
+        ),
+    )
+}
+
+#[test]
+fn a_conforming_implant() {
+    let Some(text) = conforming("a_conforming_implant", 2.5, 60) else {
+        return;
+    };
     let bench = Bench::with_case(&text);
     assert_deterministic(&bench);
     assert!(bench.summary("one")[&catalogue::MASS_LOSS_MG] > 0.0);
+}
+
+/// In swing, this insert hardly rests: loads and backside settle only with exact equilibria.
+#[test]
+fn a_conforming_implant_rests_on_its_tray() {
+    let test = "a_conforming_implant_rests_on_its_tray";
+    let Some(text) = conforming(test, 2.0, 200) else {
+        return;
+    };
+    let friction = "friction = 0.07\n";
+    let resting =
+        format!("{friction}model = \"deformable\"\n[contact.deformable]\nbackside = \"resting\"\n");
+    let without = "[accuracy]\nestimate = false\n";
+    let bench = Bench::with_case(&(text.replace(friction, &resting) + without));
+    bench.run_into("out");
+    assert!(bench.summary("out")[&catalogue::MASS_LOSS_MG] > 0.0);
 }

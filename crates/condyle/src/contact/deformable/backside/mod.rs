@@ -30,7 +30,7 @@ use crate::{
     number::Turns,
     spatial::RelativeMotion,
 };
-use tray::Rest;
+use tray::{AT_REST_MM, Rest};
 
 /// The fields of the contact's state with the motion of the backside's points in which each activity left them, three
 /// numbers a point: along their own directions, anterior, lateral, off the tray.
@@ -41,6 +41,9 @@ const CYCLE_FIELD: &str = "backside_lift_mm_lifted_part_slip_mm_lock_n_lock_nmm"
 
 /// While the loads still change, the equilibrium is found within this, mm: a tenth of the agreement of loads and backside.
 const ROUGHLY_MM: f64 = 0.1 * SETTLED_MM;
+/// Number of equilibria of a step that may be rough, more than most steps need: where the insert hardly rests, as in swing, a
+/// small residual can be far from the equilibrium, and loads and backside do not settle.
+const MAX_ROUGH_TURNS: usize = 4;
 
 /// An elastic insert whose backside rests on its tray with friction.
 ///
@@ -61,6 +64,8 @@ pub(crate) struct RestingInsert {
     found: Option<Rest>,
     searched_mm: DVector<f64>,
     turns: Turns,
+    /// The number of equilibria found in this step.
+    turn: usize,
     activities: ByActivity<Vec<f64>>,
     /// The end of each increment of the cycle, kept until the same increment of the next cycle.
     ends: BTreeMap<usize, IncrementEnd>,
@@ -93,6 +98,7 @@ impl RestingInsert {
             went_mm: None,
             found: None,
             turns: Turns::default(),
+            turn: 0,
             activities,
             ends: BTreeMap::new(),
             before: BacksideAtRest::default(),
@@ -131,6 +137,7 @@ impl RestingInsert {
         }
         self.set_mm.fill(None);
         self.turns = Turns::default();
+        self.turn = 0;
     }
 
     fn most(&self) -> BacksideAtRest {
@@ -190,10 +197,12 @@ impl LoadHistory for RestingInsert {
     fn settle(&mut self, under: &SurfaceLoads<'_>) -> Result<Settled, NotBorne> {
         let forces_n = self.surface.forces_on_tray(&self.tray, under.loads);
         let (stuck_mm, from_mm) = (&self.left_mm, &self.searched_mm);
-        // Loads that still change do not need the exact equilibrium.
+        let is_rough = self.turn < MAX_ROUGH_TURNS;
+        let within_mm = if is_rough { ROUGHLY_MM } else { AT_REST_MM };
         let mut found =
             self.tray
-                .rest_within(ROUGHLY_MM, self.friction, stuck_mm, &forces_n, from_mm)?;
+                .rest_within(within_mm, self.friction, stuck_mm, &forces_n, from_mm)?;
+        self.turn += 1;
         let tried = under.near().map(|node| (node, self.set_mm(node)));
         let tried: Vec<(u32, f64)> = tried.collect();
         let tried_mm = std::mem::replace(&mut self.tried_mm, found.moved_mm.clone());
@@ -204,7 +213,7 @@ impl LoadHistory for RestingInsert {
         if moves {
             self.tried_mm = self.turns.next(&tried_mm, &found.moved_mm);
             self.set_mm.fill(None);
-        } else {
+        } else if is_rough {
             let (stuck_mm, from_mm) = (&self.left_mm, &found.searched_mm);
             found = self
                 .tray

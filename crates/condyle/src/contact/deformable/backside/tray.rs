@@ -29,7 +29,7 @@ const MIN_EDGES_APART: f64 = 1.5;
 
 /// The equilibrium is found once the motion under the forces and the admissible motion agree within this, mm: a hundredth
 /// of the agreement that is required of loads and backside.
-const AT_REST_MM: f64 = 1e-7;
+pub const AT_REST_MM: f64 = 1e-7;
 /// Number of steps after which no equilibrium exists: ten times the number observed where one exists.
 const MAX_STEPS: usize = 5000;
 /// Displacement beyond which the insert has tipped off its tray, mm.
