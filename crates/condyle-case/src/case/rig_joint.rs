@@ -398,12 +398,14 @@ impl RigJoint {
     /// Returns whether it has the name and the motion of `joint`, whatever drives it.
     pub(super) fn is_as(&self, joint: &JointDescription) -> bool {
         let keys = &self.keys;
+        // Only loads make the zero of a joint matter: one that is locked or prescribed fits unless its key states otherwise.
+        let is_zeroed = keys.zeroed.unwrap_or(keys.kind == JointKind::Translation);
         let own = (
             self.name(),
             self.axis(),
             keys.moves,
             keys.settling,
-            self.is_zeroed(),
+            is_zeroed,
         );
         own == (
             joint.name,

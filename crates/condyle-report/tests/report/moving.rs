@@ -42,7 +42,7 @@ fn a_damaged_mesh_before_the_last_is_left_out_with_a_note() {
     assert_eq!(scene.missing[1], gone);
     let page = write_report(folder.path()).expect("the rest is whole");
     let html = fs::read_to_string(page).expect("the page is there");
-    assert!(html.contains("Left out of this page") && html.contains("insert_0003.vtu"));
+    assert!(html.contains("Omitted from this page") && html.contains("insert_0003.vtu"));
     assert!(!html.contains(&folder.path().display().to_string()));
 }
 

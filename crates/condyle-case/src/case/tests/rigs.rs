@@ -322,6 +322,15 @@ fn a_knee_simulator_by_its_file_is_that_of_its_preset() {
 }
 
 #[test]
+fn a_knee_simulator_with_a_locked_joint_has_the_results_of_knees() {
+    for freedom in ["ap", "ie", "ml", "vv", "flexion"] {
+        let locked = format!("[machine.freedoms.{freedom}]\ndrive = \"locked\"\n");
+        let mechanism = machine_of(&locked).mechanism;
+        assert_eq!(*mechanism, condyle::machine::knee::KNEE, "{freedom}");
+    }
+}
+
+#[test]
 fn a_spring_beside_a_joint_that_the_machine_lacks_is_refused_at_its_place() {
     let spring = |along: &str, about: &str| {
         format!(

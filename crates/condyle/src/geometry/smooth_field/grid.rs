@@ -66,8 +66,7 @@ impl NodeGrid {
 
     /// Returns the first node and one past the last node along each axis within `reach_mm` of a place along that axis.
     pub fn nodes_around(&self, place: &Vec3, reach_mm: f64) -> [[usize; 2]; 3] {
-        let middle = (place - self.origin) / SPACING_MM;
-        let reach = reach_mm / SPACING_MM;
+        let (middle, reach) = ((place - self.origin) / SPACING_MM, reach_mm / SPACING_MM);
         [0, 1, 2].map(|axis| {
             let first = (middle[axis] - reach).ceil().max(0.0) as usize;
             let end = (middle[axis] + reach).floor().max(-1.0) + 1.0;
