@@ -27,7 +27,17 @@ const GROUPS: [heading: string, moved: Moved[]][] = [
     [
       { table: "femur", key: "distal_radius_mm", label: "Distal radius", unit: "mm", least: 25, most: 60, step: 0.5, silent: 38, shape: "generic" },
       { table: "femur", key: "posterior_radius_mm", label: "Posterior radius", unit: "mm", least: 15, most: 30, step: 0.5, silent: 22, shape: "generic" },
-      { table: "femur", key: "coronal_radius_mm", label: "Coronal radius of the femur", unit: "mm", least: 15, most: 29, step: 0.5, silent: 24, shape: "generic" },
+      {
+        table: "femur",
+        key: "coronal_radius_mm",
+        label: "Coronal radius of the femur",
+        unit: "mm",
+        least: 15,
+        most: 29,
+        step: 0.5,
+        silent: 24,
+        shape: "generic",
+      },
     ],
   ],
   [
