@@ -89,14 +89,11 @@ impl DividedMesh {
         let clusters = sizes.map(|size| {
             let triangles = first..first + size;
             first += size;
-            let corners = || {
-                triangles
-                    .clone()
-                    .flat_map(|triangle| self.mesh.corners(triangle))
-            };
-            let (low, high) = bounds(&corners().collect::<Vec<_>>());
+            // Every triangle has its own vertices, in the order of the triangles.
+            let corners = &self.mesh.vertices[3 * triangles.start..3 * triangles.end];
+            let (low, high) = bounds(corners);
             let centre = (low + high) / 2.0;
-            let radii = corners().map(|corner| (corner - centre).norm());
+            let radii = corners.iter().map(|corner| (corner - centre).norm());
             let radius_mm = radii.fold(0.0, f64::max);
             Cluster {
                 triangles,
