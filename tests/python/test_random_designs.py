@@ -15,6 +15,7 @@ sys.path.insert(0, str(STUDY))
 
 from designs import design, refined, toml  # noqa: E402
 from judge import corner_volumes, judge, silent  # noqa: E402
+from study import Ended, _hold_against_refined  # noqa: E402
 
 
 @pytest.fixture
@@ -119,3 +120,21 @@ def test_a_refined_design_leaves_the_coarse_one_alone():
     fine = refined(coarse)
     assert fine["insert"]["edge_mm"] == coarse["insert"]["edge_mm"] / 2
     assert coarse == design(3, "data")
+
+
+@pytest.mark.parametrize("doubts, silent_count", [([], 1), (["updates_overshoot"], 0), (["error_of_mass"], 0)])
+def test_a_refined_run_that_doubts_its_own_error_is_no_reference(tmp_path, monkeypatch, doubts, silent_count):
+    errors = {"mass_loss_percent": {"total": 1.0}, "max_depth_percent": {"total": 1.0}}
+    coarse = {"mass_loss_mg": 10.0, "max_depth_mm": 0.1, "error": errors, "plausibility": [], "notes": []}
+    finer = {**coarse, "mass_loss_mg": 12.0, "plausibility": [{"check": check} for check in doubts]}
+
+    def run(_condyle, _case, folder):
+        (folder / "results").mkdir()
+        (folder / "results" / "summary.json").write_text(json.dumps(finer))
+        return 0, ""
+
+    monkeypatch.setattr("study.run", run)
+    ended = Ended(1, "good", summary=coarse)
+    _hold_against_refined(ended, "condyle", {}, tmp_path)
+    assert len(ended.silent) == silent_count
+    assert (ended.refined_mass_percent is None) == bool(doubts)

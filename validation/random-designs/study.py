@@ -38,6 +38,7 @@ DOUBT_THE_ERROR = (
     "single_update",
     "updates_too_few",
     "updates_overshoot",
+    "error_incomplete",
     "cycles_not_repeating",
     "wear_at_rim",
     "pressure_at_rim",
@@ -108,23 +109,29 @@ def _judged(number, results):
 
 
 def _hold_against_refined(ended, condyle, case, folder):
-    """The stated error against what a refined run changes, unless the error is said to be large or unknown."""
+    """The stated error against what a refined run changes, unless either says that its error is large or unknown."""
     code, _ = run(condyle, case, folder)
     if code != 0:
         return
     finer = json.loads((folder / "results" / "summary.json").read_text())
-    said = {warning["check"] for warning in [*ended.summary["plausibility"], *ended.summary["notes"]]}
+    said = _said(ended.summary)
     for key, check, found in (
         ("mass_loss_mg", "error_of_mass", "refined_mass_percent"),
         ("max_depth_mm", "error_of_depth", "refined_depth_percent"),
     ):
+        doubts = {check, *DOUBT_THE_ERROR}
+        if doubts & _said(finer):
+            continue
         change = 100 * (finer[key] - ended.summary[key]) / max(ended.summary[key], 1e-12)
         setattr(ended, found, change)
         stated = ended.summary["error"][f"{key.rsplit('_', 1)[0]}_percent"]["total"]
         allowed = STATED_ERRORS * stated + REFINED_RUN_S_OWN_PERCENT
-        doubted = said.intersection((check, *DOUBT_THE_ERROR))
-        if abs(change) > allowed and not doubted:
+        if abs(change) > allowed and not doubts & said:
             ended.silent.append(f"stated error of {key} {stated:.2g} %, refined {change:+.2g} %")
+
+
+def _said(summary):
+    return {warning["check"] for warning in [*summary["plausibility"], *summary["notes"]]}
 
 
 def _compare_with_perturbed(ended, condyle, case, folder):

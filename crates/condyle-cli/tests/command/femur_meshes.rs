@@ -3,8 +3,13 @@
 use std::path::Path;
 
 use condyle::geometry::{GenericFemur, GenericFemurShape, TriangleMesh};
+use condyle_case::{
+    cache::Cache,
+    case::{Case, SharedBodies},
+};
+use condyle_lab::batch_run;
 use condyle_mesh::{
-    coarser,
+    Vec3, coarser,
     formats::{parse_surface, write_stl},
 };
 use condyle_results::catalogue::{MASS_LOSS_MG, PEAK_PRESSURE_MPA};
@@ -106,8 +111,8 @@ fn verify_any_triangles_of_an_insert_give_its_wear_or_a_doubt() {
         "case.toml",
         &format!(
             "[femur]\nshape = \"mesh\"\n{}\naxes = [\"right\", \"anterior\", \"superior\"]\nstart_mm = [-6.2, 0.0]\n\
-             [insert]\nshape = \"mesh\"\n{}\naxes = [\"right\", \"anterior\", \"superior\"]\nedge_mm = 1.6\nlayers = 2\n\
-             [march]\nupdates = 2\n[time]\nincrements = 60\n[accuracy]\nestimate = false\n",
+             [insert]\nshape = \"mesh\"\n{}\naxes = [\"right\", \"anterior\", \"superior\"]\nedge_mm = 1.05\nlayers = 2\n\
+             [march]\nupdates = 2\n[time]\nincrements = 120\n[accuracy]\nestimate = false\n",
             file("femur.stl"),
             file("insert.stl")
         ),
@@ -120,7 +125,13 @@ fn verify_any_triangles_of_an_insert_give_its_wear_or_a_doubt() {
         "mesh.toml",
         &case.replace(&file("insert.stl"), "file = \"decimated.stl\""),
     );
-    for (chord_mm, side_mm) in [(0.002, 3.0), (0.01, 2.0), (0.1, 100.0), (0.5, 100.0)] {
+    for (chord_mm, side_mm) in [
+        (0.002, 3.0),
+        (0.01, 2.0),
+        (0.03, 100.0),
+        (0.1, 100.0),
+        (0.5, 100.0),
+    ] {
         let mesh = coarser(&insert, chord_mm).with_sides_up_to(side_mm, |a, b| (a + b) / 2.0);
         let mut stl = Vec::new();
         write_stl(&mut stl, &mesh).unwrap();
@@ -132,6 +143,47 @@ fn verify_any_triangles_of_an_insert_give_its_wear_or_a_doubt() {
         assert!(!(small && is_named), "{chord_mm} mm is doubtful");
         let name = format!("{chord_mm} mm, {} triangles", mesh.triangles.len());
         assert_same_or_doubtful((outcome.0, outcome.1, is_named), right, &name);
+    }
+}
+
+/// Vertices of the femur of the repository scattered by a standard deviation.
+#[test]
+fn a_scan_with_noise_is_doubtful_in_runs_and_in_studies() {
+    let folder = Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/../../cases/cad-knee"));
+    let stl = folder.join("femur.stl");
+    let femur = parse_surface(&stl, &std::fs::read(&stl).unwrap()).unwrap();
+    let bench = Bench::new();
+    let case = format!(
+        "[femur]\nshape = \"mesh\"\nfile = \"femur.stl\"\naxes = [\"right\", \"anterior\", \"superior\"]\n\
+         start_mm = [-6.2, 0.0]\n[insert]\nshape = \"mesh\"\nfile = {:?}\naxes = [\"right\", \"anterior\", \"superior\"]\n\
+         edge_mm = 2.0\nlayers = 1\n[march]\nupdates = 1\n[time]\nincrements = 40\n[accuracy]\nestimate = false\n",
+        folder.join("insert.stl")
+    );
+    bench.write("case.toml", &case);
+    for (scatter_mm, is_noisy) in [(0.002, false), (0.02, true)] {
+        let mut scan = femur.clone();
+        for (at, vertex) in scan.vertices.iter_mut().enumerate() {
+            // Multiples of the golden section are spread evenly over 0 to 1: their deviation is 1 / sqrt(12).
+            let part = |times: f64| (at as f64 * times * 0.618_033_988_75).fract() - 0.5;
+            *vertex += Vec3::new(part(1.0), part(3.0), part(7.0)) * (scatter_mm * 12f64.sqrt());
+        }
+        let mut bytes = Vec::new();
+        write_stl(&mut bytes, &scan).unwrap();
+        std::fs::write(bench.path("femur.stl"), bytes).unwrap();
+        let out = format!("scatter-{scatter_mm}");
+        bench.run_into(&out);
+        let in_study = batch_run(
+            &Case::read(&bench.path("case.toml")).unwrap(),
+            &Cache::off(),
+            &SharedBodies::default(),
+        );
+        for summary in [bench.summary(&out), in_study.unwrap()] {
+            let mut doubts = summary.plausibility.iter();
+            let doubt = doubts.find(|doubt| doubt.check == "noisy_mesh");
+            assert_eq!(doubt.is_some(), is_noisy, "{scatter_mm} mm: {doubt:?}");
+            let found_mm = doubt.map_or(scatter_mm, |doubt| doubt.value);
+            assert!((found_mm / scatter_mm - 1.0).abs() < 0.3, "{found_mm} mm");
+        }
     }
 }
 

@@ -203,6 +203,42 @@ fn steps_that_overshoot_in_a_conforming_cup_are_reported() {
 }
 
 #[test]
+fn a_pin_as_wide_as_the_coarsest_mesh_has_no_error_by_its_mesh() {
+    let case = |edge_mm: f64| {
+        format!(
+            "[machine]\npreset = \"pin-on-disc\"\n[femur]\nshape = \"plane\"\n[insert]\nshape = \"pin\"\nradius_mm = 3.7774\n\
+             thickness_mm = 8.435\nlayers = 1\nedge_mm = {edge_mm}\n[contact]\nmodel = \"deformable\"\n[material]\n\
+             youngs_modulus_mpa = 626.69\n[march]\nupdates = 16\n[time]\nincrements = 80\n"
+        )
+    };
+    for (edge_mm, is_incomplete) in [(2.4595, true), (1.2, false)] {
+        let bench = Bench::with_case(&case(edge_mm));
+        let said = bench.run_into("out");
+        let found = checks(&bench, "out");
+        let is_told = found.iter().any(|check| check == "error_incomplete");
+        assert_eq!(is_told, is_incomplete, "{edge_mm} mm: {found:?}");
+        let shown = format!("{}{}", said.out, said.err);
+        assert_eq!(shown.contains("take a smaller edge_mm"), is_incomplete);
+    }
+}
+
+#[test]
+fn pressure_at_the_rim_after_a_single_update_is_told() {
+    let bench = Bench::with_case(
+        "[machine]\npreset = \"iso-18192-1-cervical-like\"\n[femur]\nshape = \"sphere\"\nradius_mm = 9.1002\n[insert]\n\
+         shape = \"cup\"\nradius_mm = 9.1203\nthickness_mm = 11.4149\ninclination_deg = 0.0\nopening_deg = 54.0487\n\
+         edge_mm = 2.23\nlayers = 1\n[contact]\nmodel = \"deformable\"\n[material]\nyoungs_modulus_mpa = 712.38\n[wear]\n\
+         wear_factor_mm3_per_nm = 1.666288e-06\n[march]\ncycles = 1000000\nupdates = 1\n[time]\nincrements = 80\n\
+         [creep]\nlaw = \"lee-pienkowski\"\n[accuracy]\nestimate = false\n",
+    );
+    bench.run_into("out");
+    let mut doubts = bench.summary("out").plausibility.into_iter();
+    let doubt = doubts.find(|doubt| doubt.check == "pressure_at_rim");
+    let doubt = doubt.expect("the cup bears on its rim when it is worn");
+    assert!(doubt.message.contains("the last cycle"), "{doubt:?}");
+}
+
+#[test]
 fn yield_is_noted_with_area_and_time_and_is_no_doubt() {
     let bench = Bench::with_case(SMALL);
     let said = bench.run_into("out");

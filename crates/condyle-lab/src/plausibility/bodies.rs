@@ -4,6 +4,7 @@ use condyle::{
     machine::{Chain, TestedJoint},
     spatial::Pose,
 };
+use condyle_case::case::BuildWarning;
 use condyle_results::{
     PlausibilityWarning,
     catalogue::{
@@ -87,11 +88,11 @@ pub(crate) fn pressure_at_rim(finished: &Finished<'_>) -> Option<PlausibilityWar
     Some(warning("pressure_at_rim", value, message, advice))
 }
 
-/// Returns the highest pressure at every surface node in the first and in the last cycle, MPa; once if both cycles
-/// are the same.
+/// Returns the highest pressure at every surface node in the first and in the last cycle, MPa.
 fn pressures<'a>(finished: &Finished<'a>) -> Vec<(&'static str, &'a [f64])> {
     let state = finished.march.state();
-    let last = state.fields.as_ref().filter(|_| state.updates.len() > 1);
+    // After a single update, too, the final cycle is solved on the worn surface.
+    let last = state.fields.as_ref();
     let last = last.map(|fields| ("last", fields.peak_pressure_mpa.as_slice()));
     let first = ("first", state.first_pressure_mpa.as_slice());
     [first].into_iter().chain(last).collect()
@@ -237,6 +238,27 @@ pub(crate) fn insert_mesh(finished: &Finished<'_>) -> Option<PlausibilityWarning
         force_n.zip(deviation_mm),
         advice,
     )
+}
+
+/// Warns of the noise of a scan, whose peaks bear much of the load; the warning of the build names the mesh.
+pub(crate) fn noisy_mesh(finished: &Finished<'_>) -> Option<PlausibilityWarning> {
+    let scatters_mm = finished
+        .of_build
+        .iter()
+        .filter_map(BuildWarning::scatter_mm);
+    let scatter_mm = scatters_mm.max_by(f64::total_cmp)?;
+    let limit_mm = BuildWarning::MAX_SCATTER_MM;
+    let message = format!(
+        "the vertices of a mesh scatter by about {scatter_mm:.3} mm around a smooth surface, and up to {limit_mm} mm is acceptable: \
+             the highest pressure is unreliable, up to a fifth too high at 0.01 mm, and more than doubled at 0.05 mm"
+    );
+    let advice = "A warning names the mesh: smooth it, or use the body from CAD.";
+    Some(warning(
+        "noisy_mesh",
+        (scatter_mm, limit_mm, "mm"),
+        message,
+        advice,
+    ))
 }
 
 /// Warns if too much of the contact lies where the smooth surface of a body is farther from its triangles than `limit_mm`.

@@ -7,6 +7,7 @@ use condyle::{
     geometry::{ArticulatingSurface, Insert},
     machine::{CycleRow, Machine},
 };
+use condyle_case::case::BuildWarning;
 use condyle_results::{PlausibilityWarning, Summary};
 
 /// Returns the warning of the check called `check`, of a value beyond its limit, in their unit.
@@ -29,6 +30,8 @@ pub(super) fn warning(
 pub(crate) struct Finished<'a> {
     pub march: &'a March,
     pub summary: &'a Summary,
+    /// The remarks on the bodies as they were built.
+    pub of_build: &'a [BuildWarning],
     pub surface: ArticulatingSurface,
     /// Ends of the edges at which the articulating surface ends.
     rim: Vec<[u32; 2]>,
@@ -55,7 +58,7 @@ impl SolvedCycle<'_> {
 }
 
 impl<'a> Finished<'a> {
-    pub fn new(march: &'a March, summary: &'a Summary) -> Self {
+    pub fn new(march: &'a March, summary: &'a Summary, of_build: &'a [BuildWarning]) -> Self {
         let surface = march.insert().surface();
         let rim = rim_of(march.insert());
         Self {
@@ -63,6 +66,7 @@ impl<'a> Finished<'a> {
             rim,
             march,
             summary,
+            of_build,
             surface,
         }
     }

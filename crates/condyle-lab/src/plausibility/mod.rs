@@ -9,6 +9,7 @@ pub(crate) mod finished;
 pub(crate) mod loads;
 
 use condyle::evolve::March;
+use condyle_case::case::BuildWarning;
 use condyle_results::{
     MAX_FACTOR_OF_RUN, PlausibilityWarning, Summary,
     catalogue::{
@@ -23,10 +24,11 @@ use finished::{Finished, percent_of, warning};
 type Check = fn(&Finished<'_>) -> Option<PlausibilityWarning>;
 
 /// Place of the femur on the insert, their meshes, and impossible pressure.
-const PLACE: [Check; 4] = [
+const PLACE: [Check; 5] = [
     bodies::pressure_at_rim,
     bodies::femur_mesh,
     bodies::insert_mesh,
+    bodies::noisy_mesh,
     bodies::pressure_beyond_flow,
 ];
 
@@ -56,9 +58,10 @@ const NOTES: [Check; 2] = [bodies::pressure_beyond_yield, bodies::thin_polyethyl
 pub(crate) fn warnings(
     march: &March,
     summary: &Summary,
+    of_build: &[BuildWarning],
     is_batch: bool,
 ) -> (Vec<PlausibilityWarning>, Vec<PlausibilityWarning>) {
-    let finished = Finished::new(march, summary);
+    let finished = Finished::new(march, summary, of_build);
     let one = |check: &Check| check(&finished);
     let mut warnings = Vec::new();
     warnings.extend(bodies::wear_at_rim(&finished));

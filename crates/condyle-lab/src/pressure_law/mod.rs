@@ -184,8 +184,12 @@ pub(crate) struct Ran {
 }
 
 fn run(case: &Case, watch: &mut dyn FnMut(&March)) -> Result<Ran, RunError> {
-    let (march, summary) = march_watched(case, &Cache::of_user(), &SharedBodies::default(), watch)?;
-    Ok(Ran { march, summary })
+    let (cache, bodies) = (Cache::of_user(), SharedBodies::default());
+    let (run, summary) = march_watched(case, &cache, &bodies, watch)?;
+    Ok(Ran {
+        march: run.march,
+        summary,
+    })
 }
 
 /// Returns the table fitted to some increments of stance, and its errors in them.

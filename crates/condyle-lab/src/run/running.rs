@@ -174,7 +174,7 @@ impl<'a> Run<'a> {
         // After the error of the discretisation, which widens the interval.
         summary.prediction = self.prediction(summary.error.as_ref());
         (summary.plausibility, summary.notes) =
-            crate::plausibility::warnings(&self.march, &summary, false);
+            crate::plausibility::warnings(&self.march, &summary, &self.warnings, false);
         ControlFlow::Continue(summary)
     }
 
@@ -241,19 +241,20 @@ impl<'a> Run<'a> {
 /// Returns the summary of one of many runs that share bodies, without a hash of its inputs and without an error
 /// estimate.
 pub fn batch_run(case: &Case, cache: &Cache, bodies: &SharedBodies) -> Result<Summary, RunError> {
-    let (march, mut summary) = march_watched(case, cache, bodies, &mut |_| ())?;
-    (summary.plausibility, summary.notes) = crate::plausibility::warnings(&march, &summary, true);
+    let (run, mut summary) = march_watched(case, cache, bodies, &mut |_| ())?;
+    (summary.plausibility, summary.notes) =
+        crate::plausibility::warnings(&run.march, &summary, &run.warnings, true);
     Ok(summary)
 }
 
-/// Returns the finished march of such a run, and its summary; `watch` receives the march before the first update and
+/// Returns such a run, finished, and its summary; `watch` receives the march before the first update and
 /// after each.
-pub(crate) fn march_watched(
-    case: &Case,
-    cache: &Cache,
-    bodies: &SharedBodies,
+pub(crate) fn march_watched<'a>(
+    case: &'a Case,
+    cache: &'a Cache,
+    bodies: &'a SharedBodies,
     watch: &mut dyn FnMut(&March),
-) -> Result<(March, Summary), RunError> {
+) -> Result<(Run<'a>, Summary), RunError> {
     let context = RunContext {
         threads: 1,
         cache,
@@ -271,7 +272,7 @@ pub(crate) fn march_watched(
     let _ = run.march_on(&mut keep, ignore)?;
     let mut summary = run.summary_without_error();
     summary.prediction = run.prediction(None);
-    Ok((run.march, summary))
+    Ok((run, summary))
 }
 
 /// Options of a run in memory.

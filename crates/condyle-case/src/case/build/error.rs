@@ -181,6 +181,8 @@ pub(in crate::case) enum Finding {
     WrongAxes(Body),
     /// Part of the mesh lies far from the rest.
     StrayPiece,
+    /// Vertices that scatter by this much, mm.
+    Scatter(f64),
     /// Holes and posts inside the outline of an insert, over which hexahedra stand. Pressure no farther from them than
     /// this, mm, counts as pressure on them.
     Bridged(Vec<Hole>, f64),
@@ -193,6 +195,10 @@ impl fmt::Display for BuildWarning {
 }
 
 impl BuildWarning {
+    /// Scatter of the vertices of a mesh up to which the highest pressure is reliable within 5 %, mm, even if both bodies scatter
+    /// (`docs/src/plausibility.md`).
+    pub const MAX_SCATTER_MM: f64 = 0.004;
+
     pub(in crate::case) fn new(text: String) -> Self {
         let finding = Finding::None;
         Self { text, finding }
@@ -205,6 +211,14 @@ impl BuildWarning {
 
     pub(super) fn with(self, finding: Finding) -> Self {
         Self { finding, ..self }
+    }
+
+    /// Returns the scatter of the vertices, mm, if the remark is on it.
+    pub fn scatter_mm(&self) -> Option<f64> {
+        match self.finding {
+            Finding::Scatter(scatter_mm) => Some(scatter_mm),
+            _ => None,
+        }
     }
 
     /// Returns true if the remark is on holes of an insert, over which its surface is interpolated.

@@ -181,26 +181,26 @@ pub(in crate::case) fn checked(
     checks
         .check(mesh.clone())
         .map_err(|error| match noise(mesh) {
-            Some(noise) => {
+            Some((_, noise)) => {
                 BuildError::mesh(file, &["file"], format_args!("{noise}; as it is, {error}"))
             }
             None => BuildError::shell(file, &error),
         })
 }
 
-/// Scatter beyond which a surface is noisy, mm; at the contact, it changes the highest pressure by about 5 %.
-const MAX_SCATTER_MM: f64 = 0.01;
 /// Largest noise of a scan of an implant, mm: beyond it, coarse facets scatter.
 const MAX_NOISE_MM: f64 = 0.3;
 
-/// Describes the noise of a mesh.
-fn noise(mesh: &TriangleMesh) -> Option<String> {
+/// Returns the noise of a mesh, mm, and its description.
+fn noise(mesh: &TriangleMesh) -> Option<(f64, String)> {
     let scatter_mm = mesh.scatter_mm()?;
-    (MAX_SCATTER_MM..MAX_NOISE_MM).contains(&scatter_mm).then(|| {
-        format!(
-            "its vertices scatter by about {scatter_mm:.3} mm around a smooth surface, as after a scan or decimation, and up to {MAX_SCATTER_MM} mm is acceptable; the highest pressure is unreliable: smooth the mesh, or use the \
-             body from CAD"
-        )
+    let limit_mm = BuildWarning::MAX_SCATTER_MM;
+    (limit_mm..MAX_NOISE_MM).contains(&scatter_mm).then(|| {
+        let text = format!(
+            "its vertices scatter by about {scatter_mm:.3} mm around a smooth surface, as after a scan or decimation, and up to \
+             {limit_mm} mm is acceptable; the highest pressure is unreliable: smooth the mesh, or use the body from CAD"
+        );
+        (scatter_mm, text)
     })
 }
 
@@ -210,7 +210,10 @@ pub(super) fn warn(file: &DataFile, shell: &CheckedMesh, warnings: &mut Vec<Buil
         let remark = format!("{}; delete it unless it belongs to the body", piece.text);
         warnings.push(BuildWarning::mesh(file, remark).with(Finding::StrayPiece));
     }
-    let mut remarks: Vec<String> = noise(&shell.mesh).into_iter().collect();
+    if let Some((scatter_mm, remark)) = noise(&shell.mesh) {
+        warnings.push(BuildWarning::mesh(file, remark).with(Finding::Scatter(scatter_mm)));
+    }
+    let mut remarks = Vec::new();
     if !shell.left_out.is_empty() {
         let parts = parts_listed(&shell.left_out);
         remarks.push(format!(

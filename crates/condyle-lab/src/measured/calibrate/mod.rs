@@ -405,11 +405,11 @@ pub(crate) fn losses(case: &Case, law: &Wear) -> Result<Vec<(f64, f64)>, Calibra
     case.wear = law.clone();
     let (cache, bodies) = (Cache::off(), SharedBodies::default());
     let marched = march_watched(&case, &cache, &bodies, &mut |_| ());
-    let (march, _) = marched.map_err(|source| CalibrateError::Run {
+    let (run, _) = marched.map_err(|source| CalibrateError::Run {
         constants: in_words(law),
         source: Box::new(source),
     })?;
-    let updates = march.state().updates.iter();
+    let updates = run.march.state().updates.iter();
     let losses = updates.map(|update| (update.cycles, update.mass_loss_mg));
     Ok(std::iter::once((0.0, 0.0)).chain(losses).collect())
 }
