@@ -93,7 +93,7 @@ class Answers(Answer):
         indices: tuple[Answer, ...]
         """Sobol indices, ``first`` and ``total`` with their intervals."""
         emulated: tuple[Answer, ...]
-        """For each output with an emulator: ``q2`` and probabilities ``beyond`` its limits."""
+        """For each output with an emulator: ``q2``, the ``distribution`` of its predictions, and probabilities ``beyond`` its limits."""
         ranking: Answer | None
         """The ``designs`` of a study with alternatives, the best first."""
         front: Answer | None
@@ -103,17 +103,21 @@ class Answers(Answer):
         robust: Answer | None
         """The ``optimum`` of a robust search beside the ``first`` design."""
         aim: Answer | None
-        """Of an adaptive study: ``output``, ``part``, ``error``, ``tests``, and whether the output ``is_known``."""
+        """Of an adaptive study: ``output``, ``limit``, ``part``, ``error``, ``probability``, ``tests``, and whether it ``is_known``."""
 
     def _repr_html_(self) -> str:
+        # The tests of an adaptive study are no sample; its emulators state the distributions.
+        emulated = [one for one in self.emulated if self.aim and one.distribution]
+
         # 5 %, median and 95 % among the percentiles.
-        def row(spread: Answer) -> list[object]:
-            name = " ".join(filter(None, [spread.title, spread.design]))
-            return [name, spread.unit, *(spread.percentiles[place] for place in (1, 3, 5)), spread.tests]
+        def row(of: Answer) -> list[object]:
+            name = " ".join(filter(None, [of.title, of.get("design")]))
+            percentiles = of.get("distribution", of).percentiles
+            return [name, of.unit, *(percentiles[place] for place in (1, 3, 5)), of.tests]
 
         caption = f"{self.kept} of {self.tests} tests, {self.design}"
         head = ("output", "unit", "5 %", "median", "95 %", "tests")
-        spreads = _html.table(caption, head, map(row, self.spreads))
+        spreads = _html.table(caption, head, map(row, emulated or self.spreads))
         if self.best is None or self.best.row is None:
             return spreads
         values = [(one.name, one.value, one.first) for one in (*self.best.inputs, *self.best.outputs)]

@@ -1,19 +1,21 @@
-//! Adaptive designs: tests are added where the emulator of an output is least certain, until the
-//! output is known to the given accuracy.
+//! Adaptive designs: tests are added where the emulator of an output is least certain, until the output, or its probability
+//! of being beyond a limit, is known to the given accuracy.
 
 use std::iter;
 
 use condyle_case::study::Design;
+use condyle_results::catalogue;
 use nalgebra::DMatrix;
 use serde::Serialize;
 
 use crate::{
-    answers::words::shown,
+    answers::words::{chance, shown},
     design::sobol::sobol_places,
     emulator::Emulator,
     error::StudyError,
     plan::{Plan, Test},
-    search::{Known, first_tests, is_new, point, tests_at, value},
+    population::{Axis, Point, Population},
+    search::{Estimate, Known, ends, first_tests, is_new, point, tests_at, value},
     statistics::quantile,
     store::Store,
 };
@@ -30,11 +32,16 @@ const POOL: usize = 512;
 pub(crate) struct Aim {
     pub output: &'static str,
     pub title: &'static str,
-    /// The part of the output that its errors may reach.
+    /// The limit, with the sign of the side beyond it, if its probability is to be known.
+    pub limit: Option<(f64, f64)>,
+    /// The part of the output that its errors may reach; of a probability, the factor less 1.
     pub part: f64,
     /// The part of the output that 90 % of the emulator's errors stay below, by the tests and by the predicted standard
-    /// deviations; none while too few tests are done for an emulator.
+    /// deviations; of a probability, the largest factor, less 1, between it and an end of its interval. None while too few tests
+    /// are done for an emulator.
     pub error: Option<f64>,
+    /// The probability of being beyond the limit.
+    pub probability: Option<Estimate>,
     /// True if the error was within the part before the last batch as well: with few tests it may be by chance.
     pub is_known: bool,
     pub tests: usize,
@@ -69,21 +76,20 @@ pub(crate) fn next_tests(plan: &Plan, known: &[Known]) -> Option<Vec<Test>> {
 /// Returns the state of an adaptive study and the emulator of its output, if there are enough tests
 /// for one; `None` for other studies.
 fn standing(plan: &Plan, known: &[Known]) -> Option<(Aim, Option<Seen>)> {
-    let (output, part) = plan.study().aim()?;
+    let goal = plan.study().aim()?;
     let before = batches(plan.study().inputs.len());
     let before = before.take_while(|tests| *tests < known.len()).last();
     let seen = |tests: usize| Seen::new(plan, &known[..tests]);
-    let error = |seen: &Option<Seen>| seen.as_ref().map(Seen::error);
-    let is_within = |error: Option<f64>| error.is_some_and(|error| error <= part);
+    let is_within = |seen: &Option<Seen>| seen.as_ref().is_some_and(|seen| seen.error <= goal.part);
     let last = seen(known.len());
-    let error_of_last = error(&last);
     let aim = Aim {
-        output: output.key,
-        title: output.label,
-        part,
-        error: error_of_last,
-        is_known: is_within(error_of_last)
-            && before.is_some_and(|tests| is_within(error(&seen(tests)))),
+        output: goal.output.key,
+        title: goal.output.label,
+        limit: goal.limit,
+        part: goal.part,
+        error: last.as_ref().map(|seen| seen.error),
+        probability: last.as_ref().and_then(|seen| seen.probability),
+        is_known: is_within(&last) && before.is_some_and(|tests| is_within(&seen(tests))),
         tests: known.len(),
     };
     Some((aim, last))
@@ -107,68 +113,64 @@ fn sobol_tests(plan: &Plan, seed: u64, first: usize, end: usize) -> Vec<Test> {
 /// The tests of an adaptive study in the unit cube, and the emulator of its output.
 struct Seen {
     points: Vec<Vec<f64>>,
-    /// NaN for a test that failed.
-    values: Vec<f64>,
     emulator: Emulator,
+    /// The part of the output, or of its probability, that is not known.
+    error: f64,
+    probability: Option<Estimate>,
+    /// Points at which tests may be added, and over which the variance is to become small.
     pool: Vec<Test>,
     /// The same in the unit cube.
     places: Vec<Vec<f64>>,
+    /// Tests that failed, in the unit cube.
+    failed: Vec<Vec<f64>>,
 }
 
 impl Seen {
     /// Fits the emulator; none while fewer tests are done than it has lengths.
     fn new(plan: &Plan, known: &[Known]) -> Option<Self> {
         let study = plan.study();
-        let (Design::Adaptive(keys), Some((output, _))) = (&study.design, study.aim()) else {
+        let (Design::Adaptive(keys), Some(goal)) = (&study.design, study.aim()) else {
             return None;
         };
         let points: Vec<Vec<f64>> = known.iter().map(|(test, _)| point(study, test)).collect();
-        let values: Vec<f64> = known.iter().map(|one| value(one, output)).collect();
-        let done = points.iter().cloned().zip(values.iter().copied());
-        let done = done.filter(|(_, value)| value.is_finite());
-        let (at, of): (Vec<Vec<f64>>, Vec<f64>) = done.unzip();
+        let values: Vec<f64> = known.iter().map(|one| value(one, goal.output)).collect();
+        let tests = points.iter().cloned().zip(values);
+        let (done, failed): (Vec<_>, Vec<_>) = tests.partition(|(_, value)| value.is_finite());
+        let (at, of): (Vec<Vec<f64>>, Vec<f64>) = done.into_iter().unzip();
         if at.len() <= study.inputs.len() + 2 {
             return None;
         }
-        // Another scrambling than that of the first tests.
-        let pool = sobol_tests(plan, !keys.seed, 0, POOL);
+        let emulator = Emulator::fit(&at, &of)?.calibrated();
+        let (pool, error, probability);
+        match goal.limit {
+            Some(limit) => (pool, probability) = near_limit(plan, &emulator, limit),
+            None => {
+                // Another scrambling than that of the first tests.
+                pool = sobol_tests(plan, !keys.seed, 0, POOL);
+                probability = None;
+            }
+        }
+        let places: Vec<Vec<f64>> = pool.iter().map(|test| point(study, test)).collect();
+        error = match &probability {
+            Some(found) => part_unknown(found),
+            None => error_of_output(&emulator, &of, &places),
+        };
         Some(Self {
             points,
-            values,
-            emulator: Emulator::fit(&at, &of)?.calibrated(),
-            places: pool.iter().map(|test| point(study, test)).collect(),
+            emulator,
+            error,
+            probability,
+            places,
             pool,
+            failed: failed.into_iter().map(|(point, _)| point).collect(),
         })
-    }
-
-    /// Returns the part of the output that 90 % of the errors stay below: the larger of that of tests predicted from all others,
-    /// and that of predictions at the points of the pool by their standard deviations.
-    fn error(&self) -> f64 {
-        let part = |error: f64, value: f64| error / value.abs().max(f64::MIN_POSITIVE);
-        let done = self.values.iter().filter(|value| value.is_finite());
-        let left_out = self.emulator.left_out().into_iter().zip(done);
-        let left_out = left_out.map(|(one, value)| part(one.mean.abs(), *value));
-        let noise = self.emulator.noise();
-        let predicted = self.places.iter().map(|place| {
-            let found = self.emulator.predict(place);
-            let deviation = found.standard_deviation.hypot(noise);
-            part(NORMAL_90 * deviation, found.mean)
-        });
-        let all: [Vec<f64>; 2] = [left_out.collect(), predicted.collect()];
-        let percentiles = all.map(|mut parts| {
-            parts.sort_by(f64::total_cmp);
-            quantile(&parts, SHARE)
-        });
-        percentiles.into_iter().fold(0.0, f64::max)
     }
 
     /// Returns `count` tests of the pool, each of which lowers the variance summed over the pool most (Cohn 1996): that of the
     /// process conditioned on all tests, on those that failed as if they had been done, and on those added before.
     fn least_certain(&self, count: usize) -> Vec<Test> {
         let mut all = self.places.clone();
-        let failed = self.points.iter().zip(&self.values);
-        let failed = failed.filter(|(_, value)| value.is_nan());
-        all.extend(failed.map(|(point, _)| point.clone()));
+        all.extend(self.failed.iter().cloned());
         let (_, mut covariance) = self.emulator.joint(&all);
         let nugget = self.emulator.joint_nugget();
         let condition = |covariance: &mut DMatrix<f64>, place: usize| {
@@ -198,6 +200,52 @@ impl Seen {
     }
 }
 
+/// Returns the part of an output that 90 % of the emulator's errors stay below: the larger of that of tests predicted from all
+/// others, whose outputs are `done`, and that of predictions at `places` by their standard deviations.
+fn error_of_output(emulator: &Emulator, done: &[f64], places: &[Vec<f64>]) -> f64 {
+    let part = |error: f64, value: f64| error / value.abs().max(f64::MIN_POSITIVE);
+    let left_out = emulator.left_out().into_iter().zip(done);
+    let left_out = left_out.map(|(one, value)| part(one.mean.abs(), *value));
+    let noise = emulator.noise();
+    let predicted = places.iter().map(|place| {
+        let found = emulator.predict(place);
+        let deviation = found.standard_deviation.hypot(noise);
+        part(NORMAL_90 * deviation, found.mean)
+    });
+    let all: [Vec<f64>; 2] = [left_out.collect(), predicted.collect()];
+    let percentiles = all.map(|mut parts| {
+        parts.sort_by(f64::total_cmp);
+        quantile(&parts, SHARE)
+    });
+    percentiles.into_iter().fold(0.0, f64::max)
+}
+
+/// Returns tests at points whose side of a limit is least certain, and the probability of being beyond it.
+fn near_limit(
+    plan: &Plan,
+    emulator: &Emulator,
+    (sign, limit): (f64, f64),
+) -> (Vec<Test>, Option<Estimate>) {
+    let inputs = plan.study().inputs.iter();
+    let axes: Vec<Axis<'_>> = inputs.map(|input| Axis::new(input, ends(input))).collect();
+    let population = Population::new(plan, emulator, &axes);
+    let excess = |value: f64| sign * (value - limit);
+    let mut points = population.points(&excess);
+    let probability = population.beyond(&points, &excess);
+    let certainty = |point: &Point| point.deviations().abs();
+    points.sort_by(|one, other| certainty(one).total_cmp(&certainty(other)));
+    let places = points[..POOL]
+        .iter()
+        .map(|point| population.places(point.row));
+    (tests_at(plan, 0, places.collect()), Some(probability))
+}
+
+/// Returns the largest factor, less 1, between a probability and an end of its interval.
+fn part_unknown(found: &Estimate) -> f64 {
+    let [low, high] = found.interval;
+    (found.value / low).max(high / found.value) - 1.0
+}
+
 impl Aim {
     pub fn read(plan: &Plan, store: &Store) -> Result<Option<Self>, StudyError> {
         // Other studies may have many tests.
@@ -211,20 +259,38 @@ impl Aim {
     /// Returns the state in a sentence.
     pub fn sentence(&self) -> String {
         // Without the rounding error of the division by 100.
-        let part = (1e6 * self.part).round() / 1e4;
+        let rounded = |value: f64| (1e4 * value).round() / 1e4;
         let (title, tests) = (self.title, self.tests);
-        let error = match self.error {
-            Some(error) => {
+        let what = self.limit.map_or_else(
+            || (*title).to_owned(),
+            |(sign, limit)| {
+                let side = if sign > 0.0 { "above" } else { "below" };
+                let unit = catalogue::output(self.output).map_or("", |output| output.unit());
+                format!("probability of a {title} {side} {limit} {unit}")
+                    .trim_end()
+                    .to_owned()
+            },
+        );
+        let accuracy = match self.limit {
+            None => format!("{} %", rounded(100.0 * self.part)),
+            Some(_) => format!("a factor of {}", rounded(1.0 + self.part)),
+        };
+        let error = match (self.error, &self.probability) {
+            (Some(_), Some(found)) => {
+                let [low, high] = found.interval.map(chance);
+                format!("it is {} ({low} to {high})", chance(found.value))
+            }
+            (Some(error), None) => {
                 let percent = shown(100.0 * error);
                 format!("90 % of the errors of its emulator are at most {percent} % of it")
             }
-            None => "too few of them are done for an emulator".to_owned(),
+            (None, _) => "too few of them are done for an emulator".to_owned(),
         };
         let (not, advice) = match self.is_known {
             true => ("", ""),
             false => ("not ", " Allow more tests by `size`."),
         };
-        format!("The {title} is {not}known to {part} % after {tests} tests: {error}.{advice}")
+        format!("The {what} is {not}known to {accuracy} after {tests} tests: {error}.{advice}")
     }
 }
 
@@ -242,9 +308,13 @@ mod tests {
 
     /// Returns the plan of a study of three inputs with uniform distributions.
     fn plan(percent: f64, size: usize, seed: u64) -> Plan {
+        plan_until(&format!("known to {percent} %"), size, seed)
+    }
+
+    fn plan_until(until: &str, size: usize, seed: u64) -> Plan {
         let mut study = format!(
-            "case = \"case.toml\"\n[design]\nkind = \"adaptive\"\nuntil = \"mass_loss_mg known to {percent} %\"\n\
-             size = {size}\nseed = {seed}\n"
+            "case = \"case.toml\"\n[design]\nkind = \"adaptive\"\nuntil = \"mass_loss_mg {until}\"\nsize = {size}\n\
+             seed = {seed}\n"
         );
         for (key, low, high) in [
             ("contact.friction", 0.02, 0.12),
@@ -362,6 +432,46 @@ mod tests {
                 within += usize::from(part <= percent / 100.0);
             }
             assert!(within >= 9, "{name}: {within} of 10");
+        }
+    }
+
+    /// Returns the part of a fine grid over the unit cube where the mass is above a limit.
+    fn part_above(mass: Mass, limit: f64) -> f64 {
+        const SIDE: usize = 128;
+        let at = |place: usize| (place as f64 + 0.5) / SIDE as f64;
+        let above = |cell: &usize| {
+            let (x, y, z) = (cell % SIDE, cell / SIDE % SIDE, cell / SIDE / SIDE);
+            mass(&[at(x), at(y), at(z)]) > limit
+        };
+        let cells = SIDE.pow(3);
+        (0..cells).filter(above).count() as f64 / cells as f64
+    }
+
+    #[test]
+    fn verify_a_rare_probability_is_within_the_stated_factor() {
+        for (name, mass, limit, most) in [
+            ("kinked", kinked as Mass, 3.98, 120),
+            ("waves", waves, 36.0, 250),
+            ("peak", peak, 6.67, 120),
+        ] {
+            let exact = part_above(mass, limit);
+            let mut within = 0;
+            for seed in 1..=3 {
+                let until = format!("above {limit} known to a factor of 1.5");
+                let plan = plan_until(&until, 256, seed);
+                let mut known = Vec::new();
+                run(&plan, mass, &mut known);
+                let aim = standing(&plan, &known).unwrap().0;
+                println!("{name} seed {seed}: exact {exact:.3e}; {}", aim.sentence());
+                assert!(
+                    aim.is_known && known.len() <= most,
+                    "{name}: {} tests",
+                    known.len()
+                );
+                let [low, high] = aim.probability.unwrap().interval;
+                within += usize::from(low <= exact && exact <= high);
+            }
+            assert!(within >= 2, "{name}: {within} of 3");
         }
     }
 

@@ -16,6 +16,7 @@ mod error;
 mod observed_order;
 mod page;
 mod plan;
+mod population;
 mod random;
 mod search;
 mod sensitivity;

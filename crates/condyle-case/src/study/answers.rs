@@ -95,8 +95,13 @@ impl Bound {
 
     /// Returns the distance of a value beyond the limits; 0 within them.
     pub fn excess(&self, value: f64) -> f64 {
-        let excess = self.sides().map(|(sign, limit)| sign * (value - limit));
-        excess.fold(0.0, f64::max)
+        self.distance(value).max(0.0)
+    }
+
+    /// Returns the distance of a value beyond the nearest limit, negative within it.
+    pub fn distance(&self, value: f64) -> f64 {
+        let distances = self.sides().map(|(sign, limit)| sign * (value - limit));
+        distances.fold(f64::NEG_INFINITY, f64::max)
     }
 }
 

@@ -109,14 +109,12 @@ impl Study {
         )
     }
 
-    /// Returns the output that the tests of an adaptive design are for, and the part of it that its errors may reach; none for
-    /// other designs.
-    pub fn aim(&self) -> Option<(&'static Scalar, f64)> {
-        let Design::Adaptive(keys) = &self.design else {
-            return None;
-        };
-        let (output, part) = keys.aim()?;
-        Some((catalogue::output(output)?, part))
+    /// Returns what an adaptive study is to know; none for other designs.
+    pub fn aim(&self) -> Option<Aim> {
+        match &self.design {
+            Design::Adaptive(keys) => keys.aim(),
+            _ => None,
+        }
     }
 
     /// Returns the number of inputs that a search chooses; the others, which follow them, are disturbances.
@@ -239,14 +237,58 @@ impl Study {
     }
 }
 
+/// What an adaptive study is to know: an output, or the probability that it is beyond a limit.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Aim {
+    /// The output.
+    pub output: &'static Scalar,
+    /// The limit, with the sign of the side beyond it: 1 above, -1 below.
+    pub limit: Option<(f64, f64)>,
+    /// The part of the output that its errors may reach; of a probability, the factor less 1 that the ends of its interval may
+    /// differ from it by.
+    pub part: f64,
+}
+
 impl AdaptiveKeys {
-    /// Returns the name of the output and the part of it, read from `OUTPUT known to NUMBER %`.
-    pub(super) fn aim(&self) -> Option<(&str, f64)> {
-        let (output, part) = self.until.split_once(" known to ")?;
-        let percent: f64 = part.strip_suffix('%')?.trim().parse().ok()?;
+    /// Returns what is to be known, as written before the accuracy.
+    pub(super) fn known(&self) -> &str {
+        let known = self.until.split_once(" known to ");
+        known.map_or("", |(known, _)| known.trim())
+    }
+
+    /// Reads `OUTPUT known to NUMBER %` or `OUTPUT above LIMIT known to a factor of NUMBER`; `below` for the other side.
+    pub(super) fn aim(&self) -> Option<Aim> {
+        let number = |text: &str| text.parse::<f64>().ok().filter(|one| one.is_finite());
+        let until = self.until.replace('%', " %");
+        let words: Vec<&str> = until.split_whitespace().collect();
         // Smaller parts are beyond the solver, and larger ones need no emulator.
-        let is_sensible = (0.01..=50.0).contains(&percent);
-        is_sensible.then_some((output.trim(), percent / 100.0))
+        let (name, limit, part) = match words[..] {
+            [name, "known", "to", percent, "%"] => {
+                let percent = number(percent).filter(|one| (0.01..=50.0).contains(one));
+                (name, None, percent? / 100.0)
+            }
+            [
+                name,
+                side @ ("above" | "below"),
+                limit,
+                "known",
+                "to",
+                "a",
+                "factor",
+                "of",
+                factor,
+            ] => {
+                let factor = number(factor).filter(|one| (1.1..=10.0).contains(one));
+                let sign = if side == "above" { 1.0 } else { -1.0 };
+                (name, Some((sign, number(limit)?)), factor? - 1.0)
+            }
+            _ => return None,
+        };
+        Some(Aim {
+            output: catalogue::output(name)?,
+            limit,
+            part,
+        })
     }
 }
 
@@ -271,7 +313,7 @@ impl Design {
             }),
             Self::Adaptive(keys) => Self::Adaptive(AdaptiveKeys {
                 size: 0,
-                until: keys.aim().map_or_else(String::new, |aim| aim.0.to_owned()),
+                until: keys.known().to_owned(),
                 ..keys.clone()
             }),
             other => other.clone(),

@@ -150,8 +150,8 @@ settings! {
 
     /// Tests that are added where the emulator of an output is least certain.
     AdaptiveKeys {
-        /// Stopping rule, such as "mass_loss_mg known to 1 %": 90 % of the errors of the emulator
-        /// are at most this part of the output.
+        /// Stopping rule, such as "mass_loss_mg known to 1 %": 90 % of the errors of the emulator are at most this part of the
+        /// output; or, for the probability of exceeding a limit, "peak_pressure_mpa above 40 known to a factor of 1.5".
         until: String;
         /// Largest number of tests.
         size: u64 = 200, in within(10.0, 256.0);

@@ -10,7 +10,7 @@ mod input;
 mod read;
 
 pub use answers::{Answers, Bound};
-pub use contents::{Alternative, Correlation, Study};
+pub use contents::{Aim, Alternative, Correlation, Study};
 pub use declared::{
     AdaptiveKeys, BetaKeys, CorrelationKeys, Design, EmpiricalKeys, FactorialKeys, LevelKeys,
     LognormalKeys, MorrisKeys, NormalKeys, OptimiseKeys, RowsKeys, SampleKeys, TriangularKeys,

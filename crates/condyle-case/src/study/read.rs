@@ -317,14 +317,14 @@ impl Study {
 
     /// Reports an aim that cannot be read, and inputs without an emulator.
     fn check_adaptive(&self, keys: &AdaptiveKeys, section: &Section<'_>, log: &mut Log<'_>) {
-        match keys.aim() {
-            Some((name, _)) => drop(output(name, "until", section, log)),
-            None => {
-                let problem = format!("`{}` does not state an output and its accuracy", keys.until);
-                let advice = "write an output and a percentage from 0.01 to 50 %, such as `until = \"mass_loss_mg \
-                              known to 1 %\"`";
-                log.problem(section.value_span("until"), Fault::new(problem, advice));
-            }
+        let name = keys.known().split(' ').next().unwrap_or_default();
+        let is_known = name.is_empty() || output(name, "until", section, log).is_some();
+        if is_known && keys.aim().is_none() {
+            let problem = format!("`{}` does not state an output and its accuracy", keys.until);
+            let advice = "write an output and a percentage from 0.01 to 50 %, such as `until = \"mass_loss_mg known to 1 \
+                          %\"`, or a limit and a factor from 1.1 to 10, such as `until = \"peak_pressure_mpa above 40 known to \
+                          a factor of 1.5\"`";
+            log.problem(section.value_span("until"), Fault::new(problem, advice));
         }
         for input in &self.inputs {
             if matches!(&input.variation, Variation::Levels(keys) if !are_different_numbers(&keys.levels))

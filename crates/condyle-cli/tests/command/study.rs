@@ -62,6 +62,10 @@ fn every_design_gives_the_same_table_on_any_number_of_threads() {
             "kind = \"adaptive\"\nuntil = \"max_depth_mm known to 0.01 %\"\nsize = 11",
             11,
         ),
+        (
+            "kind = \"adaptive\"\nuntil = \"peak_pressure_mpa above 1000 known to a factor of 1.5\"\nsize = 11",
+            11,
+        ),
     ] {
         let one = table(&bench(&of(design)), &["--threads", "1"]);
         assert_eq!(
@@ -507,6 +511,14 @@ fn what_is_wrong_with_a_study_is_said_with_its_place() {
             vary("contact.friction", range)
                 + "[design]\nkind = \"adaptive\"\nuntil = \"mass_los_mg known to 1 %\"\n",
             vec!["did you mean `mass_loss_mg`?"],
+        ),
+        (
+            vary("contact.friction", range)
+                + "[design]\nkind = \"adaptive\"\nuntil = \"peak_pressure_mpa over 40 known to a factor of 1.5\"\n",
+            vec![
+                "does not state an output and its accuracy",
+                "peak_pressure_mpa above 40 known to a factor of 1.5",
+            ],
         ),
         (
             vary("wear.law", "levels = [\"archard\", \"kang\"]")

@@ -74,7 +74,7 @@ impl<'a> Data<'a> {
     }
 }
 
-const PERCENTILES: [f64; 7] = [2.5, 5.0, 25.0, 50.0, 75.0, 95.0, 97.5];
+pub(crate) const PERCENTILES: [f64; 7] = [2.5, 5.0, 25.0, 50.0, 75.0, 95.0, 97.5];
 
 /// The distribution of an output of one design, in its unit.
 #[derive(Clone, Debug, PartialEq, Serialize)]

@@ -1,22 +1,19 @@
 //! Sobol indices and probabilities of limits from emulators of the outputs.
 
-use condyle_case::{
-    config::Level,
-    study::{Bound, Design, Input},
-};
+use condyle_case::study::{Bound, Design};
 use condyle_results::catalogue::Scalar;
 use serde::Serialize;
 
 use crate::{
     answers::{
-        data::{Data, is_sampled},
+        data::{Data, PERCENTILES, is_sampled},
         indices::Indices,
     },
-    design::latin_places,
-    distribution::{level_at_share, normal_share},
     emulator::{Emulator, Model},
     plan::designs,
-    statistics::{NORMAL_95, extent, mean, wilson_interval},
+    population::{Axis, Population},
+    search::Estimate,
+    statistics::{NORMAL_95, extent, mean, quantile, standard_deviation},
 };
 
 /// Smallest Q2 of an emulator from which answers are computed: a tenth of the variance remains
@@ -28,9 +25,6 @@ const MAX_TESTS: usize = 256;
 const NODES: usize = 128;
 /// Groups of tests of which each is omitted once.
 const GROUPS: usize = 10;
-/// Points at which an emulator is compared with a limit.
-const POINTS: u64 = 20_000;
-const SEED: u64 = 20_220_101;
 
 /// An emulator of an output and what follows from it.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -41,6 +35,8 @@ pub(crate) struct Emulated {
     /// Tests that condition the emulator.
     pub tests: usize,
     pub q2: f64,
+    /// The distribution of the predictions; none if Q2 is too small.
+    pub distribution: Option<Distribution>,
     /// Probabilities of being beyond each limit; none if Q2 is too small.
     pub beyond: Vec<Chance>,
     #[serde(skip)]
@@ -66,50 +62,33 @@ struct Range {
     high: f64,
 }
 
+impl Range {
+    fn new(axis: &Axis<'_>) -> Self {
+        let [low, high] = axis.ends;
+        Self {
+            key: axis.input.key.clone(),
+            low,
+            high,
+        }
+    }
+}
+
 /// The probability that an output is beyond a limit.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub(crate) struct Chance {
     pub least: Option<f64>,
     pub most: Option<f64>,
     pub probability: f64,
-    /// The probability if all predictions are off by 1.96 standard deviations to either side, with the interval of the
-    /// points.
+    /// Its 95 % interval.
     pub interval: [f64; 2],
 }
 
-/// The scale of an input: its coordinates in the tests span 1.
-struct Axis<'a> {
-    input: &'a Input,
-    low: f64,
-    high: f64,
-}
-
-impl Axis<'_> {
-    fn place(&self, value: f64) -> f64 {
-        let width = self.high - self.low;
-        (value - self.low) / if width > 0.0 { width } else { 1.0 }
-    }
-
-    fn range(&self) -> Range {
-        Range {
-            key: self.input.key.clone(),
-            low: self.low,
-            high: self.high,
-        }
-    }
-
-    /// Returns the place of the value at this share of the distribution.
-    fn at_share(&self, share: f64) -> f64 {
-        match level_at_share(self.input, share) {
-            Level::Number(value) => self.place(value),
-            Level::Word(_) => f64::NAN,
-        }
-    }
-
-    fn nodes(&self) -> Vec<f64> {
-        let share = |node: usize| (node as f64 + 0.5) / NODES as f64;
-        (0..NODES).map(|node| self.at_share(share(node))).collect()
-    }
+/// The distribution of an output over the distributions of the inputs, in its unit.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub(crate) struct Distribution {
+    pub mean: f64,
+    pub standard_deviation: f64,
+    pub percentiles: [f64; 7],
 }
 
 /// Returns the emulators of all outputs and the Sobol indices from them; empty for studies without a random sample of
@@ -126,14 +105,9 @@ pub(crate) fn emulated(data: &Data<'_>) -> (Vec<Emulated>, Vec<Indices>) {
     }
     let inputs = study.inputs.iter().zip(&data.inputs);
     let axes = inputs.map(|(input, column)| {
-        let [low, high] = extent(
-            column
-                .values
-                .iter()
-                .copied()
-                .filter(|value| value.is_finite()),
-        );
-        Axis { input, low, high }
+        let values = column.values.iter().copied();
+        let ends = extent(values.filter(|value| value.is_finite()));
+        Axis::new(input, ends)
     });
     let axes: Vec<Axis<'_>> = axes.collect();
     let (mut all, mut indices) = (Vec::new(), Vec::new());
@@ -143,10 +117,10 @@ pub(crate) fn emulated(data: &Data<'_>) -> (Vec<Emulated>, Vec<Indices>) {
         };
         let mut emulated = Emulated::new(output, &axes, &emulator);
         if emulated.q2 >= MIN_Q2 {
+            let population = Population::new(data.plan, &emulator, &axes);
+            emulated.distribution = Some(Distribution::new(&population.sorted()));
             let own = study.answers.bounds_of(output);
-            emulated.beyond = own
-                .map(|bound| chance(data, &axes, &emulator, bound))
-                .collect();
+            emulated.beyond = own.map(|bound| Chance::new(bound, &population)).collect();
             if study.correlations.is_empty() {
                 indices.extend(of_output(&axes, &emulator, &emulated));
             }
@@ -183,7 +157,7 @@ impl Emulated {
         let exported = Exported {
             output: output.key,
             q2: emulator.q2(),
-            inputs: axes.iter().map(Axis::range).collect(),
+            inputs: axes.iter().map(Range::new).collect(),
             model: emulator.model(),
         };
         Self {
@@ -192,6 +166,7 @@ impl Emulated {
             unit: output.unit(),
             tests: emulator.left_out().len(),
             q2: exported.q2,
+            distribution: None,
             beyond: Vec::new(),
             exported,
         }
@@ -201,7 +176,9 @@ impl Emulated {
 /// Returns the indices of the emulator's mean. Their intervals are 1.96 standard errors by the jackknife over groups of
 /// tests (Efron 1982) and the part of the variance that the emulator does not explain, to either side.
 fn of_output(axes: &[Axis<'_>], emulator: &Emulator, emulated: &Emulated) -> Vec<Indices> {
-    let nodes: Vec<Vec<f64>> = axes.iter().map(Axis::nodes).collect();
+    let share = |node: usize| (node as f64 + 0.5) / NODES as f64;
+    let nodes = |axis: &Axis<'_>| (0..NODES).map(|node| axis.at_share(share(node))).collect();
+    let nodes: Vec<Vec<f64>> = axes.iter().map(nodes).collect();
     let all = emulator.indices(&nodes);
     let groups = (0..GROUPS).filter_map(|group| emulator.without(|test| test % GROUPS == group));
     let without: Vec<Vec<[f64; 2]>> = groups.map(|one| one.indices(&nodes)).collect();
@@ -231,47 +208,34 @@ fn jackknife_error(without: &[f64]) -> f64 {
     ((count - 1.0) / count * squares).sqrt()
 }
 
-/// Returns the probability that predictions at points of the inputs' distributions are beyond a bound.
-fn chance(data: &Data<'_>, axes: &[Axis<'_>], emulator: &Emulator, bound: &Bound) -> Chance {
-    let noise = emulator.noise();
-    let [mut middle, mut low, mut high] = [0.0; 3];
-    for row in 0..POINTS {
-        let places = data
-            .plan
-            .correlated(latin_places(row, POINTS, axes.len(), SEED));
-        let values = data.plan.values_at(&places);
-        let point = axes.iter().zip(&values);
-        let point = point.map(|(axis, value)| match value {
-            Some(Level::Number(value)) => axis.place(*value),
-            _ => f64::NAN,
-        });
-        let found = emulator.predict(&point.collect::<Vec<f64>>());
-        let deviation = found.standard_deviation.hypot(noise);
-        let deviation = deviation.max(f64::MIN_POSITIVE);
-        let sides = bound.sides();
-        let excess = sides.map(|(sign, limit)| sign * (found.mean - limit));
-        // At most one of two limits is likely to be exceeded.
-        let excess = excess.fold(f64::NEG_INFINITY, f64::max) / deviation;
-        middle += normal_share(excess);
-        low += f64::from(excess > NORMAL_95);
-        high += f64::from(excess > -NORMAL_95);
+impl Chance {
+    fn new(bound: &Bound, population: &Population<'_>) -> Self {
+        let excess = |value: f64| bound.distance(value);
+        let points = population.points(&excess);
+        let Estimate { value, interval } = population.beyond(&points, &excess);
+        Self {
+            least: bound.least,
+            most: bound.most,
+            probability: value,
+            interval,
+        }
     }
-    let points = POINTS as f64;
-    Chance {
-        least: bound.least,
-        most: bound.most,
-        probability: middle / points,
-        interval: [
-            wilson_interval(low, points)[0],
-            wilson_interval(high, points)[1],
-        ],
+}
+
+impl Distribution {
+    fn new(sorted: &[f64]) -> Self {
+        Self {
+            mean: mean(sorted),
+            standard_deviation: standard_deviation(sorted),
+            percentiles: PERCENTILES.map(|percent| quantile(sorted, percent / 100.0)),
+        }
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use condyle_case::study::{UniformKeys, Variation};
+    use condyle_case::study::{Input, UniformKeys, Variation};
     use condyle_results::catalogue::MASS_LOSS_MG;
 
     use crate::emulator::tests::{
@@ -285,11 +249,7 @@ mod tests {
             high: 1.0,
         };
         let input = Input::new("x", Variation::Uniform(keys));
-        let axis = || Axis {
-            input: &input,
-            low: 0.0,
-            high: 1.0,
-        };
+        let axis = || Axis::new(&input, [0.0, 1.0]);
         let axes: Vec<Axis<'_>> = exact.iter().map(|_| axis()).collect();
         let mut inside = Vec::new();
         for seed in 1..=10 {

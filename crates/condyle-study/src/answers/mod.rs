@@ -238,6 +238,10 @@ impl Answers {
     }
 
     fn table_of_spreads(&self) -> Vec<Vec<String>> {
+        // The tests of an adaptive study are no sample; the emulators state the distributions.
+        if self.aim.is_some() && self.emulated.iter().any(|one| one.distribution.is_some()) {
+            return Vec::new();
+        }
         let head = [
             "output",
             "unit",
@@ -313,6 +317,12 @@ impl Answers {
             "tests",
             "Q2",
             "used for indices and limits",
+            "unit",
+            "5 %",
+            "median",
+            "95 %",
+            "mean",
+            "SD",
             "beyond its limit",
         ];
         table(&head, &self.emulated, |one| {
@@ -325,13 +335,20 @@ impl Answers {
             } else {
                 format!("no, Q2 is below {MIN_Q2}")
             };
-            vec![
+            let numbers = one.distribution.as_ref().map(|own| {
+                let [_, p5, _, p50, _, p95, _] = own.percentiles;
+                [p5, p50, p95, own.mean, own.standard_deviation].map(shown)
+            });
+            let mut row = vec![
                 one.title.to_owned(),
                 one.tests.to_string(),
                 format!("{:.4}", one.q2),
                 used,
-                beyond.collect::<Vec<_>>().join(", "),
-            ]
+                one.unit.to_owned(),
+            ];
+            row.extend(numbers.unwrap_or_default());
+            row.push(beyond.collect::<Vec<_>>().join(", "));
+            row
         })
     }
 

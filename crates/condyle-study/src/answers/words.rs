@@ -30,9 +30,14 @@ pub(crate) fn with_interval(share: f64, interval: [f64; 2]) -> String {
     format!("{} ({low} to {high})", percent(share))
 }
 
-/// Returns a probability in percent, to a ten thousandth.
+/// Returns a probability in percent, to a ten thousandth; a smaller one than a thousandth to two digits.
 pub(crate) fn chance(probability: f64) -> String {
-    format!("{:.2} %", 100.0 * probability)
+    let percent = 100.0 * probability;
+    if percent <= 0.0 || percent >= 0.1 {
+        return format!("{percent:.2} %");
+    }
+    let decimals = (1 - percent.log10().floor() as i32) as usize;
+    format!("{percent:.decimals$} %")
 }
 
 pub(crate) fn percent(share: f64) -> String {

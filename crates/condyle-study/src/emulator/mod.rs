@@ -129,6 +129,16 @@ impl Emulator {
         self.predict_average(&self.with_tests(0..point.len(), point), 1.0)
     }
 
+    /// Returns the mean of that prediction, in a small part of its time.
+    pub fn mean(&self, point: &[f64]) -> f64 {
+        self.average(&self.with_tests(0..point.len(), point))
+    }
+
+    fn average(&self, with: &DVector<f64>) -> f64 {
+        let process = &self.process;
+        self.centre + self.scale * (process.mean + with.dot(&process.weights))
+    }
+
     /// Returns the correlation of a place along some axes with every test.
     pub fn with_tests(&self, axes: Range<usize>, place: &[f64]) -> DVector<f64> {
         let lengths = &self.lengths[axes.clone()];
@@ -150,11 +160,10 @@ impl Emulator {
     /// Predicts a weighted mean of outputs, whose weights sum to 1, from their mean correlations `with` the tests and
     /// `among` each other.
     pub fn predict_average(&self, with: &DVector<f64>, among: f64) -> Prediction {
-        let mean = self.process.mean + with.dot(&self.process.weights);
         let whitened = self.whitened(with);
         let variance = self.covariance([&whitened, &whitened], among).max(0.0);
         Prediction {
-            mean: self.centre + self.scale * mean,
+            mean: self.average(with),
             standard_deviation: self.scale * (self.process.variance * variance).sqrt(),
         }
     }
@@ -448,6 +457,18 @@ pub(crate) mod tests {
         2.0 * PI * tu * (hu - hl) / (ln * (1.0 + 2.0 * l * tu / (ln * rw * rw * kw) + tu / tl))
     }
 
+    /// Returns the height of a river above a dyke, m (Iooss and Lemaitre 2015), with uniform inputs.
+    pub fn flood(x: &[f64]) -> f64 {
+        let at = |axis: usize, low: f64, high: f64| low + x[axis] * (high - low);
+        let (flow, strickler) = (at(0, 500.0, 3000.0), at(1, 15.0, 90.0));
+        let (downstream, upstream) = (at(2, 49.0, 51.0), at(3, 54.0, 56.0));
+        let (dyke, bank) = (at(4, 7.0, 9.0), at(5, 55.0, 56.0));
+        let (length, width) = (at(6, 4990.0, 5010.0), at(7, 295.0, 305.0));
+        let slope = (upstream - downstream) / length;
+        let depth = (flow / (width * strickler * slope.sqrt())).powf(0.6);
+        downstream + depth - dyke - bank
+    }
+
     /// Returns the part of the variance at other points that an emulator of `count` tests explains.
     fn unseen_q2(of: fn(&[f64]) -> f64, axes: usize, count: u64) -> (f64, f64) {
         let tests = points(count, axes, 1);
@@ -572,11 +593,27 @@ pub(crate) mod tests {
             .to_vec()
     }
 
+    /// Indices from 1,310,720 points by SALib 1.5, whose 95 % intervals are at most 0.006 to either side; OpenTURNS 1.27 has the
+    /// same within 0.008.
+    fn estimated(first: [f64; 8], total: [f64; 8]) -> Vec<[f64; 2]> {
+        first.into_iter().zip(total).map(<[f64; 2]>::from).collect()
+    }
+
     #[test]
     fn verify_indices_in_closed_form() {
+        let of_borehole = estimated(
+            [0.8289, 0.0, 0.0, 0.0414, 0.0, 0.0414, 0.0393, 0.0095],
+            [0.8668, 0.0, 0.0, 0.0541, 0.0, 0.0541, 0.0521, 0.0127],
+        );
+        let of_flood = estimated(
+            [0.2070, 0.2926, 0.2427, 0.0038, 0.1857, 0.0464, 0.0, 0.0001],
+            [0.2278, 0.3136, 0.2435, 0.0046, 0.1857, 0.0464, 0.0, 0.0001],
+        );
         for (of, count, exact, within) in [
             (ishigami as fn(&[f64]) -> f64, 256, exact_ishigami(), 0.01),
             (g_function, 200, exact_g_function(), 0.01),
+            (borehole, 80, of_borehole, 0.01),
+            (flood, 80, of_flood, 0.01),
         ] {
             let tests = points(count, exact.len(), 1);
             let emulator = Emulator::fit(&tests, &values(&tests, of)).unwrap();

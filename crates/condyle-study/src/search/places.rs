@@ -16,15 +16,16 @@ const MAX_LEVELS: f64 = 1000.0;
 
 /// Returns the place of a value in the range of its input, 0 to 1; beyond for rare values of an unbounded distribution.
 pub(super) fn along(input: &Input, value: Option<&Level>) -> Option<f64> {
-    let [low, high] = extent(ends(input).iter().filter_map(number));
+    let [low, high] = ends(input);
     Some((number(value?)? - low) / (high - low))
 }
 
-/// Returns values with the least and the most of an input among them.
-fn ends(input: &Input) -> Vec<Level> {
+/// Returns the numbers at both ends of the range of an input.
+pub(crate) fn ends(input: &Input) -> [f64; 2] {
+    let ends = || [0.0, 1.0].map(|end| level_along(input, end));
     match &input.variation {
-        Variation::Levels(keys) => keys.levels.0.clone(),
-        _ => [0.0, 1.0].map(|end| level_along(input, end)).to_vec(),
+        Variation::Levels(keys) => extent(keys.levels.0.iter().filter_map(number)),
+        _ => extent(ends().iter().filter_map(number)),
     }
 }
 
@@ -38,7 +39,7 @@ pub(super) fn number(level: &Level) -> Option<f64> {
 /// Returns the places of the values of an input in its range, in the order of the study; none if it is continuous.
 pub(super) fn levels(input: &Input) -> Vec<f64> {
     let values = match &input.variation {
-        Variation::Levels(_) => ends(input),
+        Variation::Levels(keys) => keys.levels.0.clone(),
         Variation::Uniform(keys) if input.is_whole && keys.high - keys.low < MAX_LEVELS => {
             let whole = keys.low.round() as i64..=keys.high.round() as i64;
             whole.map(|one| Level::Number(one as f64)).collect()
