@@ -155,7 +155,7 @@ fn indices(answers: &Answers) -> Option<Picture> {
         label(all.first()?.output)
     );
     let most = all.into_iter().take(MAX_INPUTS).map(|index| Bar {
-        name: index.input.clone(),
+        name: answers.name_of(&index.input).to_owned(),
         span: [0.0, index.total],
         interval: Some(index.total_interval),
         is_grey: false,
@@ -172,7 +172,7 @@ fn elementary(answers: &Answers) -> Option<Picture> {
         label(all.first()?.output)
     );
     let most = all.into_iter().take(MAX_INPUTS).map(|one| Bar {
-        name: one.input.clone(),
+        name: answers.name_of(&one.input).to_owned(),
         span: [0.0, one.mu_star],
         interval: Some([-1.0, 1.0].map(|by| one.mu_star + by * one.mu_star_half_interval)),
         is_grey: false,

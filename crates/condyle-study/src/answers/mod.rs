@@ -21,7 +21,7 @@ use crate::{
         indices::Indices,
         ranking::{Best, Front, Ranking},
         robust::Robust,
-        words::{chance, label, labelled, percent, percents, shown, with_interval},
+        words::{chance, in_words, label, labelled, percent, percents, shown, with_interval},
     },
     error::StudyError,
     plan::Plan,
@@ -182,10 +182,18 @@ impl Answers {
             return None;
         };
         let (both, output) = (percent(one.first + other.first), label(one.output));
-        let (one, other) = (&one.input, &other.input);
-        Some(format!(
-            "{one} and {other} explain {both} of the variance of {output}."
-        ))
+        let [one, other] = [one, other].map(|index| in_words(self.name_of(&index.input)));
+        let sentence = format!("{one} and {other} explain {both} of the variance of {output}.");
+        let mut letters = sentence.chars();
+        let first = letters.next().map(|letter| letter.to_ascii_uppercase());
+        Some(first.into_iter().chain(letters).collect())
+    }
+
+    /// Returns the name that the study gives an input; its key if it gives none.
+    pub(crate) fn name_of<'a>(&'a self, input: &'a str) -> &'a str {
+        let mut effects = self.effects.iter();
+        let own = effects.find(|effect| effect.input == input);
+        own.map_or(input, |effect| &effect.name)
     }
 
     /// Returns how a search for an optimum ended, in a sentence; none for other studies.
@@ -361,7 +369,7 @@ impl Answers {
         );
         table_of_most(&[&input, "first", "95 %", "total", "95 %"], &all, |index| {
             vec![
-                index.input.clone(),
+                self.name_of(&index.input).to_owned(),
                 index.first_in_words(),
                 range(index.first_interval),
                 format!("{:.3}", index.total),
@@ -379,7 +387,7 @@ impl Answers {
         table_of_most(&[&input, "mu*", "mu", "sigma"], &all, |effect| {
             let half = shown(effect.mu_star_half_interval);
             vec![
-                effect.input.clone(),
+                self.name_of(&effect.input).to_owned(),
                 format!("{} +/- {half}", shown(effect.mu_star)),
                 shown(effect.mu),
                 shown(effect.sigma),

@@ -593,7 +593,7 @@ pub(crate) mod tests {
             .to_vec()
     }
 
-    /// Indices from 1,310,720 points by SALib 1.5, whose 95 % intervals are at most 0.006 to either side; OpenTURNS 1.27 has the
+    /// Indices from 1,310,720 points by SALib 1.6, whose 95 % intervals are at most 0.006 to either side; OpenTURNS 1.27 has the
     /// same within 0.008.
     fn estimated(first: [f64; 8], total: [f64; 8]) -> Vec<[f64; 2]> {
         first.into_iter().zip(total).map(<[f64; 2]>::from).collect()
