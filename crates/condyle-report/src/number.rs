@@ -77,16 +77,27 @@ fn words(name: &str) -> String {
 /// Returns the dotted path of a key of a case as words: `insert.thickness_mm` is "Thickness of insert, mm". A name that is no
 /// path remains.
 pub(crate) fn path_in_words(name: &str) -> String {
+    let (title, unit) = title_of_path(name);
+    let comma = if unit.is_empty() { "" } else { ", " };
+    format!("{title}{comma}{unit}")
+}
+
+/// Returns the dotted path of a key of a case as a title and its unit: `insert.thickness_mm` is ("Thickness of insert", "mm"). A
+/// name that is no path remains.
+pub fn title_of_path(name: &str) -> (String, String) {
     let is_key = |part: &str| part.starts_with(|c: char| c.is_ascii_lowercase());
     let is_path = name.split('.').all(is_key) && !name.contains(' ');
     let path = name.rsplit_once('.').filter(|_| is_path);
     let Some((tables, key)) = path else {
-        return name.to_owned();
+        return (name.to_owned(), String::new());
     };
-    let table = words(tables.rsplit('.').next().unwrap_or(tables));
+    let table = tables.rsplit('.').next().unwrap_or(tables);
     let (title, unit) = in_words(key);
-    let comma = if unit.is_empty() { "" } else { ", " };
-    format!("{title} of {table}{comma}{unit}")
+    // The wear factor of the table `wear` is clear by itself.
+    match key.split('_').any(|word| word == table) {
+        true => (title, unit),
+        false => (format!("{title} of {}", words(table)), unit),
+    }
 }
 
 /// Returns the text with its first letter in capitals.
@@ -129,6 +140,10 @@ mod tests {
             ("insert.thickness_mm", "Thickness of insert, mm"),
             ("machine.axial_force.scale", "Scale of axial force"),
             ("machine.ap_force.scale", "Scale of AP force"),
+            (
+                "wear.wear_factor_mm3_per_nm",
+                "Wear factor, mm\u{b3}/(N\u{a0}m)",
+            ),
             ("Design 1.5", "Design 1.5"),
             ("v1.5", "v1.5"),
             ("0.25", "0.25"),

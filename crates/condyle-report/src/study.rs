@@ -4,6 +4,7 @@ use std::path::{Path, PathBuf};
 
 use crate::error::ReportError;
 use crate::figure::{Axis, Curve, MEASURED, Panel, escape, finite_range, sheet, svg_file, titled};
+pub use crate::number::title_of_path;
 use crate::number::{path_in_words, significant};
 use crate::sheets::{Sheets, write_text};
 

@@ -9,6 +9,7 @@ pub(crate) mod robust;
 pub(crate) mod words;
 
 use condyle_lab::aligned;
+use condyle_report::study::title_of_path;
 use condyle_results::split_unit;
 use serde::Serialize;
 
@@ -21,7 +22,7 @@ use crate::{
         indices::Indices,
         ranking::{Best, Front, Ranking},
         robust::Robust,
-        words::{chance, in_words, label, labelled, percent, percents, shown, with_interval},
+        words::{chance, label, labelled, percent, percents, shown, with_interval},
     },
     error::StudyError,
     plan::Plan,
@@ -182,11 +183,11 @@ impl Answers {
             return None;
         };
         let (both, output) = (percent(one.first + other.first), label(one.output));
-        let [one, other] = [one, other].map(|index| in_words(self.name_of(&index.input)));
-        let sentence = format!("{one} and {other} explain {both} of the variance of {output}.");
-        let mut letters = sentence.chars();
-        let first = letters.next().map(|letter| letter.to_ascii_uppercase());
-        Some(first.into_iter().chain(letters).collect())
+        let [one, other] = [one, other].map(|index| title_of_path(self.name_of(&index.input)).0);
+        Some(format!(
+            "{one} and {} explain {both} of the variance of {output}.",
+            within_sentence(&other)
+        ))
     }
 
     /// Returns the name that the study gives an input; its key if it gives none.
@@ -513,6 +514,17 @@ fn sentence_of_designs(ranking: &Ranking) -> Option<String> {
     Some(format!(
         "{name} ranks first: it has the least {title} under {best} of the disturbances, and keeps every limit under {within}."
     ))
+}
+
+/// Returns a title as it stands within a sentence: "AP force" keeps its capitals.
+fn within_sentence(title: &str) -> String {
+    let is_word = title.chars().nth(1).is_none_or(char::is_lowercase);
+    let mut letters = title.chars();
+    let first = letters.next().filter(|_| is_word);
+    first.map_or_else(
+        || title.to_owned(),
+        |first| first.to_lowercase().chain(letters).collect(),
+    )
 }
 
 /// Returns the margins of the best test to the limits of an output, in words.

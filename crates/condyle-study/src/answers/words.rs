@@ -1,6 +1,6 @@
 //! Names and numbers of answers in words.
 
-use condyle_results::{catalogue, split_unit};
+use condyle_results::catalogue;
 
 /// Returns the label of an output in the catalogue; of an input, its key.
 pub(crate) fn label(key: &str) -> &str {
@@ -13,17 +13,6 @@ pub(crate) fn labelled(key: &str) -> String {
         Some(output) if output.unit().is_empty() => output.label.to_owned(),
         Some(output) => format!("{}, {}", output.label, output.unit()),
         None => key.to_owned(),
-    }
-}
-
-/// Returns a key of the case in words for a sentence, without its section and unit; any other name as it is.
-pub(crate) fn in_words(name: &str) -> String {
-    match name.split_once('.') {
-        Some((_, key)) if !name.contains(' ') => {
-            let key = split_unit(key).0;
-            key.replace(['.', '_'], " ")
-        }
-        _ => name.to_owned(),
     }
 }
 
@@ -73,11 +62,5 @@ mod tests {
         assert_eq!(labelled("mass_loss_mg"), "mass loss, mg");
         assert_eq!(labelled("medial_load_share"), "medial load share");
         assert_eq!(labelled("contact.friction"), "contact.friction");
-        assert_eq!(
-            in_words("machine.springs.free_play_mm"),
-            "springs free play"
-        );
-        assert_eq!(in_words("wear.wear_factor_mm3_per_nm"), "wear factor");
-        assert_eq!(in_words("friction of the pair"), "friction of the pair");
     }
 }
