@@ -131,6 +131,7 @@ impl<'a> CurvedMesh<'a> {
             flat.y
         };
         Some(Over {
+            weights,
             height,
             upward,
             lift_mm: (height - flat.y) * upward,
@@ -154,6 +155,8 @@ impl<'a> CurvedMesh<'a> {
 
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Over {
+    /// Barycentric coordinates on the flat triangle.
+    pub(crate) weights: [f64; 3],
     pub(crate) height: f64,
     /// Cosine of the slope: the component along y of the unit normal, less than 0 where it points down.
     pub(crate) upward: f64,

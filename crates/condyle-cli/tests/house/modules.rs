@@ -61,6 +61,7 @@ const MAY_USE: &[(&str, &[&str])] = &[
         &[
             "condyle_fem",
             "condyle_mesh::curved_mesh",
+            "condyle_mesh::divided_mesh",
             "condyle_mesh::triangle_mesh",
         ],
     ),

@@ -189,10 +189,11 @@ pub(crate) fn thin_polyethylene(finished: &Finished<'_>) -> Option<PlausibilityW
 /// of an export for manufacturing. Beyond it the triangles no longer determine the surface.
 const MAX_DEVIATION_MM: f64 = 0.05;
 
-/// The same for an insert, mm, whose dishes are flatter; our choice: twice the chord error of a fine export.
-const MAX_INSERT_DEVIATION_MM: f64 = 0.02;
+/// Error of an insert's surface by its mesh up to which its contact is right, mm: twice the chord error of a fine export leaves
+/// it, and where facets are divided into flat triangles, more of it changed the mass by 3 %.
+const MAX_INSERT_ERROR_MM: f64 = 0.005;
 
-/// Largest part of the contact, by overclosure, where the triangles of a femur do not determine its surface, %; our choice:
+/// Largest part of the contact, by overclosure, where the triangles of a body do not determine its surface, %; our choice:
 /// in sound knees, up to 4 % lies at the sharp edges that the smooth surface rounds.
 const MAX_ROUGH_PERCENT: f64 = 10.0;
 
@@ -221,7 +222,11 @@ pub(crate) fn femur_mesh(finished: &Finished<'_>) -> Option<PlausibilityWarning>
     });
     let advice = "The mesh is too coarse, too rough, or has a sharp edge there: export the femur with a chord error of at most 0.03 mm, \
                  without decimation, and smooth a scan.";
-    rough(("femur_mesh", "femur"), MAX_DEVIATION_MM, contact, advice)
+    let words = (
+        "the smooth surface of the femur is",
+        " from the triangles of its mesh",
+    );
+    rough("femur_mesh", words, MAX_DEVIATION_MM, contact, advice)
 }
 
 /// Warns of an insert whose triangles are too coarse where the femur touches them.
@@ -229,15 +234,12 @@ pub(crate) fn insert_mesh(finished: &Finished<'_>) -> Option<PlausibilityWarning
     let pressed_mpa = finished.march.state().first_pressure_mpa.iter();
     let force_n = pressed_mpa.zip(&finished.surface.shares);
     let force_n = force_n.map(|(pressure_mpa, share)| pressure_mpa * share.area_mm2);
-    let deviation_mm = finished.march.insert().deviation_mm().iter().copied();
-    let advice = "The mesh is too coarse there: export the insert with a chord error of at most 0.01 mm, without decimation.";
-    let names = ("insert_mesh", "insert");
-    rough(
-        names,
-        MAX_INSERT_DEVIATION_MM,
-        force_n.zip(deviation_mm),
-        advice,
-    )
+    let error_mm = finished.march.insert().mesh_error_mm().iter().copied();
+    let advice = "The mesh is too coarse there: export the insert with a chord error of at most 0.01 mm, without decimation or \
+                  division of its facets.";
+    let words = ("the surface of the insert is uncertain by", "");
+    let contact = force_n.zip(error_mm);
+    rough("insert_mesh", words, MAX_INSERT_ERROR_MM, contact, advice)
 }
 
 /// Warns of the noise of a scan, whose peaks bear much of the load; the warning of the build names the mesh.
@@ -261,10 +263,11 @@ pub(crate) fn noisy_mesh(finished: &Finished<'_>) -> Option<PlausibilityWarning>
     ))
 }
 
-/// Warns if too much of the contact lies where the smooth surface of a body is farther from its triangles than `limit_mm`.
-/// `contact` has a measure of the force and the distance, mm, of each place.
+/// Warns if too much of the contact lies where the distance of a surface, which both words describe, exceeds `limit_mm`. `contact`
+/// has a measure of the force and the distance, mm, of each place.
 fn rough(
-    (check, body): (&'static str, &str),
+    check: &'static str,
+    (is, from): (&str, &str),
     limit_mm: f64,
     contact: impl Iterator<Item = (f64, f64)>,
     advice: &str,
@@ -279,8 +282,8 @@ fn rough(
     }
     let percent = percent_of(doubtful, whole);
     let message = format!(
-        "in {percent:.0} % of the contact, the smooth surface of the {body} is more than {limit_mm} mm \
-             (at most {largest_mm:.3} mm) from the triangles of its mesh; up to {MAX_ROUGH_PERCENT:.0} % is acceptable"
+        "in {percent:.0} % of the contact, {is} more than {limit_mm} mm (at most {largest_mm:.3} mm){from}; up to \
+             {MAX_ROUGH_PERCENT:.0} % is acceptable"
     );
     let value = (percent, MAX_ROUGH_PERCENT, "%");
     (percent > MAX_ROUGH_PERCENT).then(|| warning(check, value, message, advice))

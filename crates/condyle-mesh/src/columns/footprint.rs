@@ -28,7 +28,7 @@ const LONGEST_TOOTH_SAMPLES: usize = 6;
 const MARGIN_SAMPLES: usize = 2 * DETAIL_SAMPLES + 1;
 
 pub(super) struct Footprint<'a> {
-    lines: VerticalLines<'a>,
+    pub(super) lines: VerticalLines<'a>,
     thinnest_mm: f64,
     /// Points at which it is sampled, with a margin around the shell.
     pub(super) samples: ColumnGrid,

@@ -118,9 +118,9 @@ pub struct ColumnMesh {
     pub articulating: Vec<[u32; 4]>,
     /// The backside, quads facing down.
     pub backside: Vec<[u32; 4]>,
-    /// Distance between the smooth surface and the triangles that it was made from at each node of the articulating surface,
-    /// in the order of the nodes, mm; empty for a shape without triangles.
-    pub deviation_mm: Vec<f64>,
+    /// Error that the triangles leave in the smooth surface at each node of the articulating surface, in the order of the nodes,
+    /// mm; empty for a shape without triangles.
+    pub mesh_error_mm: Vec<f64>,
 }
 
 impl ColumnGrid {
@@ -264,7 +264,7 @@ impl Plan {
         ColumnMesh {
             articulating: quads.map(|corners| quad(corners, layers)).collect(),
             backside: backside.collect(),
-            deviation_mm: Vec::new(),
+            mesh_error_mm: Vec::new(),
             mesh: HexMesh { hexes, nodes },
         }
     }

@@ -3,7 +3,11 @@
 use std::collections::BTreeMap;
 
 use super::grid::{ColumnGrid, Place};
-use crate::{Vec3, curved_mesh::CurvedMesh, triangle_mesh::TriangleMesh};
+use crate::{
+    Vec3,
+    curved_mesh::{CurvedMesh, Over},
+    triangle_mesh::TriangleMesh,
+};
 
 /// Edge of the bins that sort the triangles over the transverse plane, mm.
 const BIN_MM: f64 = 0.5;
@@ -67,16 +71,30 @@ impl<'a> VerticalLines<'a> {
         tried.into_iter().find_map(|place| self.exactly_at(place))
     }
 
-    /// Returns the same without a second attempt next to the place.
-    pub(super) fn exactly_at(&self, place: Place) -> Option<Through> {
+    /// Returns the triangles over a place, and the places on them.
+    fn over(&self, place: Place) -> impl Iterator<Item = (usize, Over)> {
         let [i, k] = self.bin_of(place);
-        let over = |&triangle: &u32| {
+        let over = move |&triangle: &u32| {
             let triangle = triangle as usize;
             let normals = &self.corner_normals[triangle];
-            self.curved.over(triangle, normals, place.into())
+            let over = self.curved.over(triangle, normals, place.into());
+            Some(triangle).zip(over)
         };
-        let bin = self.bins[i * self.counts[1] + k].iter();
-        let through = bin.filter_map(over).map(|over| Through {
+        self.bins[i * self.counts[1] + k].iter().filter_map(over)
+    }
+
+    /// Returns the highest triangle over a place, its area in mm2, and the place on it.
+    pub(super) fn highest(&self, place: Place) -> Option<(usize, f64, Over)> {
+        let higher =
+            |one: &(usize, Over), other: &(usize, Over)| one.1.height.total_cmp(&other.1.height);
+        let (triangle, over) = self.over(place).max_by(higher)?;
+        let [a, b, c] = self.curved.mesh.corners(triangle);
+        Some((triangle, (b - a).cross(&(c - a)).norm() / 2.0, over))
+    }
+
+    /// Returns the same without a second attempt next to the place.
+    pub(super) fn exactly_at(&self, place: Place) -> Option<Through> {
+        let through = self.over(place).map(|(_, over)| Through {
             bottom: over.height,
             top: over.height,
             upward: over.upward,

@@ -1,5 +1,6 @@
 //! The curved surface that a triangle mesh samples, over triangles that are small enough for its curvature.
 
+mod facets;
 mod normals;
 mod patch;
 mod samples;
@@ -14,6 +15,8 @@ use crate::{
     curved_mesh::{CurvedMesh, Foot, lift},
     triangle_mesh::{TriangleMesh, bounds, closest_point, weighted},
 };
+
+pub(crate) use self::facets::Facets;
 
 /// Share of a corner below which a place lies on the opposite side, in spite of rounding.
 const ON_SIDE: f64 = 1e-9;

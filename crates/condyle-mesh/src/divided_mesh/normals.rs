@@ -137,7 +137,7 @@ fn tangent(along: &Vec3, normal: Option<Vec3>, across: Option<Vec3>) -> Vec3 {
     }
 }
 
-fn sides_across(mesh: &TriangleMesh) -> Vec<[Option<TriangleSide>; 3]> {
+pub(super) fn sides_across(mesh: &TriangleMesh) -> Vec<[Option<TriangleSide>; 3]> {
     let mut across = vec![[None; 3]; mesh.triangles.len()];
     for pair in by_edge(&edge_uses(mesh)) {
         if let [one, other] = pair {

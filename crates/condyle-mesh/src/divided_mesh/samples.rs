@@ -26,14 +26,20 @@ const MAX_ROUNDS: usize = 60;
 /// A vertex in the middle of a flat facet is not a sample of the curved surface: it is off by the chord error. A sliver has
 /// no reliable plane. Both are artefacts of the program that triangulated the surface.
 pub(super) fn samples_of(mesh: &TriangleMesh) -> TriangleMesh {
+    let mut mesh = without_flat_vertices(mesh);
+    let mut rounds = 0..MAX_ROUNDS;
+    while rounds.next().is_some() && exchange_diagonals(&mut mesh) {}
+    mesh
+}
+
+/// Returns `mesh` without the vertices that only subdivide its flat facets and straight edges.
+pub(super) fn without_flat_vertices(mesh: &TriangleMesh) -> TriangleMesh {
     let mut mesh = mesh.clone();
     let mut vertices: Vec<u32> = (0..mesh.vertices.len() as u32).collect();
     let mut rounds = 0..MAX_ROUNDS;
     while rounds.next().is_some() && !vertices.is_empty() {
         vertices = remove_flat_vertices(&mut mesh, &vertices);
     }
-    let mut rounds = 0..MAX_ROUNDS;
-    while rounds.next().is_some() && exchange_diagonals(&mut mesh) {}
     mesh
 }
 

@@ -140,3 +140,38 @@ fn slivers_next_to_a_sharp_edge_raise_no_ridge() {
         assert!((gap + 0.2).abs() < 2e-3, "{gap}");
     }
 }
+
+/// Facets of a quarter of a cylinder between two planes that are tangent to it, each divided in sixteen.
+#[test]
+fn verify_divided_facets_have_the_distance_of_their_cylinder() {
+    const SIDES: u32 = 12;
+    const RADIUS_MM: f64 = 10.0;
+    let profile = |i: u32| match i {
+        0 => [-40.0, RADIUS_MM],
+        i if i == SIDES + 2 => [RADIUS_MM, -40.0],
+        i => {
+            let angle = std::f64::consts::FRAC_PI_2 * f64::from(i - 1) / f64::from(SIDES);
+            [RADIUS_MM * angle.sin(), RADIUS_MM * angle.cos()]
+        }
+    };
+    let ring = |z: f64| (0..=SIDES + 2).map(move |i| Vec3::new(profile(i)[0], profile(i)[1], z));
+    let vertices = ring(0.0).chain(ring(8.0)).collect();
+    let next = SIDES + 3;
+    let quads = (0..SIDES + 2).map(|i| [i, i + next, i + next + 1, i + 1]);
+    let facets = TriangleMesh::of_quads(vertices, quads);
+    let divided = in_four(&in_four(&facets));
+    let found = Facets::new(&divided);
+    assert_eq!(found.mesh.triangles.len(), facets.triangles.len());
+    let chord_mm = RADIUS_MM * (1.0 - (std::f64::consts::FRAC_PI_4 / f64::from(SIDES)).cos());
+    for facet in 0..found.mesh.triangles.len() {
+        let largest_mm = found.chord_mm(facet, [0.5, 0.5, 0.0]);
+        let middle: Vec3 = found.mesh.corners(facet).iter().sum::<Vec3>() / 3.0;
+        let is_plane = middle.x < 0.0 || middle.y < 0.0;
+        // The planes, which are tangent, meet a facet of the cylinder at half the angle, as small as it is.
+        let range = if is_plane { 0.0..0.8 } else { 0.6..1.5 };
+        assert!(
+            range.contains(&(largest_mm / chord_mm)),
+            "{middle:?}: {largest_mm} mm"
+        );
+    }
+}

@@ -99,7 +99,7 @@ impl Insert {
     ) -> Result<(Self, Vec<Hole>), InsertError> {
         let (columns, holes) = column_mesh(surface, is_closed, thickness_mm, meshing)?;
         let insert = Self::new(columns.mesh, &columns.articulating, &columns.backside)?;
-        let insert = insert.with_deviation_mm(columns.deviation_mm);
+        let insert = insert.with_mesh_error_mm(columns.mesh_error_mm);
         Ok((insert, holes))
     }
 
@@ -171,10 +171,10 @@ impl Insert {
         &self.thickness_mm
     }
 
-    /// Returns the distance between the smooth unworn surface and the triangles that it was made from at each surface node,
-    /// mm; empty for a shape without triangles.
-    pub fn deviation_mm(&self) -> &[f64] {
-        &self.unworn.deviation_mm
+    /// Returns the error that the triangles of a mesh leave in the unworn surface at each surface node, mm; empty for a shape
+    /// without triangles.
+    pub fn mesh_error_mm(&self) -> &[f64] {
+        &self.unworn.mesh_error_mm
     }
 
     /// Returns the articulating surface in its present shape.
@@ -189,10 +189,10 @@ impl Insert {
         ArticulatingSurface::new(positions, &self.unworn.faces_around)
     }
 
-    /// Sets the distance between smooth surface and triangles at every surface node, mm.
-    pub(super) fn with_deviation_mm(mut self, deviation_mm: Vec<f64>) -> Self {
+    /// Sets the error that the triangles of a mesh leave at every surface node, mm.
+    pub(super) fn with_mesh_error_mm(mut self, mesh_error_mm: Vec<f64>) -> Self {
         let unworn = Arc::get_mut(&mut self.unworn).expect("a new insert shares nothing");
-        unworn.deviation_mm = deviation_mm;
+        unworn.mesh_error_mm = mesh_error_mm;
         self
     }
 
