@@ -141,17 +141,13 @@ impl Seen {
             return None;
         }
         let emulator = Emulator::fit(&at, &of)?.calibrated();
-        let (pool, error, probability);
-        match goal.limit {
-            Some(limit) => (pool, probability) = near_limit(plan, &emulator, limit),
-            None => {
-                // Another scrambling than that of the first tests.
-                pool = sobol_tests(plan, !keys.seed, 0, POOL);
-                probability = None;
-            }
-        }
+        let (pool, probability) = match goal.limit {
+            Some(limit) => near_limit(plan, &emulator, limit),
+            // Another scrambling than that of the first tests.
+            None => (sobol_tests(plan, !keys.seed, 0, POOL), None),
+        };
         let places: Vec<Vec<f64>> = pool.iter().map(|test| point(study, test)).collect();
-        error = match &probability {
+        let error = match &probability {
             Some(found) => part_unknown(found),
             None => error_of_output(&emulator, &of, &places),
         };
@@ -262,7 +258,7 @@ impl Aim {
         let rounded = |value: f64| (1e4 * value).round() / 1e4;
         let (title, tests) = (self.title, self.tests);
         let what = self.limit.map_or_else(
-            || (*title).to_owned(),
+            || title.to_owned(),
             |(sign, limit)| {
                 let side = if sign > 0.0 { "above" } else { "below" };
                 let unit = catalogue::output(self.output).map_or("", |output| output.unit());
