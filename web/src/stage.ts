@@ -340,7 +340,8 @@ export class Stage {
 
   private release(): void {
     clearTimeout(this.resting);
-    this.end.abort();
+    // The default reason, an error, would keep the objects of the calls it was made in.
+    this.end.abort("closed");
     this.controls.dispose();
     this.world.traverse((body) => body instanceof Mesh && (body.geometry as BufferGeometry).dispose());
   }
