@@ -237,7 +237,7 @@ impl Study {
     }
 }
 
-/// What an adaptive study is to know: an output, or the probability that it is beyond a limit.
+/// The aim of an adaptive study: to know an output, or the probability that it is beyond a limit.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Aim {
     /// The output.
