@@ -2,8 +2,8 @@
 
 use super::{
     facet_normals,
-    normals::{MIN_COSINE, sides_across},
-    samples::{MIN_HEIGHT_MM, height, without_flat_vertices},
+    normals::{creases, sides_across},
+    samples::{height, without_flat_vertices},
 };
 use crate::triangle_mesh::TriangleMesh;
 
@@ -23,21 +23,20 @@ impl Facets {
     pub fn new(mesh: &TriangleMesh) -> Self {
         let mesh = without_flat_vertices(mesh);
         let (planes, across) = (facet_normals(&mesh), sides_across(&mesh));
+        let is_crease = creases(&mesh, &planes, &across);
         let count = mesh.triangles.len();
         let heights: Vec<f64> = (0..count)
             .map(|facet| height(mesh.corners(facet)))
             .collect();
         let chord = |facet: usize| {
-            let others = across[facet].iter().flatten().map(|&(other, _)| other);
-            let chord = |other: usize| {
-                let lower = heights[facet].min(heights[other]);
-                // Creases and slivers are no part of a smooth surface.
-                let is_smooth =
-                    planes[facet].dot(&planes[other]) > MIN_COSINE && lower > MIN_HEIGHT_MM;
+            // Creases and slivers are no part of a smooth surface.
+            let sides = across[facet].iter().zip(is_crease[facet]);
+            let smooth = sides.filter_map(|(other, is_crease)| other.filter(|_| !is_crease));
+            let chord = |(other, _): (usize, usize)| {
                 let angle = planes[facet].cross(&planes[other]).norm();
-                if is_smooth { angle * lower / 6.0 } else { 0.0 }
+                angle * heights[facet].min(heights[other]) / 6.0
             };
-            others.map(chord).fold(0.0, f64::max)
+            smooth.map(chord).fold(0.0, f64::max)
         };
         Self {
             chord_mm: (0..count).map(chord).collect(),

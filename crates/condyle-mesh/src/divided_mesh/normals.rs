@@ -13,7 +13,7 @@ use crate::{
 };
 
 /// Triangles that meet at more than 30 degrees belong to two surfaces.
-pub(super) const MIN_COSINE: f64 = 0.866;
+const MIN_COSINE: f64 = 0.866;
 
 /// Weight of a normal by its triangles relative to that by one edge: triangles decide only what edges leave open, as
 /// normals that alternate from ring to ring of a cylinder. Ten times more or less changes the surface by less than a tenth of
@@ -150,7 +150,7 @@ pub(super) fn sides_across(mesh: &TriangleMesh) -> Vec<[Option<TriangleSide>; 3]
     across
 }
 
-fn creases(
+pub(super) fn creases(
     mesh: &TriangleMesh,
     facets: &[Vec3],
     across: &[[Option<TriangleSide>; 3]],
