@@ -1,6 +1,6 @@
 //! Cleans a mesh: welds open edges, and removes doubled faces, triangles without area and slivers.
 
-use std::collections::{BTreeSet, HashMap, HashSet};
+use std::collections::{BTreeMap, BTreeSet, HashMap, HashSet};
 
 use super::edges::{EdgeUse, by_edge};
 use crate::{Vec3, triangle_mesh::TriangleMesh};
@@ -57,21 +57,69 @@ pub(super) fn drop_unused(mesh: &mut TriangleMesh) {
     rename(mesh, &new_number);
 }
 
-/// Keeps one triangle of each three corners; returns the places of the others.
+/// Keeps one triangle of each three corners, and none of a flap; returns the places of the others.
 pub(super) fn make_single(mesh: &mut TriangleMesh) -> Vec<Vec3> {
+    let flaps = flaps(mesh);
     let mut seen = HashSet::with_capacity(mesh.triangles.len());
     let mut places = Vec::new();
     let vertices = &mesh.vertices;
     mesh.triangles.retain(|triangle| {
-        let mut sorted = *triangle;
-        sorted.sort_unstable();
-        let is_first = seen.insert(sorted);
-        if !is_first {
+        let corners = sorted(triangle);
+        let is_kept = seen.insert(corners) && !flaps.contains(&corners);
+        if !is_kept {
             places.push(triangle.iter().map(|&v| vertices[v as usize]).sum::<Vec3>() / 3.0);
         }
-        is_first
+        is_kept
     });
     places
+}
+
+fn sorted(triangle: &[u32; 3]) -> [u32; 3] {
+    let mut corners = *triangle;
+    corners.sort_unstable();
+    corners
+}
+
+/// Returns the corners, ascending, of triangles that lie back to back and stand on a surface.
+///
+/// A fan of slivers that folds back on itself becomes such a flap when the rounding of a file merges its two tips. The surface is
+/// whole without it, whereas that of a sheet with two sides is not: each edge of a flap has an even number of other triangles.
+fn flaps(mesh: &TriangleMesh) -> BTreeSet<[u32; 3]> {
+    let mut turns: HashMap<[u32; 3], [u8; 2]> = HashMap::with_capacity(mesh.triangles.len());
+    for triangle in &mesh.triangles {
+        let corners @ [low, middle, _] = sorted(triangle);
+        let ascends = [[0, 1], [1, 2], [2, 0]].map(|side| side.map(|i| triangle[i]));
+        let turn = usize::from(ascends.contains(&[low, middle]));
+        turns.entry(corners).or_default()[turn] += 1;
+    }
+    turns.retain(|_, count| *count == [1, 1]);
+    let mut flaps = BTreeSet::from_iter(turns.into_keys());
+    let mut on_edge: BTreeMap<[u32; 2], usize> = BTreeMap::new();
+    on_edge.extend(flaps.iter().flat_map(sides).map(|ends| (ends, 0)));
+    if !flaps.is_empty() {
+        let others = mesh
+            .triangles
+            .iter()
+            .filter(|t| !flaps.contains(&sorted(t)));
+        for ends in others.flat_map(sides) {
+            on_edge.entry(ends).and_modify(|count| *count += 1);
+        }
+    }
+    // A pair next to an edge with one other triangle is part of a sheet, and so are the pairs connected with it.
+    loop {
+        let is_of_sheet = |of: &&[u32; 3]| sides(of).iter().any(|side| on_edge[side] % 2 == 1);
+        let of_sheets: Vec<[u32; 3]> = flaps.iter().filter(is_of_sheet).copied().collect();
+        if of_sheets.is_empty() {
+            break;
+        }
+        for of in of_sheets {
+            flaps.remove(&of);
+            on_edge.extend(sides(&of).map(|side| (side, 1)));
+        }
+    }
+    // A body of which every triangle is doubled stands on nothing.
+    let stands = on_edge.values().any(|count| *count == 2);
+    if stands { flaps } else { BTreeSet::new() }
 }
 
 /// Height over longest edge below which a triangle has no area: rounding of double precision.
@@ -261,6 +309,32 @@ mod tests {
         assert_eq!(shell.removed_degenerate, 1);
         assert!(shell.closed);
         assert_eq!(shell.mesh, unit_block());
+    }
+
+    #[test]
+    fn a_flap_of_triangles_back_to_back_goes_and_a_sheet_stays() {
+        let mut mesh = unit_block();
+        mesh.vertices.push(Vec3::new(-0.3, -0.3, 0.4));
+        mesh.vertices.push(Vec3::new(-0.3, -0.3, 0.6));
+        for fold in [[0, 4, 8], [4, 9, 8]] {
+            let [a, b, c] = fold;
+            mesh.triangles.extend([fold, [a, c, b]]);
+        }
+        let shell = checked_mesh(mesh).unwrap();
+        assert!(shell.closed);
+        assert_eq!(shell.mesh, unit_block());
+        assert_eq!(shell.defects[0].count, 4);
+        let mut sheet = unit_block();
+        sheet.triangles.truncate(4);
+        let back = sheet.triangles.clone().into_iter();
+        sheet.triangles.extend(back.map(|[a, b, c]| [a, c, b]));
+        assert_eq!(checked_mesh(sheet).unwrap().mesh.triangles.len(), 4);
+        let mut doubled = unit_block();
+        for face in 0..2 {
+            let [a, b, c] = doubled.triangles[face];
+            doubled.triangles.push([a, c, b]);
+        }
+        assert_eq!(checked_mesh(doubled).unwrap().mesh, unit_block());
     }
 
     /// The first edge of the block gets a middle vertex that only one of its two triangles knows.
