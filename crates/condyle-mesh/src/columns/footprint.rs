@@ -28,7 +28,7 @@ const LONGEST_TOOTH_SAMPLES: usize = 6;
 const MARGIN_SAMPLES: usize = 2 * DETAIL_SAMPLES + 1;
 
 pub(super) struct Footprint<'a> {
-    pub(super) lines: VerticalLines<'a>,
+    lines: &'a VerticalLines<'a>,
     thinnest_mm: f64,
     /// Points at which it is sampled, with a margin around the shell.
     pub(super) samples: ColumnGrid,
@@ -38,8 +38,7 @@ pub(super) struct Footprint<'a> {
 }
 
 impl<'a> Footprint<'a> {
-    pub(super) fn new(shell: &'a TriangleMesh, is_closed: bool, edge_mm: f64) -> Self {
-        let lines = VerticalLines::new(shell, is_closed);
+    pub(super) fn new(shell: &TriangleMesh, lines: &'a VerticalLines<'a>, edge_mm: f64) -> Self {
         // The lines of the samples lie on the bounds of the shell.
         let (low, high) = shell.bounds();
         let step_mm = (edge_mm / SAMPLES_PER_EDGE).max(CLOSEST_SAMPLES_MM);

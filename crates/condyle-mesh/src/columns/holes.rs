@@ -49,7 +49,7 @@ impl fmt::Display for Hole {
 }
 
 /// Fills the holes of a footprint that are smaller than a hexahedron and do not go through, since the
-/// columns around bridge them; bridges the others, with posts in them, and returns them.
+/// columns around bridge them; bridges the others, with what stands in them, and returns them.
 pub(super) fn holes(footprint: &mut Footprint<'_>, outlines: &[Loop], edge_mm: f64) -> Vec<Hole> {
     let mut holes = Vec::new();
     for outline in outlines.iter().filter(|outline| outline.area_mm2() < 0.0) {

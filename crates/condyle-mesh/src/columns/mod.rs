@@ -16,6 +16,7 @@ mod footprint;
 mod grid;
 mod holes;
 mod outline;
+mod post;
 mod ring;
 mod vertical_lines;
 
@@ -25,8 +26,9 @@ use self::{
     footprint::Footprint,
     holes::holes,
     outline::{Loop, outline, turn},
+    post::Post,
     ring::{Core, Ring},
-    vertical_lines::VerticalLines,
+    vertical_lines::{Through, VerticalLines},
 };
 use super::{divided_mesh::Facets, triangle_mesh::TriangleMesh};
 
@@ -93,8 +95,9 @@ pub enum ColumnError {
 /// backside is flat, `thickness_mm` below the lowest point. Where hexahedra are inverted, edges shorter by up to 12 % are
 /// tried.
 ///
-/// Hexahedra stand over holes and posts too, as if the surface around them continued smoothly. Contact at or next to one
-/// of the holes that are returned touches a part that the body does not have.
+/// The walls of a post belong to the surface: the columns below them lean. Hexahedra stand over holes, and over a post that
+/// overhangs, as if the surface around them continued smoothly. Contact at or next to one of the holes that are returned touches a
+/// part that the body does not have.
 ///
 /// # Errors
 /// An open surface without a thickness, one in which no column fits, an outline with details finer than the edge, or
@@ -130,11 +133,35 @@ fn columns_of(
     thickness_mm: Option<f64>,
     meshing: Meshing,
 ) -> Result<(ColumnMesh, Vec<Hole>), ColumnError> {
+    let lines = VerticalLines::new(shell, is_closed);
+    let post = is_closed.then(|| Post::find(shell, &lines)).flatten();
+    let with_post = post.and_then(|post| {
+        let spread = post.spread(shell, meshing.edge_mm);
+        let over_spread = VerticalLines::new(&spread, true);
+        let mut found = vertical_columns(&spread, &over_spread, None, meshing).ok()?;
+        post.gather(&mut found, shell, &lines);
+        found.0.mesh_error_mm = mesh_errors_mm(&found.0, shell, &lines, |place| lines.at(place));
+        // A post that cannot be spread, such as one that overhangs, is bridged as a hole is.
+        (found.0.mesh.worst_quality() > 0.0).then_some(found)
+    });
+    match with_post {
+        Some(found) => Ok(found),
+        None => vertical_columns(shell, &lines, thickness_mm, meshing),
+    }
+}
+
+/// Returns the hexahedra of one grid in vertical columns.
+fn vertical_columns(
+    shell: &TriangleMesh,
+    lines: &VerticalLines<'_>,
+    thickness_mm: Option<f64>,
+    meshing: Meshing,
+) -> Result<(ColumnMesh, Vec<Hole>), ColumnError> {
     let edge_mm = meshing.edge_mm;
     let (low, high) = shell.bounds();
     let (low, high) = ([low.x, low.z], [high.x, high.z]);
     let grid = ColumnGrid::filling(low, high, edge_mm, meshing.layers)?;
-    let mut footprint = Footprint::new(shell, is_closed, edge_mm);
+    let mut footprint = Footprint::new(shell, lines, edge_mm);
     let outlines = outline(&footprint, edge_mm);
     let holes = holes(&mut footprint, &outlines, edge_mm);
     let fitted = fitted_plan(&grid, &footprint, edge_mm);
@@ -143,7 +170,7 @@ fn columns_of(
         Err(_) if !holes.is_empty() => return Err(ColumnError::Holes { holes }),
         fitted => fitted?,
     };
-    if is_closed {
+    if lines.is_closed {
         ease_steps(&plan, &mut columns);
     } else {
         let thickness_mm = thickness_mm.ok_or(ColumnError::OpenWithoutThickness)?;
@@ -154,7 +181,8 @@ fn columns_of(
         }
     }
     let mut columns = plan.hexahedra(&columns, meshing);
-    columns.mesh_error_mm = mesh_errors_mm(&columns, &footprint, shell);
+    let through = |place| footprint.through(place);
+    columns.mesh_error_mm = mesh_errors_mm(&columns, shell, lines, through);
     Ok((columns, holes))
 }
 
@@ -170,8 +198,9 @@ const ERROR_OF_LIFT: f64 = 0.25;
 /// Triangles that divide a flat facet are lifted at its edges only, and all of the distance that they lack is an error.
 fn mesh_errors_mm(
     columns: &ColumnMesh,
-    footprint: &Footprint<'_>,
     shell: &TriangleMesh,
+    lines: &VerticalLines<'_>,
+    through: impl Fn(Place) -> Option<Through>,
 ) -> Vec<f64> {
     let is_upward = |corners: &[u32; 3]| {
         let [a, b, c] = corners.map(|vertex| shell.vertices[vertex as usize]);
@@ -191,10 +220,9 @@ fn mesh_errors_mm(
     let error = |node: u32| {
         let node = columns.mesh.nodes[node as usize];
         let place = Place::new(node.x, node.z);
-        let through = footprint.through(place);
-        let of_lift_mm = through.map(|through| ERROR_OF_LIFT * through.lift_mm.abs());
+        let of_lift_mm = through(place).map(|through| ERROR_OF_LIFT * through.lift_mm.abs());
         let over_facet = over_facets.as_ref().and_then(|lines| lines.highest(place));
-        let both = over_facet.zip(footprint.lines.highest(place));
+        let both = over_facet.zip(lines.highest(place));
         let divided = both.filter(|((_, whole_mm2, _), (_, mm2, _))| DIVIDED * mm2 < *whole_mm2);
         let chord_mm = divided.map(|((facet, _, over), _)| facets.chord_mm(facet, over.weights));
         of_lift_mm.unwrap_or(0.0).max(chord_mm.unwrap_or(0.0))

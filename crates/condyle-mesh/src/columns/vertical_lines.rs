@@ -19,7 +19,7 @@ const ASIDE_MM: f64 = 1e-4;
 pub(super) struct VerticalLines<'a> {
     curved: CurvedMesh<'a>,
     corner_normals: Vec<[Vec3; 3]>,
-    is_closed: bool,
+    pub(super) is_closed: bool,
     low: Place,
     counts: [usize; 2],
     bins: Vec<Vec<u32>>,

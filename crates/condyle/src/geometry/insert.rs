@@ -86,7 +86,7 @@ impl Insert {
         }
     }
 
-    /// As [`Insert::from_surface`], but meshes over holes and posts inside the outline as if the surface around
+    /// As [`Insert::from_surface`], but meshes over holes inside the outline as if the surface around
     /// them continued smoothly, and returns these holes.
     ///
     /// # Errors

@@ -183,7 +183,7 @@ pub(in crate::case) enum Finding {
     StrayPiece,
     /// Vertices that scatter by this much, mm.
     Scatter(f64),
-    /// Holes and posts inside the outline of an insert, over which hexahedra stand. Pressure no farther from them than
+    /// Holes inside the outline of an insert, over which hexahedra stand. Pressure no farther from them than
     /// this, mm, counts as pressure on them.
     Bridged(Vec<Hole>, f64),
 }

@@ -225,10 +225,14 @@ struct Backside {
     bins: Vec<Vec<u32>>,
 }
 
+/// Largest ratio of the distance to the backside along a normal to that straight down: above a flat backside, the normal of a slope
+/// of 60 degrees. A wall is steeper, and its normal meets the backside far away if at all.
+const MAX_SLANT: f64 = 2.0;
+
 /// Returns the distance from each node of a surface, against its normal, to the backside, mm.
 ///
-/// Where a normal misses the backside (at the rim), the distance straight down counts, and where
-/// that misses too, the nearest vertex of the backside.
+/// On a wall, whose normal may meet the backside far away, and where the normal misses it (at the rim), the distance straight down
+/// counts, and where that misses too, the nearest vertex of the backside.
 fn thickness_at_nodes(
     surface: &ArticulatingSurface,
     mesh: &HexMesh,
@@ -236,9 +240,12 @@ fn thickness_at_nodes(
 ) -> Result<Vec<f64>, InsertError> {
     let backside = Backside::new(mesh, backside);
     let thickness = |(from, normal): (&Vec3, &Vec3)| {
-        backside
-            .distance_along(from, &-normal)
-            .or_else(|| backside.distance_along(from, &-Vec3::y()))
+        let down = || backside.distance_along(from, &-Vec3::y());
+        let is_near = |along: &f64| down().is_none_or(|down| *along <= MAX_SLANT * down);
+        let along_normal = backside.distance_along(from, &-normal);
+        along_normal
+            .filter(is_near)
+            .or_else(down)
             .or_else(|| {
                 let vertices = backside.triangles.iter().flatten();
                 let distances = vertices.map(|vertex| (vertex - from).norm());
