@@ -93,9 +93,12 @@ impl ChangedFactor {
             self.factor_again(nodes, compliance);
             return;
         }
+        let first = self.blocks.len();
         for new in new.chunks(SIDES) {
-            self.keep(new, compliance);
+            self.add_columns(new, compliance);
         }
+        self.factor.forward_groups(&mut self.blocks[first..]);
+        (first..self.blocks.len()).for_each(|block| self.add_products(block));
         let place = |node: &u32| self.kept.iter().position(|kept| *kept == Some(*node));
         let mut changes: Vec<usize> = changed.iter().filter_map(place).collect();
         changes.sort_unstable();
@@ -127,8 +130,8 @@ impl ChangedFactor {
         self.is_forward_known = false;
     }
 
-    /// Adds a block of Z with the columns of up to eight nodes, and its products with all blocks.
-    fn keep(&mut self, new: &[u32], compliance: &NearMatrix) {
+    /// Adds a block of W with the columns of up to eight nodes.
+    fn add_columns(&mut self, new: &[u32], compliance: &NearMatrix) {
         let mut block = vec![zero(); self.factor.rows()];
         for (side, &node) in new.iter().enumerate() {
             let row = self.row_of[node as usize];
@@ -141,13 +144,15 @@ impl ChangedFactor {
                 set(&mut block[row as usize], side, 1.0);
             }
         }
-        self.factor.forward(&mut block);
         self.blocks.push(block);
         let sides = (0..SIDES).map(|side| new.get(side).copied());
         self.kept.extend(sides);
-        let last = self.blocks.len() - 1;
+    }
+
+    /// Adds the products of a block of Z with itself and the blocks before.
+    fn add_products(&mut self, last: usize) {
         let first = self.products.len();
-        for row in first..self.kept.len() {
+        for row in first..first + SIDES {
             self.products.push(vec![0.0; row + 1]);
         }
         for other in 0..=last {

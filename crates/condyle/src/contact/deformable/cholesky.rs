@@ -159,24 +159,37 @@ impl Cholesky {
     /// Solves L x = b for eight right-hand sides at once, in place.
     pub fn forward(&self, sides: &mut [Eight]) {
         for four in 0..self.rows() / LANES {
-            let (first, half) = (LANES * four, four % 2);
-            let own = &self.columns[start(four / 2)..];
-            let (known, here) = sides.split_at_mut(first);
-            let mut sums = [here[0], here[1], here[2], here[3]];
-            for (known, column) in known.iter().zip(own) {
-                for (lane, sum) in sums.iter_mut().enumerate() {
-                    subtract(sum, known, column[half].lane(lane));
-                }
-            }
-            for j in 0..LANES {
-                sums[j] = self.scaled(first + j, sums[j]);
-                let solved = sums[j];
-                for (lane, sum) in sums.iter_mut().enumerate().skip(j + 1) {
-                    subtract(sum, &solved, own[first + j][half].lane(lane));
-                }
-            }
-            here[..LANES].copy_from_slice(&sums);
+            self.forward_four(four, sides);
         }
+    }
+
+    /// Does the same for several groups of eight: rows of the factor are then read from memory once for all of them.
+    pub fn forward_groups(&self, groups: &mut [Vec<Eight>]) {
+        for four in 0..self.rows() / LANES {
+            groups
+                .iter_mut()
+                .for_each(|sides| self.forward_four(four, sides));
+        }
+    }
+
+    fn forward_four(&self, four: usize, sides: &mut [Eight]) {
+        let (first, half) = (LANES * four, four % 2);
+        let own = &self.columns[start(four / 2)..];
+        let (known, here) = sides.split_at_mut(first);
+        let mut sums = [here[0], here[1], here[2], here[3]];
+        for (known, column) in known.iter().zip(own) {
+            for (lane, sum) in sums.iter_mut().enumerate() {
+                subtract(sum, known, column[half].lane(lane));
+            }
+        }
+        for j in 0..LANES {
+            sums[j] = self.scaled(first + j, sums[j]);
+            let solved = sums[j];
+            for (lane, sum) in sums.iter_mut().enumerate().skip(j + 1) {
+                subtract(sum, &solved, own[first + j][half].lane(lane));
+            }
+        }
+        here[..LANES].copy_from_slice(&sums);
     }
 
     /// Solves L' x = b for eight right-hand sides at once, in place.
@@ -250,7 +263,15 @@ mod tests {
             let mut sides: Vec<Eight> =
                 (0..order).map(|row| [half(row, 0), half(row, 1)]).collect();
             sides.resize(factor.rows(), zero());
+            let mut groups = [0, 1].map(|group| {
+                let scale = F64x4::splat(f64::from(group));
+                let scaled = sides.iter().map(|sides| sides.map(|half| half * scale));
+                scaled.collect::<Vec<Eight>>()
+            });
+            factor.forward_groups(&mut groups);
             factor.forward(&mut sides);
+            assert_eq!(groups[1], sides, "{order}");
+            assert!(groups[0].iter().all(|sides| *sides == zero()));
             let mut one: Vec<f64> = sides.iter().map(|sides| sides[1].lane(2)).collect();
             factor.backward_one(&mut one);
             factor.backward(&mut sides);
