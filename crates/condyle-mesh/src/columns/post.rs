@@ -87,24 +87,8 @@ impl Post {
             Place::new(cosine, sine)
         };
         let radii_mm: [f64; AZIMUTHS] = std::array::from_fn(|n| {
-            let is_inside = |radius: f64| {
-                let top = top(middle + along(n) * radius);
-                top.is_some_and(|top| top > level_mm)
-            };
-            let mut outside = 0.0;
-            while is_inside(outside) {
-                outside += LINES_EVERY_MM;
-            }
-            let mut inside = outside - LINES_EVERY_MM;
-            for _ in 0..HALVINGS {
-                let between = (inside + outside) / 2.0;
-                *(if is_inside(between) {
-                    &mut inside
-                } else {
-                    &mut outside
-                }) = between;
-            }
-            outside
+            let above = |radius| top(middle + along(n) * radius).is_some_and(|top| top > level_mm);
+            way_out_mm(above)
         });
         // The height at the foot of every wall: from the side outwards, where the surface falls no longer as a wall does.
         let feet = (0..AZIMUTHS).filter_map(|n| {
@@ -237,6 +221,24 @@ impl Post {
             triangles: near.copied().collect(),
         }
     }
+}
+
+/// Returns the distance at which a way that begins at 0 leaves a region, mm; 0 if it begins outside.
+fn way_out_mm(is_inside: impl Fn(f64) -> bool) -> f64 {
+    let mut outside = 0.0;
+    while is_inside(outside) {
+        outside += LINES_EVERY_MM;
+    }
+    let mut inside = (outside - LINES_EVERY_MM).max(0.0);
+    for _ in 0..HALVINGS {
+        let between = (inside + outside) / 2.0;
+        if is_inside(between) {
+            inside = between;
+        } else {
+            outside = between;
+        }
+    }
+    outside
 }
 
 /// Returns the samples around the highest one that are connected with it above a level.
