@@ -172,6 +172,28 @@ impl ColumnGrid {
         neighbours(number, self.cells.0 + 1, self.cells.1 + 1)
     }
 
+    /// Returns grid points and those connected with them through neighbours that may join, in the order in which they are
+    /// found.
+    pub(super) fn connected(
+        &self,
+        from: Vec<usize>,
+        may_join: impl Fn(usize) -> bool,
+    ) -> Vec<usize> {
+        let mut is_found = vec![false; self.point_count()];
+        from.iter().for_each(|&point| is_found[point] = true);
+        let mut found = from;
+        let mut at = 0;
+        while let Some(&point) = found.get(at) {
+            at += 1;
+            for other in self.around(point).filter(|&other| may_join(other)) {
+                if !std::mem::replace(&mut is_found[other], true) {
+                    found.push(other);
+                }
+            }
+        }
+        found
+    }
+
     /// Returns the grid points of cell (i, k), anticlockwise seen from above.
     pub(super) fn corners(&self, i: usize, k: usize) -> [usize; 4] {
         [(i, k), (i, k + 1), (i + 1, k + 1), (i + 1, k)].map(|(i, k)| self.number(i, k))

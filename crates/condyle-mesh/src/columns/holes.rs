@@ -55,20 +55,9 @@ pub(super) fn holes(footprint: &mut Footprint<'_>, outlines: &[Loop], edge_mm: f
     for outline in outlines.iter().filter(|outline| outline.area_mm2() < 0.0) {
         let samples = &footprint.samples;
         let goes_round = |sample: &usize| outline.goes_round(&samples.place_of_mm(*sample));
-        let mut inside: Vec<usize> = (0..samples.point_count()).filter(goes_round).collect();
-        let mut is_inside = vec![false; samples.point_count()];
-        inside.iter().for_each(|&sample| is_inside[sample] = true);
+        let inside = (0..samples.point_count()).filter(goes_round).collect();
         // The outline is smoothed, so that bare samples next to those inside belong to the hole too.
-        let mut at = 0;
-        while let Some(&sample) = inside.get(at) {
-            at += 1;
-            for other in samples.around(sample) {
-                let is_bare = !footprint.holds[other];
-                if is_bare && !std::mem::replace(&mut is_inside[other], true) {
-                    inside.push(other);
-                }
-            }
-        }
+        let mut inside = samples.connected(inside, |other| !footprint.holds[other]);
         inside.sort_unstable();
         let goes_through = inside.iter().any(|&sample| !footprint.meets_shell[sample]);
         let area_mm2 = -outline.area_mm2();

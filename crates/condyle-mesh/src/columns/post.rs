@@ -1,6 +1,6 @@
 //! The post of an insert, whose walls have no width seen from above.
 
-use std::{cmp::Ordering, collections::BTreeMap, f64::consts::TAU};
+use std::{collections::BTreeMap, f64::consts::TAU};
 
 use super::{
     grid::{ColumnGrid, ColumnMesh, Place},
@@ -76,7 +76,9 @@ impl Post {
             return None;
         }
         let level_mm = (median_mm + top_mm) / 2.0;
-        let region = part_above(&samples, &tops, level_mm);
+        let highest = tops.iter().rposition(|top| *top == Some(top_mm))?;
+        let is_above = |n: usize| tops[n].is_some_and(|top| top > level_mm);
+        let region = samples.connected(vec![highest], is_above);
         if region.len() as f64 > MAX_AREA * heights.len() as f64 {
             return None;
         }
@@ -239,29 +241,6 @@ fn way_out_mm(is_inside: impl Fn(f64) -> bool) -> f64 {
         }
     }
     outside
-}
-
-/// Returns the samples around the highest one that are connected with it above a level.
-fn part_above(samples: &ColumnGrid, tops: &[Option<f64>], level_mm: f64) -> Vec<usize> {
-    let highest = (0..tops.len()).max_by(|&one, &other| {
-        tops[one]
-            .partial_cmp(&tops[other])
-            .unwrap_or(Ordering::Equal)
-    });
-    let mut part = Vec::from_iter(highest);
-    let mut is_found = vec![false; tops.len()];
-    part.iter().for_each(|&sample| is_found[sample] = true);
-    let mut at = 0;
-    while let Some(&sample) = part.get(at) {
-        at += 1;
-        for other in samples.around(sample) {
-            let is_above = tops[other].is_some_and(|top| top > level_mm);
-            if is_above && !std::mem::replace(&mut is_found[other], true) {
-                part.push(other);
-            }
-        }
-    }
-    part
 }
 
 /// Returns the place of a curved surface nearest to a point.
