@@ -15,7 +15,7 @@ const PATIENCE_MS = 180_000;
 const args = ["--no-sandbox", "--use-angle=swiftshader", "--enable-unsafe-swiftshader", "--js-flags=--expose-gc"];
 // A case of a moment.
 const QUICK = "[insert]\nedge_mm = 3.0\nlayers = 1\n[march]\nupdates = 3\n[time]\nincrements = 40\n";
-const LARGEST_MB = 1.3;
+const LARGEST_MB = 1.2;
 
 function watch(page, url, heard) {
   page.on("request", (request) => /^(data|blob):/.test(request.url()) || request.url().startsWith(url) || heard.push(request.url()));

@@ -2,30 +2,17 @@
 
 use std::path::PathBuf;
 
-use minijinja::{Environment, syntax::SyntaxConfig, value::Serde};
-use serde::Serialize;
-use serde_json::json;
+use askama::Template;
 
 use crate::error::ReportError;
-use crate::figure::{STYLE, colour_variables};
-use crate::number::{fixed, significant};
-use crate::program::policy;
+use crate::figure::STYLE;
 
 pub(crate) const PAGE_STYLE: &str = include_str!("page/page.css");
 
-/// Fills a template of HTML, which is part of the program; texts are escaped.
-pub(crate) fn render(template: &str, context: &impl Serialize) -> String {
-    let syntax = SyntaxConfig::builder()
-        .trim_blocks(true)
-        .lstrip_blocks(true)
-        .build();
-    let mut environment = Environment::new();
-    environment.set_syntax(syntax.expect("the default delimiters differ from each other"));
-    environment.add_filter("fixed", fixed);
-    environment.add_filter("significant", significant);
-    // Errors are those of the template itself, which the tests render.
-    let page = environment.render_named_str("page.html", template, Serde(context));
-    page.unwrap_or_else(|error| panic!("a template cannot be rendered: {error:#}"))
+/// Returns the text of a page.
+pub(crate) fn filled(page: &impl Template) -> String {
+    page.render()
+        .expect("a page is written to memory, and no part of it fails")
 }
 
 /// Writes a text and returns its path.
@@ -54,7 +41,8 @@ pub(crate) fn with_own_ids((name, caption, svg): &Sheet) -> (String, String) {
 }
 
 /// A page of tables and pictures on white, one file that opens anywhere.
-#[derive(Clone, Debug, Default, PartialEq)]
+#[derive(Default, Template)]
+#[template(path = "sheets.html")]
 pub(crate) struct Sheets<'a> {
     /// The kind of page, above the title.
     pub kicker: &'a str,
@@ -70,31 +58,6 @@ pub(crate) struct Sheets<'a> {
     pub pictures: &'a [Sheet],
     /// The program of the page, with its scenes, as HTML.
     pub program: Option<&'a str>,
-}
-
-impl Sheets<'_> {
-    pub(crate) fn html(&self) -> String {
-        let (light, dark) = colour_variables();
-        let pictures: Vec<(String, String)> = self.pictures.iter().map(with_own_ids).collect();
-        render(
-            include_str!("sheets.html"),
-            &json!({
-                "policy": policy(self.program.is_some()),
-                "program": self.program,
-                "light": light,
-                "dark": dark,
-                "style": PAGE_STYLE,
-                "figure_style": STYLE,
-                "kicker": self.kicker,
-                "title": self.title,
-                "lede": self.lede,
-                "notes": self.notes,
-                "body": self.body,
-                "tables": self.tables,
-                "pictures": pictures,
-            }),
-        )
-    }
 }
 
 #[cfg(test)]
@@ -122,9 +85,11 @@ mod tests {
             pictures: &pictures,
             program: None,
         };
-        let html = sheets.html();
-        assert!(html.contains("a &lt; b") && html.contains("&lt;1&gt;") && html.contains("one-t"));
-        assert!(html.contains("1 &lt; 2"));
+        let html = filled(&sheets);
+        assert!(
+            html.contains("a &#60; b") && html.contains("&#60;1&#62;") && html.contains("one-t")
+        );
+        assert!(html.contains("1 &#60; 2"));
         assert!(!html.contains("src=") && !html.contains("href="));
     }
 }

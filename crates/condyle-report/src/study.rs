@@ -6,7 +6,7 @@ use crate::error::ReportError;
 use crate::figure::{Axis, Curve, MEASURED, Panel, escape, finite_range, sheet, svg_file, titled};
 pub use crate::number::title_of_path;
 use crate::number::{path_in_words, significant};
-use crate::sheets::{Sheets, write_text};
+use crate::sheets::{Sheets, filled, write_text};
 
 const MAX_INTERVALS: usize = 6;
 
@@ -44,7 +44,7 @@ pub fn write_study_page(
         pictures,
         ..Sheets::default()
     };
-    write_text(folder.join("study.html"), &sheets.html())
+    write_text(folder.join("study.html"), &filled(&sheets))
 }
 
 /// Size of a picture of bars, px: with space for the names on the left, the values on the right, and the heading.

@@ -140,7 +140,8 @@ fn bodies_that_are_no_hip_are_refused_with_the_reason() {
 fn a_hip_is_described_in_its_own_words() {
     let bench = Bench::with_case(
         "[femur]\nshape = \"sphere\"\nradius_mm = 14.0\n[insert]\nshape = \"cup\"\nedge_mm = 2.5\nlayers = 2\n\
-         [machine]\npreset = \"iso-14242-1-like\"\n[march]\nupdates = 1\n[accuracy]\nestimate = false\n",
+         [machine]\npreset = \"iso-14242-1-like\"\n[march]\nupdates = 1\n[accuracy]\nestimate = false\n\
+         [[activity]]\nname = \"walking\"\ncycles_in_sequence = 9\n[[activity]]\nname = \"strolling\"\ncycles_in_sequence = 1\nfrequency_hz = 0.5\n",
     );
     let said = bench.say(&["check", "case.toml"]).out;
     let words = ["head ", "cup "].map(|word| said.lines().any(|line| line.starts_with(word)));
@@ -153,4 +154,5 @@ fn a_hip_is_described_in_its_own_words() {
     let page = std::fs::read_to_string(bench.path("hip/report.html")).expect("a report is written");
     assert!(page.contains("cycles the cup has lost") && page.contains("+ head lateral"));
     assert!(page.contains("Deepest: <tspan") && !page.contains("Deepest medial"));
+    assert!(page.contains("Wear by activity") && !page.contains("AP range"));
 }

@@ -126,7 +126,7 @@ fn several_runs_stand_on_one_page_on_the_same_axes() {
         "other wears ",
         "discretisation errors of both",
         "data-scene=\"scene-1\"",
-        "script-src &#x27;sha256-",
+        "script-src &#39;sha256-",
     ] {
         assert!(page.contains(words), "{words}");
     }
@@ -151,7 +151,7 @@ fn runs_are_called_by_the_titles_of_their_cases_if_these_differ() {
         fs::read_to_string(bench.path("runs.html")).expect("the page is there")
     };
     let titled = page(["Rough <1>", "Smooth"]);
-    assert!(titled.contains("Changed from Rough &lt;1&gt; to Smooth"));
+    assert!(titled.contains("Changed from Rough &#60;1&#62; to Smooth"));
     assert!(!titled.contains("<1>") && !titled.contains("<td>title</td>"));
     assert!(page(["Same", "Same"]).contains("Changed from out to other"));
 }

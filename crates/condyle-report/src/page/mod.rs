@@ -6,19 +6,20 @@ mod tables;
 
 pub(crate) use numbers::{label_of, shown, unit_of};
 
-use condyle_results::catalogue::WEAR_OVER_CONVENTIONAL;
-use serde_json::{Value, json};
+use askama::Template;
+use condyle_results::{LawWear, TestedJoint, catalogue::WEAR_OVER_CONVENTIONAL};
 
 use crate::charts;
 use crate::figure::{Map, Panel, STYLE, colour_variables};
 use crate::maps::{self, DrawnMap};
 use crate::number::significant;
-use crate::program::{moving, policy};
+use crate::program::moving;
 use crate::results::{CaseFacts, Results};
 use crate::scene::Scene;
-use crate::sheets::{PAGE_STYLE, render};
-
-const PAGE: &str = include_str!("page.html");
+use crate::sheets::{PAGE_STYLE, filled};
+use numbers::{Group, Tile};
+use sentences::Finding;
+use tables::{Accuracy, Range, Regions, Row};
 
 /// Scale of the maps, px per mm: the large one at the top, and those below it.
 const LARGE: f64 = 8.0;
@@ -39,78 +40,102 @@ pub fn moving_report_html(results: &Results, scene: &Scene) -> String {
     page_of(results, Some(scene))
 }
 
+/// The page; its template asks for these parts by name.
+#[derive(Template)]
+#[template(path = "page.html")]
+struct Page<'a> {
+    results: &'a Results,
+    facts: CaseFacts,
+    joint: TestedJoint,
+    bodies: [&'static str; 2],
+    colours: (String, String),
+    lede: Option<String>,
+    unfinished: Option<&'static str>,
+    doubts: Vec<Finding>,
+    notes: Vec<Finding>,
+    interval: Option<String>,
+    warnings: Vec<String>,
+    rate: Option<String>,
+    tiles: Vec<Tile>,
+    missing: Vec<&'static str>,
+    left_out: Vec<String>,
+    disagreements: Vec<String>,
+    wear_map: Option<String>,
+    other_maps: Vec<DrawnMap>,
+    regions: Option<Regions>,
+    wear_laws: Vec<(&'a LawWear, [String; 5])>,
+    own_law: Option<&'a LawWear>,
+    wear_over_conventional: Option<String>,
+    activities: Vec<Row>,
+    /// Names and charts of the activities after the first, whose charts are those of the whole page.
+    activity_charts: Vec<(&'a str, Vec<String>)>,
+    wear_charts: Vec<String>,
+    cycle_charts: Vec<String>,
+    cycles: Option<[String; 2]>,
+    ranges: Vec<Range>,
+    numbers: Vec<Group>,
+    volume_check: Option<String>,
+    accuracy: Option<Accuracy>,
+    provenance: Vec<(String, String)>,
+    moving: Option<String>,
+}
+
 fn page_of(results: &Results, scene: Option<&Scene>) -> String {
-    let (light, dark) = colour_variables();
     let summary = results.summary.as_ref();
     let facts = results.case.as_deref().map(CaseFacts::of);
     let facts = facts.unwrap_or_default();
     let on_page = |map: &Map<'_>, desc: &str, over: &str| map.svg(desc, over);
-    let captioned = |map: DrawnMap| json!({ "svg": map.svg, "caption": map.caption });
-    let other_maps = maps::drawn(&maps::MAPS[1..], results, SMALL, on_page).into_iter();
-    let other_maps: Vec<Value> = other_maps.map(captioned).collect();
-    let activities: Vec<_> = results.activities.iter().map(|(one, _)| one).collect();
     let surface = results.surface.as_ref();
     let wear_map =
         surface.and_then(|surface| maps::MAPS[0].of(surface, results.directions(), LARGE));
-    let kinematics = results.kinematics.as_ref();
     let times = summary.and_then(|summary| summary.get(&WEAR_OVER_CONVENTIONAL));
-    render(
-        PAGE,
-        &json!({
-            "policy": policy(scene.is_some()),
-            "style": [PAGE_STYLE, STYLE],
-            "colours": [light, dark],
-            "lede": sentences::lede(results, &facts),
-            "unfinished": sentences::unfinished(results),
-            "doubts": sentences::doubts(results),
-            "notes": sentences::notes(results),
-            "interval": sentences::interval(results),
-            "warnings": sentences::warnings(results),
-            "rate": sentences::rate(results),
-            "tiles": numbers::tiles(results),
-            "missing": sentences::missing(results),
-            "left_out": sentences::left_out(results, scene),
-            "disagreements": sentences::disagreements(results),
-            "wear_map": wear_map.map(|map| map.svg(&map.desc(), "")),
-            "regions": tables::regions(results),
-            "joint": results.directions().joint.name(),
-            "bodies": results.directions().joint.bodies(),
-            "wear_laws": summary.map_or(&[][..], |summary| &summary.wear_laws),
-            "wear_over_conventional": times.map(|times| significant(times, 3)),
-            "activities": activities,
-            "activity_charts": activity_charts(results),
-            "wear_charts": svgs(&charts::wear(results)),
-            "cycle_charts": svgs(&charts::cycle(results)),
-            "cycles": kinematics.and_then(charts::cycle_captions),
-            "has_measured_motion": results.measured_kinematics.is_some(),
-            "has_weighed": results.measured_wear.is_some(),
-            "ranges": tables::ranges(results),
-            "other_maps": other_maps,
-            "numbers": numbers::groups(results),
-            "volume_check": sentences::volume_check(results),
-            "accuracy": tables::accuracy(results),
-            "provenance": sentences::provenance(results),
-            "title": facts.title,
-            "is_deformable": facts.is_deformable,
-            "yields": facts.yields,
-            "creeps": facts.creeps,
-            "case": results.case,
-            "moving": scene.and_then(|scene| moving(&[scene])),
-        }),
-    )
+    let wear_laws = tables::wear_laws(results);
+    let mut laws = wear_laws.iter().map(|(law, _)| *law);
+    let kinematics = results.kinematics.as_ref();
+    let joint = results.directions().joint;
+    let page = Page {
+        results,
+        joint,
+        bodies: joint.bodies(),
+        colours: colour_variables(),
+        lede: sentences::lede(results, &facts),
+        unfinished: sentences::unfinished(results),
+        doubts: sentences::doubts(results),
+        notes: sentences::notes(results),
+        interval: sentences::interval(results),
+        warnings: sentences::warnings(results),
+        rate: sentences::rate(results),
+        tiles: numbers::tiles(results),
+        missing: sentences::missing(results),
+        left_out: sentences::left_out(results, scene),
+        disagreements: sentences::disagreements(results),
+        wear_map: wear_map.map(|map| map.svg(&map.desc(), "")),
+        other_maps: maps::drawn(&maps::MAPS[1..], results, SMALL, on_page),
+        regions: tables::regions(results),
+        own_law: laws.find(|law| law.moved_the_surface),
+        wear_laws,
+        wear_over_conventional: times.map(|times| significant(times, 3)),
+        activities: tables::activities(results),
+        activity_charts: activity_charts(results),
+        wear_charts: svgs(&charts::wear(results)),
+        cycle_charts: svgs(&charts::cycle(results)),
+        cycles: kinematics.and_then(charts::cycle_captions),
+        ranges: tables::ranges(results),
+        numbers: numbers::groups(results),
+        volume_check: sentences::volume_check(results),
+        accuracy: tables::accuracy(results),
+        provenance: sentences::provenance(results),
+        facts,
+        moving: scene.and_then(|scene| moving(&[scene])),
+    };
+    filled(&page)
 }
 
-/// Returns the map of wear depth; `None` without a mesh that has it.
-fn activity_charts(results: &Results) -> Vec<Value> {
-    // The charts of the first activity are those of the whole page.
+fn activity_charts(results: &Results) -> Vec<(&str, Vec<String>)> {
     let others = results.activities.iter().skip(1);
     let charts = others.filter_map(|(activity, table)| {
-        let charts = svgs(&charts::cycle_of(
-            table.as_ref()?,
-            &activity.name,
-            results.motions(),
-        ));
-        Some(json!({ "name": activity.name, "charts": charts }))
+        let panels = charts::cycle_of(table.as_ref()?, &activity.name, results.motions());
+        Some((activity.name.as_str(), svgs(&panels)))
     });
     charts.collect()
 }

@@ -4,30 +4,39 @@ use condyle_results::{
     Interval, Summary,
     catalogue::{self, Scalar, Section},
 };
-use serde::Serialize;
-use serde_json::{Value, json};
+use serde_json::Value;
 
 use crate::number::{first_letter_large, fixed, in_words, significant, with_powers};
 use crate::results::Results;
 
-#[derive(Serialize)]
-pub(super) struct Group {
-    heading: &'static str,
-    rows: Vec<Listed>,
+/// A number at the top of the page.
+pub(super) struct Tile {
+    pub label: String,
+    pub value: String,
+    pub unit: String,
+    pub interval: Option<String>,
+    /// Its discretisation error, in the unit.
+    pub error: Option<String>,
 }
 
-#[derive(Serialize)]
-struct Listed {
-    label: String,
-    value: String,
-    unit: String,
-    meaning: String,
+/// Rows of the table of all numbers under one heading.
+pub(super) struct Group {
+    pub heading: &'static str,
+    pub rows: Vec<Listed>,
+}
+
+/// A row of the table of all numbers.
+pub(super) struct Listed {
+    pub label: String,
+    pub value: String,
+    pub unit: String,
+    pub meaning: String,
 }
 
 /// Parts of names of entries that differ from run to run of one case, or that the page shows as its origin.
 const NOT_LISTED: [&str; 4] = ["wall_s", "version", "hash", "blake3"];
 
-pub(super) fn tiles(results: &Results) -> Vec<Value> {
+pub(super) fn tiles(results: &Results) -> Vec<Tile> {
     let Some(summary) = &results.summary else {
         return Vec::new();
     };
@@ -43,13 +52,13 @@ pub(super) fn tiles(results: &Results) -> Vec<Value> {
                 format!("calibrated law: {median}; 90 % of laboratories: {low} to {high}")
             })
         });
-        Some(json!({
-            "label": label_of(number),
-            "value": shown(number, summary.get(number)?, 3),
-            "unit": unit_of(number),
-            "interval": interval,
-            "error": error.map(|error| significant(error, 2)),
-        }))
+        Some(Tile {
+            label: label_of(number),
+            value: shown(number, summary.get(number)?, 3),
+            unit: unit_of(number),
+            interval,
+            error: error.map(|error| significant(error, 2)),
+        })
     };
     catalogue::headlines().filter_map(tile).collect()
 }

@@ -6,7 +6,6 @@ use condyle_results::{
         CYCLES, INCREMENTS, MASS_LOSS_MG, Scalar, UPDATES, VOLUME_LOSS_MESH_MM3, VOLUME_LOSS_MM3,
     },
 };
-use serde_json::{Value, json};
 
 use crate::number::{
     cycles_in_words, first_letter_large, fixed, in_words, significant, with_powers,
@@ -98,24 +97,35 @@ pub(super) fn unfinished(results: &Results) -> Option<&'static str> {
     )
 }
 
+/// A doubt or a note.
+pub(super) struct Finding {
+    pub message: String,
+    pub advice: String,
+}
+
 /// Returns the plausibility warnings of the summary, and the errors that it could not estimate.
-pub(super) fn doubts(results: &Results) -> Vec<Value> {
+pub(super) fn doubts(results: &Results) -> Vec<Finding> {
     let summary = results.summary.iter();
     let warnings = summary.flat_map(|summary| &summary.plausibility);
     let doubtful = warnings.map(finding);
     let advice = "The stated discretisation error does not include it.";
     let unknown = not_estimated(results).into_iter();
-    let unknown = unknown.map(|message| json!({ "message": message, "advice": advice }));
+    let unknown = unknown.map(|message| Finding {
+        message,
+        advice: advice.to_owned(),
+    });
     doubtful.chain(unknown).collect()
 }
 
-fn finding(found: &PlausibilityWarning) -> Value {
-    let message = ended(&first_letter_large(&found.message));
-    json!({ "message": message, "advice": with_powers(&found.advice) })
+fn finding(found: &PlausibilityWarning) -> Finding {
+    Finding {
+        message: ended(&first_letter_large(&found.message)),
+        advice: with_powers(&found.advice),
+    }
 }
 
 /// Returns the remarks on the physics that leave the numbers sound.
-pub(super) fn notes(results: &Results) -> Vec<Value> {
+pub(super) fn notes(results: &Results) -> Vec<Finding> {
     let notes = results.summary.iter().flat_map(|summary| &summary.notes);
     notes.map(finding).collect()
 }

@@ -1,10 +1,10 @@
 //! The tables of the page that are computed from the results.
 
-use serde_json::{Value, json};
+use std::borrow::Cow;
 
 use super::numbers::unit_of;
 use super::sentences::{not_estimated, reached};
-use condyle_results::{ErrorParts, Part, catalogue::VOLUME_LOSS_MM3};
+use condyle_results::{ActivitySummary, ErrorParts, LawWear, Part, catalogue::VOLUME_LOSS_MM3};
 
 use crate::charts::{Channel, first_and_last};
 use crate::number::{first_letter_large, fixed, significant};
@@ -27,13 +27,39 @@ const LARGEST_OF_CYCLE: [(&str, &str, &str); 2] = [
     ),
 ];
 
-/// Returns the regions of the surface compared on the last mesh; null without a mesh that has the wear depth.
-pub(super) fn regions(results: &Results) -> Value {
-    let surface = results.surface.as_ref();
-    let worn = surface.and_then(|surface| surface.field("wear_depth_mm"));
-    let Some((surface, depth)) = surface.zip(worn) else {
-        return Value::Null;
-    };
+/// The regions of the surface, compared.
+pub(super) struct Regions {
+    pub names: Vec<&'static str>,
+    pub rows: Vec<Row>,
+}
+
+/// A quantity with its values, one a column.
+pub(super) struct Row {
+    pub name: String,
+    pub unit: String,
+    pub values: Vec<String>,
+}
+
+/// Ranges of a channel.
+pub(super) struct Range {
+    pub title: Cow<'static, str>,
+    pub unit: &'static str,
+    /// For the first and the last cycle: smallest value, its percent of the cycle, largest value, its percent.
+    pub ends: Vec<[String; 4]>,
+}
+
+/// The table of discretisation errors, and its notes.
+pub(super) struct Accuracy {
+    pub parts: Vec<String>,
+    pub rows: Vec<Row>,
+    pub remedies: String,
+    pub missing: Vec<String>,
+}
+
+/// Returns the regions of the surface compared on the last mesh; `None` without a mesh that has the wear depth.
+pub(super) fn regions(results: &Results) -> Option<Regions> {
+    let surface = results.surface.as_ref()?;
+    let depth = surface.field("wear_depth_mm")?;
     let mut regions = Region::all_of(results.directions());
     // Medial comes first on both sides.
     regions.sort_by_key(|(_, name)| *name == "Lateral");
@@ -45,8 +71,11 @@ pub(super) fn regions(results: &Results) -> Value {
     let scar_mm = SCAR_SHARE * deepest.map_or(0.0, |found| found.value);
     let compare = |name: &str, unit: &str, value: &dyn Fn(Region) -> Option<String>| {
         let values = regions.iter().map(|(region, _)| value(*region));
-        let values: Vec<String> = values.map(Option::unwrap_or_default).collect();
-        json!({ "name": name, "unit": unit, "values": values })
+        Row {
+            name: name.to_owned(),
+            unit: unit.to_owned(),
+            values: values.map(Option::unwrap_or_default).collect(),
+        }
     };
     let largest = |name: &str, unit: &str, values: &[f64]| {
         compare(name, unit, &|region| {
@@ -84,8 +113,8 @@ pub(super) fn regions(results: &Results) -> Value {
             Some(significant(surface.smallest_positive(&values, region)?, 3))
         }));
     }
-    let names: Vec<&str> = regions.iter().map(|(_, name)| *name).collect();
-    json!({ "names": names, "rows": rows })
+    let names = regions.iter().map(|(_, name)| *name).collect();
+    Some(Regions { names, rows })
 }
 
 /// Returns the thickness under the scar, where thinness matters, and anywhere, where the thinnest place may be the
@@ -123,9 +152,8 @@ fn volume_mm3(results: &Results, surface: &SurfaceFields, depth: &[f64], region:
     }
 }
 
-/// Returns the range of every channel in the first and in the last cycle: smallest value, its percent of the cycle,
-/// largest value, its percent.
-pub(super) fn ranges(results: &Results) -> Vec<Value> {
+/// Returns the range of every channel in the first and in the last cycle.
+pub(super) fn ranges(results: &Results) -> Vec<Range> {
     let Some(table) = &results.kinematics else {
         return Vec::new();
     };
@@ -141,16 +169,72 @@ pub(super) fn ranges(results: &Results) -> Vec<Value> {
             let finite = rows.filter(|&row| values[row].is_finite());
             let low = finite.clone().min_by(by_value)?;
             let high = finite.max_by(by_value)?;
-            Some([values[low], percent[low], values[high], percent[high]])
+            Some([
+                significant(values[low], 3),
+                fixed(percent[low], 0),
+                significant(values[high], 3),
+                fixed(percent[high], 0),
+            ])
         });
-        let ends: Vec<[f64; 4]> = ends.collect::<Option<_>>()?;
-        Some(json!({ "title": channel.title, "unit": channel.unit, "ends": ends }))
+        Some(Range {
+            ends: ends.collect::<Option<_>>()?,
+            title: channel.title,
+            unit: channel.unit,
+        })
     });
     rows.collect()
 }
 
+/// Returns cycles and wear in percent, wear, pressure, area and force of each activity; for knees its ranges and medial
+/// share, too.
+pub(super) fn activities(results: &Results) -> Vec<Row> {
+    let activities = results.activities.iter().map(|(activity, _)| activity);
+    let mass_mg: f64 = activities.clone().map(|one| one.mass_loss_mg).sum();
+    let row = |one: &ActivitySummary| {
+        let of_all = [
+            significant(100.0 * one.share_of_cycles, 3),
+            significant(100.0 * one.mass_loss_mg / mass_mg, 3),
+            significant(one.mass_loss_mg, 3),
+            significant(one.peak_pressure_mpa, 3),
+            fixed(one.peak_contact_area_mm2, 0),
+            fixed(one.peak_axial_force_n, 0),
+        ];
+        let of_knees = one.knee.iter().flat_map(|knee| {
+            [
+                significant(knee.ap_range_mm, 3),
+                significant(knee.ie_range_deg, 3),
+                fixed(100.0 * knee.medial_load_share, 1),
+            ]
+        });
+        Row {
+            name: one.name.clone(),
+            unit: String::new(),
+            values: of_all.into_iter().chain(of_knees).collect(),
+        }
+    };
+    activities.map(row).collect()
+}
+
+/// Returns each wear law with mass in a million cycles, mass, volume, depth, and the part outside of its fit.
+pub(super) fn wear_laws(results: &Results) -> Vec<(&LawWear, [String; 5])> {
+    let summary = results.summary.iter();
+    let laws = summary.flat_map(|summary| &summary.wear_laws);
+    let row = |law: &LawWear| {
+        let outside = law.outside_of_fit_percent;
+        let outside = outside.map(|percent| fixed(percent, 0));
+        [
+            significant(law.mass_loss_mg_per_million_cycles, 3),
+            significant(law.mass_loss_mg, 3),
+            significant(law.volume_loss_mm3, 3),
+            significant(law.max_depth_mm, 3),
+            outside.unwrap_or_else(|| "not known".to_owned()),
+        ]
+    };
+    laws.map(|law| (law, row(law))).collect()
+}
+
 /// Returns the errors that the summary estimates; none if it has no estimate.
-pub(super) fn accuracy(results: &Results) -> Option<Value> {
+pub(super) fn accuracy(results: &Results) -> Option<Accuracy> {
     let error = results.summary.as_ref()?.error.as_ref()?;
     let parts = ErrorParts::default().parts().map(|(part, _)| part);
     let rows = error.quantities().flat_map(|quantity| {
@@ -173,15 +257,15 @@ pub(super) fn accuracy(results: &Results) -> Option<Value> {
         };
         format!("{} by {remedy}", name(part))
     });
-    Some(json!({
-        "rows": rows.collect::<Vec<_>>(),
-        "parts": names.chain(["Together".to_owned()]).collect::<Vec<_>>(),
-        "remedies": remedies.join(", "),
-        "missing": not_estimated(results),
-    }))
+    Some(Accuracy {
+        parts: names.chain(["Together".to_owned()]).collect(),
+        rows: rows.collect(),
+        remedies: remedies.join(", "),
+        missing: not_estimated(results),
+    })
 }
 
-fn row(name: &str, unit: &str, error: &ErrorParts) -> Value {
+fn row(name: &str, unit: &str, error: &ErrorParts) -> Row {
     let digits = |value: f64| match unit {
         "%" => fixed(value, 2),
         _ => significant(value, 2),
@@ -189,5 +273,9 @@ fn row(name: &str, unit: &str, error: &ErrorParts) -> Value {
     let parts = error.parts().into_iter().map(|(_, part)| part);
     let values = parts.chain([Some(error.total)]);
     let values = values.map(|value| value.map_or_else(|| String::from("unknown"), digits));
-    json!({ "name": name, "values": values.collect::<Vec<_>>(), "unit": unit })
+    Row {
+        name: name.to_owned(),
+        unit: unit.to_owned(),
+        values: values.collect(),
+    }
 }

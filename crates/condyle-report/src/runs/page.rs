@@ -1,10 +1,10 @@
 //! Several runs side by side on one page: tables, and curves and maps with common axes and colours.
 
+use askama::Template;
 use condyle_results::{
     SettingDifference,
     catalogue::{self, Scalar},
 };
-use serde_json::{Value, json};
 
 use super::differences::{
     CurveDifference, Differences, MapDifference, NumberDifference, Run, subtracted,
@@ -18,7 +18,7 @@ use crate::number::significant;
 use crate::page::{label_of, shown, unit_of};
 use crate::program::moving;
 use crate::scene::Scene;
-use crate::sheets::{Sheet, Sheets, render, with_own_ids};
+use crate::sheets::{Sheet, Sheets, filled, with_own_ids};
 
 /// Names every run by the title of its case, unless another run has the same.
 fn name_by_titles(runs: &mut [Run]) {
@@ -72,7 +72,34 @@ pub fn runs_html(mut runs: Vec<Run>) -> String {
         pictures: &pictures,
         program: program.as_deref(),
     };
-    sheets.html()
+    filled(&sheets)
+}
+
+/// The cells of a row of a table.
+type Row = Vec<Option<String>>;
+
+/// Tables as HTML; their template asks for these parts by name.
+#[derive(Template)]
+#[template(path = "differences.html")]
+struct Tables<'a> {
+    names: Vec<&'a str>,
+    head: Vec<&'a str>,
+    numbers: Vec<Row>,
+    differences: Vec<Compared<'a>>,
+    has_bodies: bool,
+    wear: Option<(String, String)>,
+}
+
+/// A difference as rows of text, with the digits and the words of the report.
+struct Compared<'a> {
+    first: &'a str,
+    second: &'a str,
+    /// The pair in words, before the heading of a table.
+    pair: String,
+    settings: Vec<Row>,
+    numbers: Vec<Row>,
+    curves: Vec<Row>,
+    maps: Vec<Row>,
 }
 
 /// Returns the tables as HTML: numbers of all runs with their errors, and differences from the first; with places for the
@@ -97,76 +124,79 @@ fn tables(
         let named = [Some(label_of(scalar)), Some(unit_of(scalar))].into_iter();
         is_known.then(|| named.chain(cells).collect())
     };
-    let numbers: Vec<Vec<Option<String>>> = catalogue::results().filter_map(row).collect();
+    let numbers: Vec<Row> = catalogue::results().filter_map(row).collect();
     let names: Vec<&str> = runs.iter().map(|run| run.name.as_str()).collect();
-    let differences: Vec<Value> = differences.iter().map(in_words).collect();
-    let context = json!({
-        "names": names,
-        "numbers": numbers,
-        "differences": differences,
-        "has_bodies": has_bodies,
-        "wear": wear.map(with_own_ids),
-    });
-    render(include_str!("tables.html"), &context)
+    filled(&Tables {
+        head: ["Quantity", "Unit"]
+            .into_iter()
+            .chain(names.iter().copied())
+            .collect(),
+        names,
+        numbers,
+        differences: differences.iter().map(Compared::new).collect(),
+        has_bodies,
+        wear: wear.map(with_own_ids),
+    })
 }
 
-/// Returns a difference as the template shows it: rows of text, with the digits and the words of the report.
-fn in_words(difference: &Differences) -> Value {
-    let setting = |one: &SettingDifference| json!([one.key, one.first, one.second]);
-    let number = |one: &NumberDifference| {
-        let [first, second] = [one.first, one.second].map(|value| shown(one.scalar, value, 4));
-        let magnitude = shown(one.scalar, one.difference.abs(), 3);
-        let apart = format!("{}{magnitude}", sign(one.difference));
-        let percent = one.difference_percent.map(signed);
-        let errors = one.errors().map(|errors| significant(errors, 2));
-        json!([
-            one.label,
-            one.unit,
+impl<'a> Compared<'a> {
+    fn new(difference: &'a Differences) -> Self {
+        let [first, second] = &difference.runs;
+        // The titles are the names of the runs.
+        let settings = difference.settings.iter().filter(|one| one.key != "title");
+        let setting = |one: &SettingDifference| {
+            vec![Some(one.key.clone()), one.first.clone(), one.second.clone()]
+        };
+        Self {
             first,
             second,
-            apart,
-            percent,
-            errors,
-            one.verdict()
-        ])
-    };
-    let curve = |one: &CurveDifference| {
-        let percent = one
-            .rms_percent_of_range
-            .map(|percent| significant(percent, 3));
-        let [rms, at] = [one.rms, one.largest_at_percent].map(|value| significant(value, 3));
-        json!([
-            one.title,
-            one.cycle,
-            one.unit,
-            rms,
-            percent,
-            signed(one.largest),
-            at
-        ])
-    };
-    let map = |one: &MapDifference| {
-        let percent = one.largest_percent.map(|percent| significant(percent, 3));
-        let [x, z, mean] =
-            [one.x_mm, one.z_mm, one.mean_absolute].map(|value| significant(value, 3));
-        json!([
-            one.title,
-            one.unit,
-            signed(one.largest),
-            percent,
-            format!("{x}, {z}"),
-            mean
-        ])
-    };
-    // The titles are the names of the runs.
-    let settings = difference.settings.iter().filter(|one| one.key != "title");
-    json!({
-        "runs": difference.runs,
-        "settings": settings.map(setting).collect::<Vec<_>>(),
-        "numbers": difference.numbers.iter().map(number).collect::<Vec<_>>(),
-        "curves": difference.curves.iter().map(curve).collect::<Vec<_>>(),
-        "maps": difference.maps.iter().map(map).collect::<Vec<_>>(),
-    })
+            pair: format!("{second} compared with {first}: "),
+            settings: settings.map(setting).collect(),
+            numbers: difference.numbers.iter().map(of_number).collect(),
+            curves: difference.curves.iter().map(of_curve).collect(),
+            maps: difference.maps.iter().map(of_map).collect(),
+        }
+    }
+}
+
+fn of_number(one: &NumberDifference) -> Row {
+    let [first, second] = [one.first, one.second].map(|value| shown(one.scalar, value, 4));
+    let magnitude = shown(one.scalar, one.difference.abs(), 3);
+    vec![
+        Some(one.label.clone()),
+        Some(one.unit.clone()),
+        Some(first),
+        Some(second),
+        Some(format!("{}{magnitude}", sign(one.difference))),
+        one.difference_percent.map(signed),
+        one.errors().map(|errors| significant(errors, 2)),
+        Some(one.verdict()),
+    ]
+}
+
+fn of_curve(one: &CurveDifference) -> Row {
+    let percent = one.rms_percent_of_range;
+    vec![
+        Some(one.title.clone()),
+        Some(one.cycle.to_owned()),
+        Some(one.unit.to_owned()),
+        Some(significant(one.rms, 3)),
+        percent.map(|percent| significant(percent, 3)),
+        Some(signed(one.largest)),
+        Some(significant(one.largest_at_percent, 3)),
+    ]
+}
+
+fn of_map(one: &MapDifference) -> Row {
+    let [x, z, mean] = [one.x_mm, one.z_mm, one.mean_absolute].map(|value| significant(value, 3));
+    vec![
+        Some(one.title.to_owned()),
+        Some(one.unit.to_owned()),
+        Some(signed(one.largest)),
+        one.largest_percent.map(|percent| significant(percent, 3)),
+        Some(format!("{x}, {z}")),
+        Some(mean),
+    ]
 }
 
 fn sign(value: f64) -> char {

@@ -222,7 +222,7 @@ fn the_case_is_shown_as_text() {
         case,
         ..Results::default()
     });
-    assert!(html.contains("a &lt;b&gt; &amp; c") && !html.contains("a <b>"));
+    assert!(html.contains("a &#60;b&#62; &#38; c") && !html.contains("a <b>"));
 }
 
 #[test]
