@@ -141,7 +141,8 @@ fn a_hip_is_described_in_its_own_words() {
     let bench = Bench::with_case(
         "[femur]\nshape = \"sphere\"\nradius_mm = 14.0\n[insert]\nshape = \"cup\"\nedge_mm = 2.5\nlayers = 2\n\
          [machine]\npreset = \"iso-14242-1-like\"\n[march]\nupdates = 1\n[accuracy]\nestimate = false\n\
-         [[activity]]\nname = \"walking\"\ncycles_in_sequence = 9\n[[activity]]\nname = \"strolling\"\ncycles_in_sequence = 1\nfrequency_hz = 0.5\n",
+         [[activity]]\nname = \"walking\"\ncycles_in_sequence = 9\n\
+         [[activity]]\nname = \"strolling\"\ncycles_in_sequence = 1\nfrequency_hz = 0.5\n",
     );
     let said = bench.say(&["check", "case.toml"]).out;
     let words = ["head ", "cup "].map(|word| said.lines().any(|line| line.starts_with(word)));

@@ -10,7 +10,7 @@ use askama::Template;
 use condyle_results::{LawWear, TestedJoint, catalogue::WEAR_OVER_CONVENTIONAL};
 
 use crate::charts;
-use crate::figure::{Map, Panel, STYLE, colour_variables};
+use crate::figure::{Map, Panel, STYLE};
 use crate::maps::{self, DrawnMap};
 use crate::number::significant;
 use crate::program::moving;
@@ -19,7 +19,7 @@ use crate::scene::Scene;
 use crate::sheets::{PAGE_STYLE, filled};
 use numbers::{Group, Tile};
 use sentences::Finding;
-use tables::{Accuracy, Range, Regions, Row};
+use tables::{Accuracy, Range, Regions};
 
 /// Scale of the maps, px per mm: the large one at the top, and those below it.
 const LARGE: f64 = 8.0;
@@ -48,7 +48,6 @@ struct Page<'a> {
     facts: CaseFacts,
     joint: TestedJoint,
     bodies: [&'static str; 2],
-    colours: (String, String),
     lede: Option<String>,
     unfinished: Option<&'static str>,
     doubts: Vec<Finding>,
@@ -66,7 +65,7 @@ struct Page<'a> {
     wear_laws: Vec<(&'a LawWear, [String; 5])>,
     own_law: Option<&'a LawWear>,
     wear_over_conventional: Option<String>,
-    activities: Vec<Row>,
+    activities: Vec<(&'a str, Vec<String>)>,
     /// Names and charts of the activities after the first, whose charts are those of the whole page.
     activity_charts: Vec<(&'a str, Vec<String>)>,
     wear_charts: Vec<String>,
@@ -97,7 +96,6 @@ fn page_of(results: &Results, scene: Option<&Scene>) -> String {
         results,
         joint,
         bodies: joint.bodies(),
-        colours: colour_variables(),
         lede: sentences::lede(results, &facts),
         unfinished: sentences::unfinished(results),
         doubts: sentences::doubts(results),

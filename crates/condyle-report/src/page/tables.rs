@@ -187,7 +187,7 @@ pub(super) fn ranges(results: &Results) -> Vec<Range> {
 
 /// Returns cycles and wear in percent, wear, pressure, area and force of each activity; for knees its ranges and medial
 /// share, too.
-pub(super) fn activities(results: &Results) -> Vec<Row> {
+pub(super) fn activities(results: &Results) -> Vec<(&str, Vec<String>)> {
     let activities = results.activities.iter().map(|(activity, _)| activity);
     let mass_mg: f64 = activities.clone().map(|one| one.mass_loss_mg).sum();
     let row = |one: &ActivitySummary| {
@@ -206,13 +206,11 @@ pub(super) fn activities(results: &Results) -> Vec<Row> {
                 fixed(100.0 * knee.medial_load_share, 1),
             ]
         });
-        Row {
-            name: one.name.clone(),
-            unit: String::new(),
-            values: of_all.into_iter().chain(of_knees).collect(),
-        }
+        of_all.into_iter().chain(of_knees).collect()
     };
-    activities.map(row).collect()
+    activities
+        .map(|one| (one.name.as_str(), row(one)))
+        .collect()
 }
 
 /// Returns each wear law with mass in a million cycles, mass, volume, depth, and the part outside of its fit.

@@ -152,14 +152,14 @@ impl<'a> Compared<'a> {
             second,
             pair: format!("{second} compared with {first}: "),
             settings: settings.map(setting).collect(),
-            numbers: difference.numbers.iter().map(of_number).collect(),
-            curves: difference.curves.iter().map(of_curve).collect(),
-            maps: difference.maps.iter().map(of_map).collect(),
+            numbers: difference.numbers.iter().map(number_cells).collect(),
+            curves: difference.curves.iter().map(curve_cells).collect(),
+            maps: difference.maps.iter().map(map_cells).collect(),
         }
     }
 }
 
-fn of_number(one: &NumberDifference) -> Row {
+fn number_cells(one: &NumberDifference) -> Row {
     let [first, second] = [one.first, one.second].map(|value| shown(one.scalar, value, 4));
     let magnitude = shown(one.scalar, one.difference.abs(), 3);
     vec![
@@ -174,7 +174,7 @@ fn of_number(one: &NumberDifference) -> Row {
     ]
 }
 
-fn of_curve(one: &CurveDifference) -> Row {
+fn curve_cells(one: &CurveDifference) -> Row {
     let percent = one.rms_percent_of_range;
     vec![
         Some(one.title.clone()),
@@ -187,7 +187,7 @@ fn of_curve(one: &CurveDifference) -> Row {
     ]
 }
 
-fn of_map(one: &MapDifference) -> Row {
+fn map_cells(one: &MapDifference) -> Row {
     let [x, z, mean] = [one.x_mm, one.z_mm, one.mean_absolute].map(|value| significant(value, 3));
     vec![
         Some(one.title.to_owned()),
