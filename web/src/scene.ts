@@ -115,13 +115,17 @@ export class Scene {
     const { offset, length, range } = this.entry(name);
     const [low, high] = range ?? [0, 0];
     const levels = new Uint16Array(this.buffer, this.start + offset, length);
-    return Float32Array.from(levels, (level) => low + ((high - low) * level) / 65535);
+    const values = new Float32Array(length);
+    // Several times as fast as `Float32Array.from` with a function.
+    for (let i = 0; i < length; i++) values[i] = low + ((high - low) * levels[i]!) / 65535;
+    return values;
   }
 
   // The articulating surface after an update, mm.
   surface(update: number): Float32Array {
-    const moved = this.values(`surface.moved.${update}`);
-    return this.values("surface.nodes").map((place, index) => place + moved[index]!);
+    const places = this.values("surface.nodes");
+    this.values(`surface.moved.${update}`).forEach((moved, index) => (places[index]! += moved));
+    return places;
   }
 
   field(name: string, update: number): Float32Array {

@@ -23,7 +23,6 @@ import {
   WebGLRenderer,
 } from "three";
 import { OrbitControls } from "three/addons/controls/OrbitControls.js";
-import { mergeVertices, toCreasedNormals } from "three/addons/utils/BufferGeometryUtils.js";
 import type { ColourMap, Range } from "./colours";
 import { element } from "./dom";
 import { FlatStage } from "./flat_stage";
@@ -52,8 +51,6 @@ const MM_A_NEWTON = 0.02;
 const SKIN = 0xd9d7cf;
 const FEMUR = 0x9fb0bf;
 const CUT_FACE = 0xb9ad8c;
-// Edges with a larger angle stay sharp.
-const SHARP_RAD = (50 * Math.PI) / 180;
 // Distance of the eye from the middle of the bodies, in radii of the sphere around them.
 const RADII_AWAY = 3.8;
 // Turn and zoom by a key.
@@ -394,8 +391,9 @@ export class Stage {
     if (this.isAsked) return;
     this.isAsked = true;
     requestAnimationFrame(() => {
-      this.isAsked = false;
       if (this.end.signal.aborted) return;
+      if (this.isNew) this.fit();
+      this.isAsked = false;
       // The first picture of a body is at rest; each change of the resolution holds up the page.
       if (!this.isSlow || this.isNew) return this.draw();
       this.drawWith(COARSE_IN_MOTION);
@@ -408,7 +406,10 @@ export class Stage {
     const { clientWidth: width, clientHeight: height } = this.host;
     if (!width || !height) return;
     const size = this.renderer.getSize(new Vector2());
-    if (size.x !== width || size.y !== height) this.renderer.setSize(width, height);
+    const isSame = size.x === width && size.y === height;
+    // An observer reports the first size after it was drawn.
+    if (isSame && !this.isNew) return;
+    if (!isSame) this.renderer.setSize(width, height);
     this.camera.aspect = width / height;
     this.camera.updateProjectionMatrix();
     // The colour of the page is known only once the stage is in the document.
@@ -435,26 +436,24 @@ function namesOf(scene: Scene, bounds: Box3): { box: HTMLElement; at: Vector3 }[
 function surfaceGeometry(scene: Scene, colours: Float32Array): BufferGeometry {
   const quads = scene.whole("surface.quads");
   const triangles = new Uint32Array(1.5 * quads.length);
-  for (let i = 0; 4 * i < quads.length; i++) {
-    const [a, b, c, d] = quads.subarray(4 * i, 4 * i + 4);
-    triangles.set([a!, b!, c!, a!, c!, d!], 6 * i);
-  }
+  const corners = [0, 1, 2, 0, 2, 3];
+  for (let i = 0; i < triangles.length; i++) triangles[i] = quads[4 * Math.floor(i / 6) + corners[i % 6]!]!;
   const geometry = geometryOf(scene.values("surface.nodes"), triangles);
   geometry.setAttribute("color", new BufferAttribute(colours, 3));
   return geometry;
 }
 
 function bodyGeometry(scene: Scene, name: string): BufferGeometry {
-  const geometry = geometryOf(scene.values(`${name}.nodes`), Uint32Array.from(scene.whole(`${name}.triangles`)));
-  // Corners with one normal are shared again, so that each is lit once.
-  return mergeVertices(toCreasedNormals(geometry, SHARP_RAD));
+  const geometry = geometryOf(scene.values(`${name}.nodes`), new Uint32Array(scene.whole(`${name}.triangles`)));
+  // Sharp edges have separate vertices on both sides.
+  geometry.computeVertexNormals();
+  return geometry;
 }
 
 function geometryOf(places: Float32Array, triangles: Uint32Array): BufferGeometry {
   const geometry = new BufferGeometry();
   geometry.setAttribute("position", new BufferAttribute(places, 3));
   geometry.setIndex(new BufferAttribute(triangles, 1));
-  geometry.computeVertexNormals();
   geometry.computeBoundingSphere();
   return geometry;
 }

@@ -40,6 +40,6 @@ mod triangle_mesh;
 pub use coarse::{PICTURE_DEVIATION_MM, coarser};
 pub use condyle_fem::Vec3;
 pub use curved_mesh::{CurvedMesh, Foot};
-pub use divided_mesh::{Cluster, DividedMesh};
+pub use divided_mesh::{Cluster, DividedMesh, split_at_creases};
 pub use fitted_sphere::{FittedSphere, Roundness};
 pub use triangle_mesh::{TriangleMesh, bounds, hit};

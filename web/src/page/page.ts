@@ -27,8 +27,9 @@ function byId(id: string): HTMLElement {
   return document.getElementById(id)!;
 }
 
-function nextFrame(): Promise<unknown> {
-  return new Promise((done) => requestAnimationFrame(done));
+// Waits until the page is painted; the time after it is that of another task.
+function painted(): Promise<unknown> {
+  return new Promise((done) => requestAnimationFrame(() => setTimeout(done)));
 }
 
 class Page {
@@ -165,20 +166,20 @@ class Page {
     byId("doubtful").hidden = byId("doubts").childElementCount === 0;
   }
 
-  // A frame between numbers, bodies and the rest, so that none of them holds up the page for long.
+  // The page is painted between numbers, bodies and the rest, so that none of them holds it up for long.
   private async find(found: Found): Promise<void> {
     const { summary } = found;
     this.now = found;
     this.showNumbers(summary, false);
     const solved = summary.wall_s + (summary.error?.wall_s ?? 0);
     this.say(`${inDigits(summary.cycles / 1e6)} million cycles, solved in ${inDigits(solved)} s on this machine`);
-    await nextFrame();
+    await painted();
     this.shown.showBodies(found);
     const stage = this.shown.viewer?.stage;
     if (stage && !stage.isFlat) stage.grip(gripsOf(found, (places, value) => this.sliders.set(places, value)));
-    await nextFrame();
+    await painted();
     this.shown.showCharts();
-    await nextFrame();
+    await painted();
     this.compared.show(found, this.shown.viewer);
     // Meshes are in no address: with them, the case would not run elsewhere.
     if (Object.keys(this.laboratory.meshes).length === 0) void this.memory.remember(this.laboratory.text);

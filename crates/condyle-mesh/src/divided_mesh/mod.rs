@@ -17,6 +17,7 @@ use crate::{
 };
 
 pub(crate) use self::facets::Facets;
+pub use self::normals::split_at_creases;
 
 /// Share of a corner below which a place lies on the opposite side, in spite of rounding.
 const ON_SIDE: f64 = 1e-9;

@@ -3,6 +3,7 @@
 use std::collections::BTreeMap;
 
 use super::{
+    facet_normals,
     patch::Patch,
     samples::{MIN_HEIGHT_MM, height},
 };
@@ -165,6 +166,32 @@ pub(super) fn creases(
     triangles
         .map(|(one, sides)| sides.map(|side| side.is_some_and(|(other, _)| is_crease(one, other))))
         .collect()
+}
+
+/// Returns the mesh with separate vertices for the surfaces on both sides of an edge, where triangles meet at a cosine below
+/// `min_cosine`: a normal that is averaged over the triangles at a vertex then leaves the edge sharp.
+pub fn split_at_creases(mesh: &TriangleMesh, min_cosine: f64) -> TriangleMesh {
+    let (facets, across) = (facet_normals(mesh), sides_across(mesh));
+    let triangles = across.iter().zip(&facets);
+    let is_crease: Vec<[bool; 3]> = triangles
+        .map(|(sides, facet)| {
+            sides.map(|side| side.is_some_and(|(other, _)| facet.dot(&facets[other]) < min_cosine))
+        })
+        .collect();
+    let fan_of = fans(&across, &is_crease);
+    let mut vertices = Vec::with_capacity(mesh.vertices.len());
+    for (corners, fans) in mesh.triangles.iter().zip(&fan_of) {
+        for (&corner, &fan) in corners.iter().zip(fans) {
+            // Fans are numbered in the order of their first corners.
+            if fan as usize == vertices.len() {
+                vertices.push(mesh.vertices[corner as usize]);
+            }
+        }
+    }
+    TriangleMesh {
+        vertices,
+        triangles: fan_of,
+    }
 }
 
 /// Returns for every corner the number of its fan: the corners around a vertex between two creases.

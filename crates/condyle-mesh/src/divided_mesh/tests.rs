@@ -175,3 +175,52 @@ fn verify_divided_facets_have_the_distance_of_their_cylinder() {
         );
     }
 }
+
+#[test]
+fn the_rim_of_a_cylinder_is_split_and_its_side_is_not() {
+    const SIDES: u32 = 24;
+    let ring = |height: f64| {
+        (0..SIDES).map(move |side| {
+            let angle = f64::from(side) / f64::from(SIDES) * std::f64::consts::TAU;
+            Vec3::new(angle.cos(), angle.sin(), height)
+        })
+    };
+    let ends = [0.0, 1.0].map(|height| Vec3::new(0.0, 0.0, height));
+    let vertices: Vec<Vec3> = ring(0.0).chain(ring(1.0)).chain(ends).collect();
+    let triangles = (0..SIDES).flat_map(|a| {
+        let b = (a + 1) % SIDES;
+        let [c, d] = [a + SIDES, b + SIDES];
+        [
+            [a, b, d],
+            [a, d, c],
+            [b, a, 2 * SIDES],
+            [c, d, 2 * SIDES + 1],
+        ]
+    });
+    let cylinder = TriangleMesh {
+        vertices,
+        triangles: triangles.collect(),
+    };
+    let split = split_at_creases(&cylinder, 0.64);
+    assert_eq!(split.vertices.len() as u32, 4 * SIDES + 2);
+    let normals = split.vertex_normals();
+    for (triangle, corners) in split.triangles.iter().enumerate() {
+        assert_eq!(split.corners(triangle), cylinder.corners(triangle));
+        for &corner in corners {
+            let (place, normal) = (split.vertices[corner as usize], normals[corner as usize]);
+            let wanted = if triangle % 4 < 2 {
+                Vec3::new(place.x, place.y, 0.0)
+            } else {
+                Vec3::new(0.0, 0.0, 2.0 * place.z - 1.0)
+            };
+            assert!(
+                (normal - wanted).norm() < 1e-9,
+                "{triangle}: {normal} {wanted}"
+            );
+        }
+    }
+    assert_eq!(
+        split_at_creases(&cylinder, -0.5).vertices.len(),
+        cylinder.vertices.len()
+    );
+}

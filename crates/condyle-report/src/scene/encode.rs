@@ -1,6 +1,6 @@
 //! A scene as bytes.
 
-use condyle_mesh::{PICTURE_DEVIATION_MM, TriangleMesh, Vec3, coarser};
+use condyle_mesh::{PICTURE_DEVIATION_MM, TriangleMesh, Vec3, coarser, split_at_creases};
 use serde_json::{Value, json};
 
 use super::{Scene, SceneCycle, SceneUpdate};
@@ -146,7 +146,9 @@ fn chart(panel: &Panel) -> Value {
 }
 
 fn add_body(arrays: &mut Arrays, name: &str, body: &TriangleMesh) {
-    let body = coarser(body, PICTURE_DEVIATION_MM);
+    /// Cosine of 50 degrees: triangles within the deviation of a rounded surface meet at less, edges of an implant at more.
+    const MIN_COSINE: f64 = 0.643;
+    let body = split_at_creases(&coarser(body, PICTURE_DEVIATION_MM), MIN_COSINE);
     add_places(arrays, &format!("{name}.nodes"), &body.vertices);
     let triangles = body.triangles.as_flattened();
     arrays.whole(&format!("{name}.triangles"), triangles);
