@@ -95,10 +95,6 @@ export class Scene {
     for (const entry of arrays) this.entries.set(entry.name, entry);
   }
 
-  has(name: string): boolean {
-    return this.entries.has(name);
-  }
-
   whole(name: string): Whole {
     const { kind, offset, length } = this.entry(name);
     const Kind = kind === "u32" ? Uint32Array : Uint16Array;
@@ -144,7 +140,7 @@ export class Scene {
     const all: Pressed[] = [];
     for (let i = 0; i + 1 < starts.length; i++) {
       const [from, to] = [starts[i]!, starts[i + 1]!];
-      all.push({ nodes: nodes.slice(from, to), pressures: pressures.slice(from, to) });
+      all.push({ nodes: nodes.subarray(from, to), pressures: pressures.subarray(from, to) });
     }
     return all;
   }

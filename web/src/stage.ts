@@ -394,12 +394,16 @@ export class Stage {
       if (this.end.signal.aborted) return;
       if (this.isNew) this.fit();
       this.isAsked = false;
-      // The first picture of a body is at rest; each change of the resolution holds up the page.
-      if (!this.isSlow || this.isNew) return this.draw();
-      this.drawWith(COARSE_IN_MOTION);
-      clearTimeout(this.resting);
-      this.resting = setTimeout(() => this.draw(), REST_MS);
+      this.frame();
     });
+  }
+
+  private frame(): void {
+    // The first picture of a body is at rest; each change of the resolution holds up the page.
+    if (!this.isSlow || this.isNew) return this.draw();
+    this.drawWith(COARSE_IN_MOTION);
+    clearTimeout(this.resting);
+    this.resting = setTimeout(() => this.draw(), REST_MS);
   }
 
   private fit(): void {
@@ -407,13 +411,13 @@ export class Stage {
     if (!width || !height) return;
     const size = this.renderer.getSize(new Vector2());
     const isSame = size.x === width && size.y === height;
-    // An observer reports the first size after it was drawn.
-    if (isSame && !this.isNew) return;
     if (!isSame) this.renderer.setSize(width, height);
     this.camera.aspect = width / height;
     this.camera.updateProjectionMatrix();
     // The colour of the page is known only once the stage is in the document.
-    this.choosePaper();
+    if (this.isNew) this.choosePaper();
+    // A new size clears the canvas.
+    else if (!isSame) this.frame();
   }
 }
 

@@ -44,7 +44,8 @@ export interface Chosen {
 
 interface Cycle {
   facts: CycleFacts;
-  pressed: Pressed[];
+  // Known once the cycle is shown.
+  pressed?: Pressed[];
   poses: Float64Array;
   percents: Float64Array;
   // The update with the surface that the cycle was solved on.
@@ -80,7 +81,7 @@ export class Viewer {
   private readonly barEnds = element("div", { class: "ends" });
   private readonly barTitle = element("span", { class: "bar-title" });
   private ranges = new Map<string, Range>();
-  private readonly maps: Map<string, ColourMap>;
+  private readonly maps = new Map<string, ColourMap>();
   private readonly fields: HTMLSelectElement;
   private readonly updates: Slider;
   private readonly instants: Slider;
@@ -95,7 +96,6 @@ export class Viewer {
     const host = element("div", { class: "stage" });
     this.stage = stageOf(host, scene, previous?.stage);
     this.update = updates.length - 1;
-    this.maps = new Map(fields.map(({ name, colours }) => [name, new ColourMap(colours)]));
     this.field = (fields.find(({ name }) => name === "wear_depth_mm") ?? fields[0])?.name ?? IN_CYCLE;
     this.cycles = cyclesOf(scene);
     this.cycle = this.cycles.at(-1);
@@ -132,7 +132,7 @@ export class Viewer {
     this.instant = instant;
     const isRead = this.isToBeRead();
     if (isRead) this.instants.value = instant;
-    const pressed = cycle.pressed[instant];
+    const pressed = cycle.pressed?.[instant];
     this.stage.moveFemur(matrixOf(cycle.poses.subarray(12 * instant, 12 * instant + 12)));
     if (pressed) {
       const found = forces(pressed, this.surface, this.share);
@@ -208,6 +208,7 @@ export class Viewer {
 
   private enter(cycle: Cycle): void {
     this.isInCycle = true;
+    if (cycle.facts.has_pressure) cycle.pressed ??= this.scene.pressed(cycle.facts);
     this.surface = this.scene.surface(cycle.update) as Float32Array<ArrayBuffer>;
     this.share = shares(this.surface, this.scene.whole("surface.quads")) as Float32Array<ArrayBuffer>;
     if (cycle.facts.has_pressure) this.field = this.fields.value = IN_CYCLE;
@@ -250,14 +251,18 @@ export class Viewer {
   // The pressure of an instant has the colours of the peak pressure.
   private map(): ColourMap {
     const name = this.field === IN_CYCLE ? "peak_pressure_mpa" : this.field;
-    return this.maps.get(name) ?? this.maps.values().next().value!;
+    const { fields } = this.scene.facts;
+    const { colours } = fields.find((field) => field.name === name) ?? fields[0]!;
+    const made = this.maps.get(name) ?? new ColourMap(colours);
+    this.maps.set(name, made);
+    return made;
   }
 
   private shownValues(): Float32Array {
     if (this.field !== IN_CYCLE) return this.scene.field(this.field, this.isInCycle ? this.cycle!.update : this.update);
     if (this.values.length !== this.surface.length / 3) this.values = new Float32Array(this.surface.length / 3);
     const values = this.values.fill(0);
-    const pressed = this.cycle?.pressed[this.instant];
+    const pressed = this.cycle?.pressed?.[this.instant];
     pressed?.nodes.forEach((node, index) => (values[node] = pressed.pressures[index]!));
     return values;
   }
@@ -478,7 +483,6 @@ export class Viewer {
 function cyclesOf(scene: Scene): Cycle[] {
   return scene.facts.cycles.map((facts) => ({
     facts,
-    pressed: scene.has(`cycle.${facts.name}.starts`) ? scene.pressed(facts) : [],
     poses: scene.exact(`cycle.${facts.name}.poses`),
     percents: scene.exact(`cycle.${facts.name}.percents`),
     update: updateAfter(scene, facts.cycles),
