@@ -96,6 +96,12 @@ impl Case {
         self.check_round_bearing(&root.part("insert"), log);
     }
 
+    /// Returns whether the machine tests knees, whose bodies are recognised by their shapes.
+    pub(super) fn tests_knee(&self) -> bool {
+        let is_of_knees = |rig: &Rig| rig.keys.tests == TestedJoint::Knee;
+        self.machine.rig.as_ref().is_none_or(is_of_knees)
+    }
+
     /// Reports a cup or trough on a machine for knees, without its counterface, or smaller than that.
     fn check_round_bearing(&self, insert: &Section<'_>, log: &mut Log<'_>) {
         let (bearing, partner, preset, radius_mm) = match &self.insert.shape {
@@ -118,8 +124,7 @@ impl Case {
         let mut report = |key: &str, message: String, advice: String| {
             log.problem(insert.value_span(key), Fault::new(message, advice));
         };
-        let is_of_knees = |rig: &Rig| rig.keys.tests == TestedJoint::Knee;
-        if self.machine.rig.as_ref().is_none_or(is_of_knees) {
+        if self.tests_knee() {
             let message =
                 format!("a {bearing} needs another machine than the knee simulator of this case");
             report(

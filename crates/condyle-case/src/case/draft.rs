@@ -41,13 +41,19 @@ impl Drafted {
     /// Without a side, the shape of the femur determines it.
     ///
     /// # Errors
-    /// A file that cannot be read, does not form a shell, or does not have the size of a part of a knee.
+    /// A preset for another joint than the knee; a file that cannot be read, does not form a shell, or does not have the size of a
+    /// part of a knee.
     pub fn new(
         preset: Preset,
         side: Option<Side>,
         [femur, insert]: [&Path; 2],
         folder: &Path,
     ) -> Result<Self, DraftError> {
+        let machine = format!("[machine]\npreset = \"{}\"\n", preset.word());
+        let machine_alone = Case::parse(&machine, "machine", Path::new(""))?;
+        if !machine_alone.tests_knee() {
+            return Err(DraftError::OtherJoint);
+        }
         let femur = Concluded::from(Body::Femur, femur)?;
         let insert = Concluded::from(Body::Insert, insert)?;
         refuse_others(&femur, &insert)?;
@@ -65,8 +71,7 @@ impl Drafted {
         of_insert.extend(alone.centre(&mut insert_keys));
         let (side, of_side) = with_reason(side, &femur_shell.mesh);
         let mut of_femur = femur.remarks(&femur_lies, &femur_shell);
-        let machine = format!("[machine]\npreset = \"{}\"\n", preset.word());
-        let flexion_rad = Case::parse(&machine, "machine", Path::new(""))?.start_flexion_rad();
+        let flexion_rad = machine_alone.start_flexion_rad();
         let start = |femur: &CheckedMesh| {
             let start = start_over_the_dishes_mm(&femur.mesh, &alone.shell.mesh, flexion_rad);
             start.unwrap_or_default()
@@ -454,6 +459,12 @@ pub enum DraftError {
         /// The file named as the insert.
         insert: PathBuf,
     },
+    /// A machine for another joint than the knee.
+    #[error(
+        "unit, axes and start of a femur and an insert are derived for knees only\n\nFor a hip give --head and --cup. For another joint \
+         write the case without files, and in its [femur] and [insert] shape = \"mesh\", file, length_unit and axes"
+    )]
+    OtherJoint,
     /// The draft is not a valid case.
     #[error(transparent)]
     Case(#[from] Problems),

@@ -46,14 +46,14 @@ impl Likeness {
         if let Some(round) = round(mesh, &sampled) {
             return Some(round);
         }
-        let flat = sampled.flattest();
+        let (flat, extents) = (sampled.flattest(), extents(mesh));
         if [flat.normal, -flat.normal]
             .iter()
             .all(|side| sampled.parallel_share(side) > MIN_FLAT)
         {
-            return Some(Self::Tray);
+            // Bearings of one compartment are nearly flat.
+            return one_compartment(&extents).or(Some(Self::Tray));
         }
-        let extents = extents(mesh);
         let femur = || Upright::of_femur(mesh).map(|_| Self::Femur);
         // Without a backside, condyles from behind look like dishes.
         let has_backside = flat.share > MIN_BACKSIDE;

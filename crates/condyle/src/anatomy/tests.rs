@@ -218,5 +218,56 @@ fn a_head_a_cup_a_tray_and_one_compartment_are_distinguished_from_a_knee() {
     }
     let narrow = generic_insert().mapped(|v| Vec3::new(v.x, v.y, v.z * 0.4));
     assert_eq!(of(&narrow), Some(Likeness::OneCompartment));
+    let flat_bearing = block([-26.0, 0.0, -12.0], [26.0, 9.0, 12.0]);
+    assert_eq!(of(&flat_bearing), Some(Likeness::OneCompartment));
     assert_eq!(of(&TriangleMesh::default()), None);
+}
+
+/// A femoral component whose condyles are parts of one cylinder, which does not show its flexion, cut square to fit the bone.
+fn round_femur() -> TriangleMesh {
+    let arc = (0..=36).map(|step| (180.0 + 5.0 * f64::from(step)).to_radians());
+    let arc = arc.map(|angle| (24.0 * angle.cos(), 24.0 * angle.sin()));
+    let outer: Vec<(f64, f64)> = [(-24.0, 12.0)]
+        .into_iter()
+        .chain(arc)
+        .chain([(24.0, 34.0)])
+        .collect();
+    // From one end to the other, between two heights over the middle of the knee.
+    let prism = |outer: &[(f64, f64)], low: f64, high: f64| {
+        let inner = outer
+            .iter()
+            .map(|&(x, y)| (x.clamp(-16.0, 17.0), y.max(-15.0)));
+        let section: Vec<(f64, f64)> = outer.iter().copied().chain(inner).collect();
+        let at = |z: f64| section.iter().map(move |&(x, y)| Vec3::new(x, y, z));
+        let (count, ends) = (outer.len() as u32, 2 * outer.len() as u32);
+        let strips = (0..count - 1).flat_map(|i| {
+            let [a, b, c, d] = [i, i + 1, i + 1 + count, i + count];
+            let [e, f, g, h] = [a, b, c, d].map(|corner| corner + ends);
+            [[a, d, c, b], [e, f, g, h], [a, b, f, e], [c, d, h, g]]
+        });
+        let last = count - 1;
+        let closed = [
+            [0, ends, ends + count, count],
+            [last, last + count, last + count + ends, last + ends],
+        ];
+        TriangleMesh::of_quads(at(low).chain(at(high)).collect(), strips.chain(closed))
+    };
+    let trochlea: Vec<(f64, f64)> = outer.iter().copied().filter(|(x, _)| *x > 12.0).collect();
+    let trochlea = prism(&trochlea, -10.0, 10.0).mapped(|v| Vec3::new(0.9 * v.x, 0.9 * v.y, v.z));
+    prism(&outer, -34.0, -10.0)
+        .joined(&prism(&outer, 10.0, 34.0))
+        .joined(&trochlea)
+}
+
+#[test]
+fn the_cuts_of_a_femur_show_the_flexion_that_round_condyles_do_not() {
+    assert_eq!(Upright::of_femur(&round_femur()).unwrap().turn, None);
+    for degrees in [12.0, 23.0, 40.0] {
+        let turn = rotation(Vec3::z(), degrees);
+        let found = Upright::of_femur(&round_femur().mapped(|v| turn * v)).unwrap();
+        let left = found.rotation() * turn;
+        let nearest = Orientation::nearest_to(&left).rotation();
+        let off_deg = ((nearest.transpose() * left).trace() - 1.0) / 2.0;
+        assert!(off_deg.min(1.0).acos().to_degrees() < 1.5, "{degrees}");
+    }
 }

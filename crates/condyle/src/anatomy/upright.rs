@@ -97,17 +97,12 @@ impl Upright {
     }
 }
 
-/// Finds the frame from the mirror plane, and the turn within it from the signs of the shape.
+/// Finds the frame from the mirror plane, and the turn within it from flat parts of the shape or, without them, from its signs.
 fn by_mirror(
     mesh: &TriangleMesh,
     sampled: &Sampled,
     recognise: &dyn Fn(&TriangleMesh) -> Option<Recognition>,
 ) -> Option<Upright> {
-    const STEP_DEG: f64 = 5.0;
-    /// A quarter turn; after it the orientations repeat.
-    const STEPS: usize = 18;
-    /// Loss of score within which turns fit as well as the best.
-    const EQUAL: f64 = 0.5;
     let right = sampled.mirror(None).normal;
     // The frame nearest to that of the file, of all that share the mirror plane.
     let axes = [0, 1, 2].map(|axis| Vec3::ith(axis, 1.0));
@@ -120,22 +115,9 @@ fn by_mirror(
         let ahead = ahead * cosine + up * sine;
         frame(&ahead, &right.cross(&ahead))
     };
-    let at = |step: usize| {
-        let degrees = step as f64 * STEP_DEG;
-        let recognition = recognise(&turned(mesh, Some(&frame_at(degrees))))?;
-        Some((degrees, recognition.score()))
-    };
-    let scores: Vec<(f64, f64)> = (0..STEPS).filter_map(at).collect();
-    let best = *scores.iter().max_by(|a, b| a.1.total_cmp(&b.1))?;
-    // The middle of the turns that fit about as well, counted from the best.
-    let from_best = |degrees: f64| (degrees - best.0 + 45.0).rem_euclid(90.0) - 45.0;
-    let good = || scores.iter().filter(|one| best.1 - one.1 < EQUAL);
-    let mean = good().map(|one| from_best(one.0)).sum::<f64>() / good().count() as f64;
-    let shown = (best.0 + mean + 45.0).rem_euclid(90.0) - 45.0;
-    let is_enough = scores
-        .first()
-        .is_some_and(|(degrees, score)| *degrees == 0.0 && best.1 - score < LIKELY_MARGIN);
-    let degrees = if is_enough { 0.0 } else { shown };
+    let score = |degrees: f64| Some(recognise(&turned(mesh, Some(&frame_at(degrees))))?.score());
+    let known_deg = sampled.square_turn_deg(&ahead, &up);
+    let degrees = known_deg.or_else(|| turn_by_signs_deg(score))?;
     let turn = frame_at(degrees);
     let is_square = off_square_deg(&turn) < SQUARE_DEG;
     let turn = (!is_square).then_some(turn);
@@ -145,6 +127,31 @@ fn by_mirror(
         recognition,
         right,
     })
+}
+
+/// Returns the turn whose score is best, -45 to 45 degrees; 0 where the given frame fits about as well.
+fn turn_by_signs_deg(score: impl Fn(f64) -> Option<f64>) -> Option<f64> {
+    const STEP_DEG: f64 = 5.0;
+    /// A quarter turn; after it the orientations repeat.
+    const STEPS: usize = 18;
+    /// Loss of score within which turns fit as well as the best.
+    const EQUAL: f64 = 0.5;
+    let turns_deg = (0..STEPS).map(|step| step as f64 * STEP_DEG);
+    let scores: Vec<(f64, f64)> = turns_deg
+        .filter_map(|degrees| Some((degrees, score(degrees)?)))
+        .collect();
+    let best = *scores.iter().max_by(|a, b| a.1.total_cmp(&b.1))?;
+    let is_enough = scores
+        .first()
+        .is_some_and(|(degrees, score)| *degrees == 0.0 && best.1 - score < LIKELY_MARGIN);
+    if is_enough {
+        return Some(0.0);
+    }
+    // The middle of the turns that fit about as well, counted from the best.
+    let from_best = |degrees: f64| (degrees - best.0 + 45.0).rem_euclid(90.0) - 45.0;
+    let good = || scores.iter().filter(|one| best.1 - one.1 < EQUAL);
+    let mean = good().map(|one| from_best(one.0)).sum::<f64>() / good().count() as f64;
+    Some((best.0 + mean + 45.0).rem_euclid(90.0) - 45.0)
 }
 
 /// Returns the angle of a direction to the nearest axis, degrees.

@@ -7,6 +7,7 @@ use condyle::{Mat3, Vec3};
 use super::error::{Body, BuildError, BuildWarning, Finding};
 use super::placing::{Placing, middle_of_points};
 use super::size::{in_better_unit, rounded};
+use crate::case::contents::Case;
 use crate::case::frame::{LengthUnit, Side};
 use crate::case::insert::{InsertOrigin, InsertPlacement};
 use crate::config::DataFile;
@@ -21,56 +22,61 @@ pub(in crate::case) const MAX_ACROSS_MM: f64 = 2.5;
 /// ones is uncertain.
 const MAX_ALONG_MM: f64 = 10.0;
 
-/// Checks orientation and unit of a body by its shape: a certain mistake is an error, a likely one a warning. Returns true if
-/// the shape confirms the orientation.
-pub(super) fn check_orientation(
-    body: Body,
-    file: &DataFile,
-    mesh: &TriangleMesh,
-    placing: &Placing,
-    warnings: &mut Vec<BuildWarning>,
-) -> Result<bool, BuildError> {
-    let Some(recognition) = body.recognise(mesh) else {
-        return Ok(false);
-    };
-    let size_mm = longest_mm(mesh);
-    if !WHOLE_KNEE_MM.contains(&size_mm) {
-        let is_long = format!(
-            "this {body} is {} mm long, and that of a whole knee is 40 mm to 120 mm",
-            rounded(size_mm)
-        );
-        // A wrong size is certain if another unit corrects it.
-        if let Some(better) = usual_unit(size_mm / placing.unit.in_mm()) {
-            let message = format!("{is_long}; {}", in_better_unit(better));
-            let keys = &["length_unit", "file"];
-            return Err(BuildError::mesh(file.path(), keys, message));
+impl Case {
+    /// Checks orientation and unit of a body by its shape: a certain mistake is an error, a likely one a warning. Returns true if
+    /// the shape confirms the orientation.
+    pub(super) fn check_orientation(
+        &self,
+        body: Body,
+        file: &DataFile,
+        mesh: &TriangleMesh,
+        placing: &Placing,
+        warnings: &mut Vec<BuildWarning>,
+    ) -> Result<bool, BuildError> {
+        // Femora and inserts of knees are recognised; other joints have bodies of other shapes.
+        let recognition = body.recognise(mesh).filter(|_| self.tests_knee());
+        let Some(recognition) = recognition else {
+            return Ok(false);
+        };
+        let size_mm = longest_mm(mesh);
+        if !WHOLE_KNEE_MM.contains(&size_mm) {
+            let is_long = format!(
+                "this {body} is {} mm long, and that of a whole knee is 40 mm to 120 mm",
+                rounded(size_mm)
+            );
+            // A wrong size is certain if another unit corrects it.
+            if let Some(better) = usual_unit(size_mm / placing.unit.in_mm()) {
+                let message = format!("{is_long}; {}", in_better_unit(better));
+                let keys = &["length_unit", "file"];
+                return Err(BuildError::mesh(file.path(), keys, message));
+            }
+            let remark = format!("{is_long}; check length_unit");
+            warnings.push(BuildWarning::mesh(file, remark));
         }
-        let remark = format!("{is_long}; check length_unit");
-        warnings.push(BuildWarning::mesh(file, remark));
+        let Some(sureness) = recognition.against(&Orientation::ISB) else {
+            return Ok(true);
+        };
+        let turn = recognition.nearest().rotation();
+        let signs = match body {
+            Body::Femur => {
+                "the box open above, the trochlea in front and the notch between the condyles behind"
+            }
+            Body::Insert => {
+                "two dishes above, the flat backside below, the notch or the lower lip behind"
+            }
+        };
+        let lies = lies(&turn);
+        let [x, y, z] = placing.axes_turned(&turn).words();
+        let advice =
+            format!("write axes = [\"{x}\", \"{y}\", \"{z}\"], which its shape shows ({signs})");
+        if sureness == Sureness::Certain {
+            let message = format!("this {body} lies {lies}; {advice}");
+            return Err(BuildError::mesh(file.path(), &["axes", "file"], message));
+        }
+        let remark = format!("this {body} is probably oriented {lies}; {advice}");
+        warnings.push(BuildWarning::mesh(file, remark).with(Finding::WrongAxes(body)));
+        Ok(false)
     }
-    let Some(sureness) = recognition.against(&Orientation::ISB) else {
-        return Ok(true);
-    };
-    let turn = recognition.nearest().rotation();
-    let signs = match body {
-        Body::Femur => {
-            "the box open above, the trochlea in front and the notch between the condyles behind"
-        }
-        Body::Insert => {
-            "two dishes above, the flat backside below, the notch or the lower lip behind"
-        }
-    };
-    let lies = lies(&turn);
-    let [x, y, z] = placing.axes_turned(&turn).words();
-    let advice =
-        format!("write axes = [\"{x}\", \"{y}\", \"{z}\"], which its shape shows ({signs})");
-    if sureness == Sureness::Certain {
-        let message = format!("this {body} lies {lies}; {advice}");
-        return Err(BuildError::mesh(file.path(), &["axes", "file"], message));
-    }
-    let remark = format!("this {body} is probably oriented {lies}; {advice}");
-    warnings.push(BuildWarning::mesh(file, remark).with(Finding::WrongAxes(body)));
-    Ok(false)
 }
 
 /// Warns of a femur, in the frame of a right knee, with the shape of the other knee's femur.

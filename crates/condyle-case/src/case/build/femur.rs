@@ -13,7 +13,7 @@ use condyle_mesh::formats::surface_bytes;
 use condyle_mesh::repair::CheckedMesh;
 use serde::{Deserialize, Serialize};
 
-use super::checks::{check_orientation, check_side};
+use super::checks::check_side;
 use super::error::{Body, BuildError, BuildWarning};
 use super::placing::{Placing, checks_of, parsed_shell, shell, warn};
 use crate::cache::{Keep, kept};
@@ -82,7 +82,13 @@ impl Case {
                 let PreparedFemur { shell, field } =
                     femur.prepared(placement, &placing, &self.limits, threads, keep)?;
                 warn(&femur.file, &shell, warnings);
-                if check_orientation(Body::Femur, &femur.file, &shell.mesh, &placing, warnings)? {
+                if self.check_orientation(
+                    Body::Femur,
+                    &femur.file,
+                    &shell.mesh,
+                    &placing,
+                    warnings,
+                )? {
                     check_side(&femur.file, &shell.mesh, side, warnings);
                 }
                 let flexion_axis_mm = femur.axis_mm(&shell.mesh);

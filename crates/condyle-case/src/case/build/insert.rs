@@ -14,7 +14,7 @@ use condyle_mesh::formats::{HexFile, parse_surface, read_hexahedra, surface_byte
 use condyle_mesh::repair::{CheckedMesh, RepairError};
 use condyle_mesh::{FittedSphere, Roundness};
 
-use super::checks::{check_orientation, off_centre};
+use super::checks::off_centre;
 use super::error::{Body, BuildError, BuildWarning, Finding};
 use super::placing::{checks_of, middle_of_mesh, middle_of_points, shell, warn};
 use super::size::{check_points, check_triangles};
@@ -117,7 +117,7 @@ impl Case {
         // With a stray piece the positions of the dishes are unreliable.
         let is_stray = |warning: &BuildWarning| warning.finding == Finding::StrayPiece;
         let is_whole = !warnings.iter().any(is_stray);
-        let has_dishes = !matches!(insert.shape, InsertShape::CupMesh(_));
+        let has_dishes = self.tests_knee();
         if let Some(file) = insert.file().filter(|_| is_whole && has_dishes) {
             warnings.extend(off_centre(file, placement, &built));
         }
@@ -138,13 +138,13 @@ impl Case {
             let message = "the mesh is closed, so it determines the thickness; remove [insert] `thickness_mm`";
             return Err(BuildError::mesh(file.path(), &["thickness_mm"], message));
         }
-        check_orientation(Body::Insert, file, &shell.mesh, &placing, warnings)?;
+        self.check_orientation(Body::Insert, file, &shell.mesh, &placing, warnings)?;
         if shell.closed && insert.clip_below_mm.is_none() {
             let count = shell.mesh.triangles.len();
             shell = without_tray(file, shell, warnings)?;
             // The body that remains may lie another way than the construct seemed to.
             if shell.mesh.triangles.len() != count {
-                check_orientation(Body::Insert, file, &shell.mesh, &placing, warnings)?;
+                self.check_orientation(Body::Insert, file, &shell.mesh, &placing, warnings)?;
             }
         }
         let mesh = match of.placement.motion(|| middle_of_mesh(&shell.mesh)) {
@@ -229,7 +229,7 @@ impl Case {
         check_points(path, &file.mesh.nodes, insert.length_unit)?;
         check_nodes(file.mesh.nodes.len() as f64, &self.limits)?;
         let boundary = TriangleMesh::of_quads(file.mesh.nodes.clone(), file.mesh.boundary_quads());
-        check_orientation(Body::Insert, &insert.file, &boundary, &placing, warnings)?;
+        self.check_orientation(Body::Insert, &insert.file, &boundary, &placing, warnings)?;
         let articulating = match &insert.articulating_surface {
             Some(name) => named(&file, path, &["articulating_surface"], name)?,
             None => facing(&file.mesh, 1.0),

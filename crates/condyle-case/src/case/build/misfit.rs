@@ -46,6 +46,9 @@ impl Case {
     }
 
     pub(in crate::case) fn misfits(&self) -> Vec<Misfit> {
+        if !self.tests_knee() {
+            return Vec::new();
+        }
         let (femur, insert) = (self.placed_femur(), self.placed_insert());
         let both = femur.as_ref().zip(insert.as_ref());
         let of_sizes = both.and_then(|(femur, insert)| of_sizes(femur, insert));

@@ -383,6 +383,29 @@ fn bodies_that_are_others_are_refused_by_a_draft() {
 }
 
 #[test]
+fn bodies_of_other_joints_are_not_judged_as_those_of_a_knee() {
+    let (folder, femur, insert) = written(&generic(), &Orientation::all().nth(5).unwrap(), 1.0);
+    let meshes = [femur.as_path(), insert.as_path()];
+    let refused = Drafted::new(Preset::Iso22622Like, None, meshes, folder.path());
+    let said = refused.unwrap_err().to_string();
+    assert!(said.contains("derived for knees only"), "{said}");
+    let built = |preset: Preset| {
+        let text = format!(
+            "[femur]\nshape = \"mesh\"\nfile = \"f.stl\"\n[insert]\nshape = \"mesh\"\nfile = \"i.stl\"\n\
+             [machine]\npreset = \"{}\"\n",
+            preset.word()
+        );
+        let case = Case::parse(&text, "case.toml", folder.path()).unwrap();
+        let said = case.build(1).err().map(|error| error.to_string());
+        [case.misfit_remarks().join("\n"), said.unwrap_or_default()].join("\n")
+    };
+    let of_knee = built(Preset::StanmoreForce);
+    assert!(of_knee.contains("which its shape shows"), "{of_knee}");
+    let of_ankle = built(Preset::Iso22622Like);
+    assert!(!of_ankle.contains("its shape shows"), "{of_ankle}");
+}
+
+#[test]
 fn bodies_of_different_sizes_are_reported() {
     let pair = generic();
     let small = Pair {
