@@ -91,6 +91,8 @@ const MAX_RELAXED: f64 = 0.2;
 /// Largest change of the wear rates of the nodes in a step, as a part of their sum: sound tests of knees and hips stay below 3 %,
 /// and steps that overshoot change 25 % or more.
 const MAX_CHANGE_IN_STEP_PERCENT: f64 = 20.0;
+/// Largest depth by which a step may overshoot at the deepest place, % of the deepest wear: in sound tests 2 % at most.
+const MAX_ALTERNATING_DEPTH_PERCENT: f64 = 5.0;
 /// Part of the depth's error that is due to updates, %, up to which the estimates held for random designs.
 const MAX_OF_UPDATES_PERCENT: f64 = 2.0;
 /// Largest bound of an error, %: twice an estimate of 5 %. Our choice.
@@ -202,23 +204,56 @@ pub(crate) fn single_update(finished: &Finished<'_>) -> Option<PlausibilityWarni
 pub(crate) fn updates_overshoot(finished: &Finished<'_>) -> Option<PlausibilityWarning> {
     let state = finished.march.state();
     let (step, fields) = (state.last_step.as_ref()?, state.fields.as_ref()?);
-    let before = step.depth_per_cycle_mm.iter().zip(&step.area_mm2);
-    let (mut changed, mut sum) = (0.0, 0.0);
-    for ((before, area_mm2), now) in before.zip(&fields.depth_per_cycle_mm) {
+    let reversals_mm = step.reversals_mm(&fields.depth_per_cycle_mm);
+    let (mut changed, mut reversed, mut sum, mut deepest_mm) = (0.0, 0.0, 0.0, 0.0_f64);
+    for (node, reversal_mm) in reversals_mm.iter().enumerate() {
+        let (area_mm2, before) = (step.area_mm2[node], step.depth_per_cycle_mm[node]);
+        let now = fields.depth_per_cycle_mm[node];
+        let reversed_mm = reversal_mm[0].abs().min(reversal_mm[1].abs());
         changed += area_mm2 * (now - before).abs();
+        reversed += 2.0 * area_mm2 * reversed_mm;
         sum += area_mm2 * (now + before);
+        deepest_mm = deepest_mm.max(fields.wear_depth_mm[node] + step.interval * reversed_mm);
     }
-    // Where nodes alternately wear and rest, all of the sum changes.
-    let percent = percent_of(changed, sum);
+    let (rates, worn_mm) = (MAX_CHANGE_IN_STEP_PERCENT, finished.summary[&MAX_DEPTH_MM]);
+    let found = [
+        // Where nodes alternately wear and rest, all of the sum changes.
+        (
+            changed,
+            sum,
+            rates,
+            "changes the wear rates of the nodes by",
+            "their sum",
+        ),
+        (
+            reversed,
+            sum,
+            rates,
+            "reverses a change of the wear rates of the nodes by",
+            "the rates",
+        ),
+        // The sums hide a few nodes.
+        (
+            deepest_mm - worn_mm,
+            worn_mm,
+            MAX_ALTERNATING_DEPTH_PERCENT,
+            "may leave the deepest wear too deep by",
+            "it",
+        ),
+    ];
+    let found =
+        found.map(|(part, whole, limit, does, of)| (percent_of(part, whole), limit, does, of));
+    let (percent, limit, does, of) = found
+        .into_iter()
+        .find(|(percent, limit, ..)| percent > limit)?;
     let message = format!(
-        "the last step of {:.0} cycles changes the wear rates of the nodes by {percent:.0} % of their sum: such long \
-         steps overshoot, and the stated error does not show it",
+        "the last step of {:.0} cycles {does} {percent:.0} % of {of}: such long steps overshoot, and the stated error does \
+         not show it",
         step.interval
     );
     let advice = "Take more updates, or update = \"auto\".";
-    let value = (percent, MAX_CHANGE_IN_STEP_PERCENT, "%");
-    (state.updates.len() > 1 && percent > MAX_CHANGE_IN_STEP_PERCENT)
-        .then(|| warning("updates_overshoot", value, message, advice))
+    let value = (percent, limit, "%");
+    (state.updates.len() > 1).then(|| warning("updates_overshoot", value, message, advice))
 }
 
 /// Warns of steps of the march that are so long that the estimate of their error is too small.

@@ -3,7 +3,14 @@
 use serde::{Deserialize, Serialize};
 
 use super::WearTest;
-use crate::{creep::LeePienkowski, geometry::Insert, machine::Cycle, number::Mixing};
+use crate::{
+    Vec3,
+    contact::Record,
+    creep::LeePienkowski,
+    geometry::{ArticulatingSurface, Insert},
+    machine::Cycle,
+    number::Mixing,
+};
 
 /// Part of the largest step of a node by which no side of the counterface may still sink at any instant when the
 /// iteration has converged.
@@ -241,6 +248,8 @@ struct Pressing {
     /// Number of the instant and side of the counterface.
     side: u32,
     pressed_mm2: f32,
+    /// Cosine of the angle between the normal of the node and the motion of the sinking side.
+    cosine: f32,
 }
 
 /// Decrease of the pressure at a node as the node alone goes down.
@@ -264,7 +273,12 @@ struct Side {
 
 impl CreepContact {
     /// Creates the contact of one solved cycle of every activity.
-    pub fn new(test: &WearTest, insert: &Insert, cycles: &[Cycle]) -> Self {
+    pub fn new(
+        test: &WearTest,
+        insert: &Insert,
+        surface: &ArticulatingSurface,
+        cycles: &[Cycle],
+    ) -> Self {
         let all_s = test.cycle_seconds();
         let activities = test.activities.iter();
         let parts: Vec<f64> = activities.map(|own| own.seconds() / all_s).collect();
@@ -288,10 +302,20 @@ impl CreepContact {
             for instant in instants {
                 let first = sides.len();
                 sides.resize(first + regions.count(), unloaded);
-                for record in cycle.history.instant(instant) {
-                    let side = (first + regions.of_node(record.node as usize)) as u32;
-                    let pressed_mm2 = record.pressed_mm2;
-                    pressing.push((record.node, Pressing { side, pressed_mm2 }));
+                let records = cycle.history.instant(instant);
+                // The normals of a cup differ by a right angle and more; those of a side of two are nearly parallel.
+                let is_cup = regions.count() == 1;
+                let along = is_cup.then(|| sinking(surface, records)).flatten();
+                for record in records {
+                    let side = first + regions.of_node(record.node as usize);
+                    let normal = &surface.normals[record.node as usize];
+                    let cosine = along.map_or(1.0, |along| along.dot(normal));
+                    let own = Pressing {
+                        side: side as u32,
+                        pressed_mm2: record.pressed_mm2,
+                        cosine: cosine as f32,
+                    };
+                    pressing.push((record.node, own));
                 }
             }
         }
@@ -313,7 +337,8 @@ impl CreepContact {
         mut pressing: Vec<(u32, Pressing)>,
     ) -> Self {
         for (node, own) in &pressing {
-            let n_per_mm = nodes[*node as usize].mpa_per_mm * f64::from(own.pressed_mm2);
+            let along_mm2 = own.pressed_mm2 * own.cosine * own.cosine;
+            let n_per_mm = nodes[*node as usize].mpa_per_mm * f64::from(along_mm2);
             sides[own.side as usize].n_per_mm += n_per_mm;
         }
         // Stable, so that the sums over a node's loads keep the order of time.
@@ -330,7 +355,7 @@ impl CreepContact {
 
     /// Returns the decrease of the mean pressure at a node as the node alone goes down, MPa/mm.
     fn stiffness_mpa_per_mm(&self, node: usize) -> f64 {
-        let areas = self.pressing(node).map(|(side, pressed_mm2)| {
+        let areas = self.pressing(node).map(|(side, pressed_mm2, _)| {
             let part_of_time = self.sides[side].part_of_time;
             part_of_time * pressed_mm2
         });
@@ -341,15 +366,16 @@ impl CreepContact {
     /// the time, mm.
     fn rise_mpa(&self, node: usize, weighed_mm: &[f64]) -> f64 {
         let own = self.pressing(node);
-        let volumes = own.map(|(side, pressed_mm2)| weighed_mm[side] * pressed_mm2);
+        let volumes =
+            own.map(|(side, pressed_mm2, cosine)| weighed_mm[side] * pressed_mm2 * cosine);
         self.nodes[node].mpa_per_mm3 * volumes.sum::<f64>()
     }
 
     /// Adds the force that each side loses at each instant as a node goes down, N.
     fn add_lost_n(&self, node: usize, down_mm: f64, lost_n: &mut [f64]) {
         let lost_mpa = self.nodes[node].mpa_per_mm * down_mm;
-        for (side, pressed_mm2) in self.pressing(node) {
-            lost_n[side] += lost_mpa * pressed_mm2;
+        for (side, pressed_mm2, cosine) in self.pressing(node) {
+            lost_n[side] += lost_mpa * pressed_mm2 * cosine;
         }
     }
 
@@ -362,11 +388,24 @@ impl CreepContact {
             .collect()
     }
 
-    /// Sides that load a node, each with the loaded area, mm2.
-    fn pressing(&self, node: usize) -> impl Iterator<Item = (usize, f64)> {
+    /// Sides that load a node, each with the loaded area, mm2, and the cosine between its motion and the normal.
+    fn pressing(&self, node: usize) -> impl Iterator<Item = (usize, f64, f64)> {
         let own = self.pressing[self.first[node]..self.first[node + 1]].iter();
-        own.map(|own| (own.side as usize, f64::from(own.pressed_mm2)))
+        own.map(|own| {
+            let (pressed_mm2, cosine) = (f64::from(own.pressed_mm2), f64::from(own.cosine));
+            (own.side as usize, pressed_mm2, cosine)
+        })
     }
+}
+
+/// Returns the direction in which a counterface sinks into a cup, that of the force on it; none without a force.
+fn sinking(surface: &ArticulatingSurface, records: &[Record]) -> Option<Vec3> {
+    let force_n = |record: &Record| {
+        let node = record.node as usize;
+        surface.normals[node] * (record.moment.pressure_mpa * surface.shares[node].area_mm2)
+    };
+    let total_n: Vec3 = records.iter().map(force_n).sum();
+    total_n.try_normalize(0.0)
 }
 
 #[cfg(test)]
@@ -387,6 +426,7 @@ mod tests {
             let pressing = Pressing {
                 side: u32::from(2 * node >= nodes),
                 pressed_mm2: 1.0,
+                cosine: 1.0,
             };
             (node as u32, pressing)
         };
@@ -396,6 +436,29 @@ mod tests {
             vec![side; 2],
             (0..nodes).map(pressing).collect(),
         )
+    }
+
+    #[test]
+    fn a_sinking_head_presses_no_wall_along_which_it_sinks() {
+        let pressing = [1.0, 0.5, 0.0].map(|cosine| Pressing {
+            side: 0,
+            pressed_mm2: 1.0,
+            cosine,
+        });
+        let numbered = (0..).zip(pressing).collect();
+        let punch = punch(2.0, 3);
+        let cup = CreepContact::sorted(
+            vec![2.0; 3],
+            punch.nodes,
+            punch.sides[..1].to_vec(),
+            numbered,
+        );
+        let mut lost_n = [0.0];
+        cup.add_lost_n(0, 0.01, &mut lost_n);
+        cup.add_lost_n(2, 0.01, &mut lost_n);
+        let sunk_mm = cup.sunk_mm(&lost_n);
+        assert!((cup.rise_mpa(1, &sunk_mm) / cup.rise_mpa(0, &sunk_mm) - 0.5).abs() < 1e-12);
+        assert_eq!(cup.rise_mpa(2, &sunk_mm), 0.0);
     }
 
     /// Depths of creep under a punch after steps that end at so many minutes, each with its pressure found when

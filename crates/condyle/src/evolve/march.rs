@@ -392,7 +392,7 @@ impl March {
             law,
             thickness_mm: self.test.insert.thickness_mm(),
             worn_mm: &wear.depth_mm,
-            contact: &CreepContact::new(&self.test, &self.insert, &solved.cycles),
+            contact: &CreepContact::new(&self.test, &self.insert, &solved.surface, &solved.cycles),
             end_min: wear.cycles_after * self.test.cycle_seconds() / SECONDS_PER_MINUTE,
         });
         Some((creep, DepthField::creep(crept_mm)))
@@ -546,7 +546,7 @@ impl March {
         self.cache = memory.cache;
         let snapshot = Snapshot {
             update,
-            step: step.record(rates),
+            step: step.record(rates, self.state.last_step.as_ref()),
             mesh_nodes: before.mesh_nodes,
             depths: before.depths,
             contact: std::mem::replace(&mut self.state.contact, memory.state),

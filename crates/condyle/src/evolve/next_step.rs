@@ -2,7 +2,7 @@
 
 use super::{
     Schedule, Updates,
-    rates::{StepRecord, StepStart, WearStep},
+    rates::{Rates, StepRecord, StepStart, WearStep},
     step_rules::{accumulated_error_mm, exponential, extrapolated},
 };
 
@@ -20,6 +20,12 @@ const MIN_GROWTH: f64 = 0.25;
 /// Longest step in units of 1 / relaxation. From 2 on, a single node that lies too deep overshoots further at every
 /// step: see [`super::step_rules`].
 const LONGEST: f64 = 1.8;
+/// Factor from one change of alternating rates to the next up to which the alternation decays fast enough for longer steps, ...
+const DECAYING: f64 = 0.5;
+/// ... and the longest step otherwise, in units of 1 / relaxation of the alternation.
+const ALTERNATING: f64 = 1.6;
+/// Part of the rates below which their changes are too small to observe whether they alternate.
+const NOISE: f64 = 0.01;
 /// Factor that shortens a step until its error is within the tolerance.
 const SHORTER: f64 = 0.9;
 /// Smallest ratio of the last interval to the next at which the change over the last is extrapolated.
@@ -92,19 +98,42 @@ fn adaptive_interval(start: StepStart<'_>, all_cycles: f64, tolerance: f64) -> f
         let share = FIRST_SHARE * (tolerance / FIRST_TOLERANCE).sqrt().min(1.0);
         let part = if start.creeps { FIRST_OF_CREEP } else { 1.0 };
         // The error of the first step is second order in its length, hence the root of the tolerance.
-        return stable.min(part * share * all_cycles);
+        return part * stable.min(share * all_cycles);
     };
     let first_order = |interval| deepest(start, |node| rates_mm[node] * interval);
     let second_order = |interval| deepest(start, |node| second_order(start, node, interval));
     let tolerance_mm = tolerance * first_order(left);
     let shortest = MIN_GROWTH * last.interval;
-    let mut interval = stable.min(MAX_GROWTH * last.interval);
+    let mut interval = stable.min(stable_growth(start.rates, last) * last.interval);
     // The difference between first and second order estimates the error of the first.
     let error_mm = |interval| (second_order(interval) - first_order(interval)).abs();
     while interval > shortest && error_mm(interval) > tolerance_mm {
         interval *= SHORTER;
     }
     interval.max(shortest)
+}
+
+/// Returns the largest growth of the interval at which alternations of the rates decay.
+///
+/// Where an alternation has the rate `l` of relaxation, an interval `h` changes the sign of the last change of the
+/// rates and multiplies it by `l h - 1`.
+fn stable_growth(rates: &Rates, last: &StepRecord) -> f64 {
+    let mean_square = |values: &mut dyn Iterator<Item = f64>| {
+        let parts = values.zip(&rates.area_mm2);
+        parts.map(|(value, area)| area * value * value).sum::<f64>()
+    };
+    let reversals = last.reversals_mm(&rates.depth_per_cycle_mm);
+    let [before, now] =
+        [0, 1].map(|step| mean_square(&mut reversals.iter().map(|changes| changes[step])));
+    let all = mean_square(&mut rates.depth_per_cycle_mm.iter().copied());
+    // Without any wear there is no alternation.
+    let seen = (before + NOISE * NOISE * all).max(f64::MIN_POSITIVE);
+    let factor = (now / seen).sqrt();
+    if factor > DECAYING {
+        ALTERNATING / (1.0 + factor)
+    } else {
+        MAX_GROWTH
+    }
 }
 
 /// Returns the depth of a node after `interval` cycles, mm, its rate extrapolated from the last two.
@@ -131,7 +160,6 @@ fn deepest(start: StepStart<'_>, more: impl Fn(usize) -> f64) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::evolve::rates::Rates;
 
     #[test]
     fn the_last_fixed_step_ends_at_the_last_cycle() {
@@ -185,6 +213,7 @@ mod tests {
             error_mm: vec![0.0],
             area_mm2: vec![1.0],
             relaxation_per_cycle: 0.0,
+            change_before_mm: vec![0.0],
         }
     }
 
@@ -207,6 +236,27 @@ mod tests {
         near(interval(&rates(1e-7, 1e-5), None), 1.8e5);
         near(interval(&rates(1e-7, 0.0), Some(&last(1e-7, 1e5))), 1.5e5);
         near(interval(&rates(1e-7, 2e-6), Some(&last(1e-7, 1e6))), 9e5);
+    }
+
+    #[test]
+    fn steps_shorten_while_rates_alternate() {
+        let longer = |changes: [f64; 2]| {
+            let [before, now] = changes.map(|change| change * 1e-9);
+            let last = StepRecord {
+                change_before_mm: vec![before],
+                ..last(1e-7, 1e5)
+            };
+            interval(&rates(1e-7 + now, 1e-6), Some(&last)) / 1e5
+        };
+        // Alternations that grow, stay, and decay slowly and fast; without a reversal; and below what is observed.
+        let near =
+            |found: f64, expected: f64| assert!((found / expected - 1.0).abs() < 0.01, "{found}");
+        near(longer([-10.0, 15.0]), 1.6 / 2.5);
+        near(longer([10.0, -10.0]), 1.6 / 2.0);
+        near(longer([10.0, -6.0]), 1.6 / 1.6);
+        near(longer([10.0, -4.0]), 1.5);
+        near(longer([10.0, 15.0]), 1.5);
+        near(longer([0.1, -0.4]), 1.5);
     }
 
     #[test]

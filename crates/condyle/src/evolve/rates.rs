@@ -121,9 +121,27 @@ pub struct StepRecord {
     pub area_mm2: Vec<f64>,
     /// Rate at which wear flattens the pressure at its start, per cycle.
     pub relaxation_per_cycle: f64,
+    /// Change of the depth per cycle at every surface node over the step before, mm; 0 in the first step.
+    pub change_before_mm: Vec<f64>,
 }
 
 impl StepRecord {
+    /// Returns the changes of the depth per cycle at every surface node over the step before and over this one,
+    /// which led to `now_mm`, mm, where one reverses the other: both are 0 elsewhere.
+    pub fn reversals_mm(&self, now_mm: &[f64]) -> Vec<[f64; 2]> {
+        let changes = now_mm.iter().zip(&self.depth_per_cycle_mm);
+        let both = self.change_before_mm.iter().zip(changes);
+        both.map(|(&before, (now, start))| {
+            let change = now - start;
+            if before * change < 0.0 {
+                [before, change]
+            } else {
+                [0.0; 2]
+            }
+        })
+        .collect()
+    }
+
     /// Returns the volume worn per cycle at its start, mm3.
     pub fn volume_per_cycle_mm3(&self) -> f64 {
         volume_mm3(&self.area_mm2, &self.depth_per_cycle_mm)
@@ -161,8 +179,13 @@ pub(super) struct WearStep {
 }
 
 impl WearStep {
-    pub fn record(self, rates: Rates) -> StepRecord {
+    pub fn record(self, rates: Rates, last: Option<&StepRecord>) -> StepRecord {
+        let now = rates.depth_per_cycle_mm.iter().enumerate();
+        let change = |(node, now): (usize, &f64)| {
+            last.map_or(0.0, |last| now - last.depth_per_cycle_mm[node])
+        };
         StepRecord {
+            change_before_mm: now.map(change).collect(),
             interval: self.interval,
             relaxation_per_cycle: rates.relaxation_per_cycle,
             depth_per_cycle_mm: rates.depth_per_cycle_mm,

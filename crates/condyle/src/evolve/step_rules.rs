@@ -209,7 +209,7 @@ mod tests {
             predicted_mm: Vec::new(),
             error_mm: vec![0.0; depth_per_cycle_mm.len()],
         };
-        step.record(rates_of(depth_per_cycle_mm))
+        step.record(rates_of(depth_per_cycle_mm), None)
     }
 
     #[test]
@@ -276,7 +276,7 @@ mod tests {
                     error_mm: vec![0.0; self.nodes],
                     depth_mm,
                 };
-                last = Some(step.record(rates));
+                last = Some(step.record(rates, last.as_ref()));
             }
             worn_mm
         }
@@ -364,7 +364,7 @@ mod tests {
             predicted_mm: Vec::new(),
             error_mm: vec![0.0; 2],
         };
-        let last = last.record(at(0.5, 1.0));
+        let last = last.record(at(0.5, 1.0), None);
         let depth_mm = exponential(&at(0.0, 0.0), Some(&last), 1.0);
         assert_eq!(depth_mm[0], 0.0);
     }
@@ -392,7 +392,7 @@ mod error_tests {
             predicted_mm: Vec::new(),
             error_mm: vec![error_mm],
         };
-        step.record(rates(3.0, 0.0))
+        step.record(rates(3.0, 0.0), None)
     }
 
     fn start<'a>(now: &'a Rates, last: &'a StepRecord) -> StepStart<'a> {
