@@ -9,7 +9,10 @@ use nalgebra::DMatrix;
 use serde::Serialize;
 
 use crate::{
-    answers::words::{chance, shown},
+    answers::{
+        emulated::MIN_Q2,
+        words::{chance, shown},
+    },
     design::sobol::sobol_places,
     emulator::Emulator,
     error::StudyError,
@@ -80,7 +83,12 @@ fn standing(plan: &Plan, known: &[Known]) -> Option<(Aim, Option<Seen>)> {
     let before = batches(plan.study().inputs.len());
     let before = before.take_while(|tests| *tests < known.len()).last();
     let seen = |tests: usize| Seen::new(plan, &known[..tests]);
-    let is_within = |seen: &Option<Seen>| seen.as_ref().is_some_and(|seen| seen.error <= goal.part);
+    // The errors of an output are those of its tests; a probability is counted over predictions, which must be good.
+    let is_good = |seen: &Seen| goal.limit.is_none() || seen.emulator.q2() >= MIN_Q2;
+    let is_within = |seen: &Option<Seen>| {
+        seen.as_ref()
+            .is_some_and(|seen| seen.error <= goal.part && is_good(seen))
+    };
     let last = seen(known.len());
     let aim = Aim {
         output: goal.output.key,
@@ -142,7 +150,11 @@ impl Seen {
         }
         let emulator = Emulator::fit(&at, &of)?.calibrated();
         let (pool, probability) = match goal.limit {
-            Some(limit) => near_limit(plan, &emulator, limit),
+            Some(limit) => {
+                let (pool, found) = near_limit(plan, &emulator, limit);
+                let share = failed.len() as f64 / known.len() as f64;
+                (pool, found.map(|found| found.with_failed(share)))
+            }
             // Another scrambling than that of the first tests.
             None => (sobol_tests(plan, !keys.seed, 0, POOL), None),
         };

@@ -50,7 +50,7 @@ impl Answers {
         let pareto: Option<Option<Vec<_>>> = keys
             .pareto
             .map(|two| two.0.iter().map(|name| output("pareto", name)).collect());
-        let outputs = outputs?;
+        let mut outputs = outputs?;
         let Some(&first) = outputs.first() else {
             let advice = "name one, such as `mass_loss_mg`, or omit the key";
             let fault = Fault::new("the study names no output", advice);
@@ -59,10 +59,17 @@ impl Answers {
         };
         let two = pareto.map_or(Some(outputs.clone()), |two| two)?;
         let bounds: Option<Vec<Bound>> = bounds?;
+        let bounds = bounds?;
+        // A limit is a question about its output too.
+        for bound in &bounds {
+            if outputs.iter().all(|output| output.key != bound.output.key) {
+                outputs.push(bound.output);
+            }
+        }
         Some(Self {
             rank_by: rank_by.unwrap_or(Some(first))?,
             pareto: two.first_chunk().copied(),
-            bounds: bounds?,
+            bounds,
             outputs,
         })
     }

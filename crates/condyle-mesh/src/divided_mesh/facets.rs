@@ -1,9 +1,8 @@
 //! The flat facets of a mesh, and their distance from the curved surface that they sample.
 
 use super::{
-    facet_normals,
     normals::{creases, sides_across},
-    samples::{height, without_flat_vertices},
+    samples::{facet_normals, height, without_flat_vertices},
 };
 use crate::triangle_mesh::TriangleMesh;
 

@@ -9,7 +9,10 @@ mod tests;
 
 use std::ops::Range;
 
-use self::{normals::Normals, samples::samples_of};
+use self::{
+    normals::Normals,
+    samples::{facet_normals, samples_of},
+};
 use crate::{
     Vec3,
     curved_mesh::{CurvedMesh, Foot, lift},
@@ -164,15 +167,6 @@ impl DividedMesh {
                 .and_then(|side| facet.at_sides[side]),
         }
     }
-}
-
-fn facet_normals(mesh: &TriangleMesh) -> Vec<Vec3> {
-    let normal = |triangle| {
-        let [a, b, c] = mesh.corners(triangle);
-        let across = (b - a).cross(&(c - a));
-        across.try_normalize(0.0).unwrap_or_default()
-    };
-    (0..mesh.triangles.len()).map(normal).collect()
 }
 
 fn planes(mesh: &TriangleMesh) -> Vec<(Vec3, f64)> {

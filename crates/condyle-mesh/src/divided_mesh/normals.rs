@@ -3,9 +3,8 @@
 use std::collections::BTreeMap;
 
 use super::{
-    facet_normals,
     patch::Patch,
-    samples::{MIN_HEIGHT_MM, height},
+    samples::{MIN_HEIGHT_MM, facet_normals, height},
 };
 use crate::{
     Vec3,

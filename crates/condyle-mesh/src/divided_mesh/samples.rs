@@ -136,6 +136,15 @@ fn best_collapse(mesh: &TriangleMesh, vertex: u32, star: &[u32]) -> Option<u32> 
     best.map(|(_, onto)| onto)
 }
 
+pub(super) fn facet_normals(mesh: &TriangleMesh) -> Vec<Vec3> {
+    let normal = |triangle| {
+        let [a, b, c] = mesh.corners(triangle);
+        let across = (b - a).cross(&(c - a));
+        across.try_normalize(0.0).unwrap_or_default()
+    };
+    (0..mesh.triangles.len()).map(normal).collect()
+}
+
 /// Returns the smallest height of a triangle, mm.
 pub(super) fn height([a, b, c]: [Vec3; 3]) -> f64 {
     let longest = (b - a).norm().max((c - b).norm()).max((a - c).norm());

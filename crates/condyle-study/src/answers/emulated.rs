@@ -19,6 +19,8 @@ use crate::{
 /// Smallest Q2 of an emulator from which answers are computed: a tenth of the variance remains
 /// unexplained, and indices may be wrong by that much.
 pub(crate) const MIN_Q2: f64 = 0.9;
+/// Largest share of failed tests, about which an emulator knows nothing, up to which answers are computed from it.
+const MAX_FAILED: f64 = 0.01;
 /// Largest number of tests that condition an emulator.
 const MAX_TESTS: usize = 256;
 /// Values of an input in integrals over its distribution, each equally likely.
@@ -35,9 +37,11 @@ pub(crate) struct Emulated {
     /// Tests that condition the emulator.
     pub tests: usize,
     pub q2: f64,
-    /// The distribution of the predictions; none if Q2 is too small.
+    /// The share of the tests that failed.
+    pub failed: f64,
+    /// The distribution of the predictions; none if the emulator is not used.
     pub distribution: Option<Distribution>,
-    /// Probabilities of being beyond each limit; none if Q2 is too small.
+    /// Probabilities of being beyond each limit; none if the emulator is not used.
     pub beyond: Vec<Chance>,
     #[serde(skip)]
     pub exported: Exported,
@@ -116,11 +120,13 @@ pub(crate) fn emulated(data: &Data<'_>) -> (Vec<Emulated>, Vec<Indices>) {
             continue;
         };
         let mut emulated = Emulated::new(output, &axes, &emulator);
-        if emulated.q2 >= MIN_Q2 {
+        emulated.failed = failed(data, values);
+        if emulated.why_not_used().is_none() {
             let population = Population::new(data.plan, &emulator, &axes);
             emulated.distribution = Some(Distribution::new(&population.sorted()));
             let own = study.answers.bounds_of(output);
-            emulated.beyond = own.map(|bound| Chance::new(bound, &population)).collect();
+            let chance = |bound| Chance::new(bound, &population, emulated.failed);
+            emulated.beyond = own.map(chance).collect();
             if study.correlations.is_empty() {
                 indices.extend(of_output(&axes, &emulator, &emulated));
             }
@@ -128,6 +134,14 @@ pub(crate) fn emulated(data: &Data<'_>) -> (Vec<Emulated>, Vec<Indices>) {
         all.push(emulated);
     }
     (all, indices)
+}
+
+/// Returns the share of the tests of the sample that failed.
+fn failed(data: &Data<'_>, values: &[f64]) -> f64 {
+    let is_used = |row: usize| data.kept[row] && (!data.is_sample() || is_sampled(data.plan, row));
+    let used = (0..values.len()).filter(|row| is_used(*row));
+    let failed = used.map(|row| f64::from(!values[row].is_finite()));
+    mean(&failed.collect::<Vec<f64>>())
 }
 
 /// Returns an emulator of an output from the first tests that are done; of a Saltelli design, of those of the sample.
@@ -166,10 +180,20 @@ impl Emulated {
             unit: output.unit(),
             tests: emulator.left_out().len(),
             q2: exported.q2,
+            failed: 0.0,
             distribution: None,
             beyond: Vec::new(),
             exported,
         }
+    }
+
+    /// Returns why no answers are computed from it; none if they are.
+    pub fn why_not_used(&self) -> Option<String> {
+        if self.q2 < MIN_Q2 {
+            return Some(format!("Q2 is below {MIN_Q2}"));
+        }
+        let percent = 100.0 * self.failed;
+        (self.failed > MAX_FAILED).then(|| format!("{percent:.1} % of the tests failed"))
     }
 }
 
@@ -209,10 +233,12 @@ fn jackknife_error(without: &[f64]) -> f64 {
 }
 
 impl Chance {
-    fn new(bound: &Bound, population: &Population<'_>) -> Self {
+    /// Of the share of tests that `failed`, all may be beyond the limit.
+    fn new(bound: &Bound, population: &Population<'_>, failed: f64) -> Self {
         let excess = |value: f64| bound.distance(value);
         let points = population.points(&excess);
-        let Estimate { value, interval } = population.beyond(&points, &excess);
+        let found = population.beyond(&points, &excess).with_failed(failed);
+        let Estimate { value, interval } = found;
         Self {
             least: bound.least,
             most: bound.most,

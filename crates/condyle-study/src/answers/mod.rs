@@ -18,7 +18,7 @@ use crate::{
     answers::{
         data::{Data, Spread},
         effects::{Effect, Elementary},
-        emulated::{Emulated, MIN_Q2, emulated},
+        emulated::{Emulated, emulated},
         indices::Indices,
         ranking::{Best, Front, Ranking},
         robust::Robust,
@@ -339,11 +339,8 @@ impl Answers {
                 let [low, high] = beyond.interval.map(chance);
                 format!("{} ({low} to {high})", chance(beyond.probability))
             });
-            let used = if one.q2 >= MIN_Q2 {
-                "yes".to_owned()
-            } else {
-                format!("no, Q2 is below {MIN_Q2}")
-            };
+            let why_not = one.why_not_used();
+            let used = why_not.map_or_else(|| "yes".to_owned(), |why| format!("no, {why}"));
             let numbers = one.distribution.as_ref().map(|own| {
                 let [_, p5, _, p50, _, p95, _] = own.percentiles;
                 [p5, p50, p95, own.mean, own.standard_deviation].map(shown)

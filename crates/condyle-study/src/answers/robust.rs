@@ -130,7 +130,8 @@ fn limits(bound: &Bound) -> impl Iterator<Item = String> {
     bound.sides().map(move |(sign, limit)| {
         let side = if sign > 0.0 { "at most" } else { "at least" };
         let words = format!("{label} {side} {limit} {unit}");
-        words.trim_end().to_owned()
+        let required = shown(100.0 * bound.probability);
+        format!("{} ({required} % required)", words.trim_end())
     })
 }
 

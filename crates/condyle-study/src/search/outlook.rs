@@ -90,7 +90,8 @@ impl Outlook {
     /// Returns the weight of each disturbance for a design with these correlations with the tests.
     fn weights_at(&self, near: &DVector<f64>) -> DVector<f64> {
         let count = self.weights.len();
-        if self.weights[0] == self.weights[count - 1] {
+        // Those of a mean. The first and the last of a percentile may be equal, since both may underflow.
+        if self.weights.min() == self.weights.max() {
             return self.weights.clone();
         }
         let outputs = &self.with_tests * self.emulator.contributions(near);
@@ -145,6 +146,25 @@ pub(super) fn percentile_weights(count: usize, share: f64) -> DVector<f64> {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    /// With many disturbances, the weights of both ends of the ranks are zero.
+    #[test]
+    fn verify_percentiles_under_many_disturbances() {
+        let places =
+            (0..40).map(|test| [0.618, 0.414].map(|turn| (f64::from(test) * turn).fract()));
+        let points: Vec<Vec<f64>> = places.map(|place| place.to_vec()).collect();
+        let of = |point: &[f64]| point[0] + 2.0 * point[1] * point[1];
+        let values: Vec<f64> = points.iter().map(|point| of(point)).collect();
+        let emulator = Emulator::fit(&points, &values).unwrap();
+        let part = |number: usize| (number as f64 + 0.5) / 256.0;
+        let disturbances: Vec<Vec<f64>> = (0..256).map(|number| vec![part(number)]).collect();
+        for share in [0.5, 0.9, 0.95] {
+            let outlook = Outlook::new(emulator.clone(), &disturbances, Some(share));
+            let found = outlook.predict(&[0.3]).mean;
+            let exact = of(&[0.3, share]);
+            assert!((found - exact).abs() < 0.01, "{share}: {found} {exact}");
+        }
+    }
 
     #[test]
     fn verify_percentiles_of_a_sample() {

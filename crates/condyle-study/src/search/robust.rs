@@ -31,6 +31,15 @@ pub(crate) struct Estimate {
     pub interval: [f64; 2],
 }
 
+impl Estimate {
+    /// Returns a probability of the solved tests as one of all tests, of which a share failed and may belong to it.
+    pub fn with_failed(self, share: f64) -> Self {
+        let [low, high] = self.interval.map(|end| end * (1.0 - share));
+        let interval = [low, high + share];
+        Self { interval, ..self }
+    }
+}
+
 /// A design of a robust search, by the emulators.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub(crate) struct Judged {

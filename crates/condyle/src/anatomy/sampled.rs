@@ -104,9 +104,10 @@ impl Sampled {
         };
         let normals = self.points.iter().map(|(_, normal)| normal);
         let angles_deg: Vec<f64> = normals.filter_map(angle_deg).collect();
-        let quarter = |degrees: f64| (degrees + 45.0).rem_euclid(90.0) - 45.0;
         let square = |turn_deg: f64| {
-            let off = angles_deg.iter().map(|angle| quarter(angle - turn_deg));
+            let off = angles_deg
+                .iter()
+                .map(|angle| within_quarter_deg(angle - turn_deg));
             let near = off.filter(|off| off.abs() < SQUARE_DEG);
             near.fold((0usize, 0.0), |(count, sum), off| (count + 1, sum + off))
         };
@@ -115,7 +116,7 @@ impl Sampled {
         let (chamfered, _) = square(turn_deg + 45.0);
         let share = count as f64 / self.points.len() as f64;
         let is_known = share > MIN_SQUARE && 2 * chamfered < count;
-        is_known.then(|| quarter(turn_deg + sum / count as f64))
+        is_known.then(|| within_quarter_deg(turn_deg + sum / count as f64))
     }
 
     /// Returns the share of the area that faces a half space and is parallel to its plane.
@@ -240,6 +241,11 @@ impl Sampled {
         let along = cosines.filter(|cosine| cosine.abs() > ALONG);
         along.fold((0.0, 0.0), |(on, out), cosine| (on + 1.0, out + cosine))
     }
+}
+
+/// Returns the turn from -45 to 45 degrees that differs from another by quarter turns.
+pub(super) fn within_quarter_deg(turn_deg: f64) -> f64 {
+    (turn_deg + 45.0).rem_euclid(90.0) - 45.0
 }
 
 /// Returns the normal of a triangle, as long as twice its area.

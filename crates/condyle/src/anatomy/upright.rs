@@ -2,7 +2,7 @@
 
 use super::{
     recognition::{LIKELY_MARGIN, Recognition},
-    sampled::Sampled,
+    sampled::{Sampled, within_quarter_deg},
     views::Orientation,
 };
 use crate::{Mat3, Vec3, geometry::TriangleMesh};
@@ -148,10 +148,10 @@ fn turn_by_signs_deg(score: impl Fn(f64) -> Option<f64>) -> Option<f64> {
         return Some(0.0);
     }
     // The middle of the turns that fit about as well, counted from the best.
-    let from_best = |degrees: f64| (degrees - best.0 + 45.0).rem_euclid(90.0) - 45.0;
+    let from_best = |degrees: f64| within_quarter_deg(degrees - best.0);
     let good = || scores.iter().filter(|one| best.1 - one.1 < EQUAL);
     let mean = good().map(|one| from_best(one.0)).sum::<f64>() / good().count() as f64;
-    Some((best.0 + mean + 45.0).rem_euclid(90.0) - 45.0)
+    Some(within_quarter_deg(best.0 + mean))
 }
 
 /// Returns the angle of a direction to the nearest axis, degrees.

@@ -81,15 +81,10 @@ impl Case {
                 let placing = femur.placing(side)?;
                 let PreparedFemur { shell, field } =
                     femur.prepared(placement, &placing, &self.limits, threads, keep)?;
-                warn(&femur.file, &shell, warnings);
-                if self.check_orientation(
-                    Body::Femur,
-                    &femur.file,
-                    &shell.mesh,
-                    &placing,
-                    warnings,
-                )? {
-                    check_side(&femur.file, &shell.mesh, side, warnings);
+                let (file, mesh) = (&femur.file, &shell.mesh);
+                warn(file, &shell, warnings);
+                if self.check_orientation(Body::Femur, file, mesh, &placing, warnings)? {
+                    check_side(file, mesh, side, warnings);
                 }
                 let flexion_axis_mm = femur.axis_mm(&shell.mesh);
                 let (x, z) = on_the_right(femur.start_mm.unwrap_or_default(), side);
