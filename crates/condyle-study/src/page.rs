@@ -26,7 +26,7 @@ use crate::{
 };
 
 /// Number of inputs in a picture: those with the largest effects.
-const MAX_INPUTS: usize = 12;
+const MAX_INPUTS: usize = 24;
 /// Number of inputs in a scatter matrix.
 const MAX_COLUMNS: usize = 5;
 
@@ -55,7 +55,8 @@ pub fn write_answers(plan: &Plan, folder: &Path) -> Result<Answers, StudyError> 
         false => format!("A search of {kept} tests"),
         true => format!("{kept} tests, design {design}"),
     };
-    let lede = format!("{answer} {tests}; {end}. {doubts}");
+    let ended = answers.end_of_search().unwrap_or_default();
+    let lede = format!("{answer} {tests}; {end}. {ended} {doubts}");
     let lede = lede.trim();
     let (tables, pictures) = (answers.tables(), pictures(&answers));
     write_study_page(folder, title.unwrap_or("A study"), lede, &tables, &pictures)?;

@@ -118,6 +118,20 @@ const SEARCH: &str = "case = \"case.toml\"\n[design]\nkind = \"optimise\"\nsize 
                       [[vary]]\nkey = \"contact.friction\"\nlow = 0.02\nhigh = 0.1\n\
                       [[limit]]\noutput = \"peak_pressure_mpa\"\nmost = 100\n";
 
+/// Pressures of polyethylene are above a tenth of a megapascal.
+#[test]
+fn terminal_and_page_report_that_no_design_keeps_the_limits() {
+    let bench = bench(&SEARCH.replace("most = 100", "most = 0.1"));
+    let said = bench.say(&["study", "study.toml", "--out", "out"]);
+    let page = fs::read_to_string(bench.path("out/study.html")).unwrap();
+    for text in [&said.out, &page] {
+        assert!(
+            text.contains("No tested design keeps every limit"),
+            "{text}"
+        );
+    }
+}
+
 fn goes_on_where_it_is_killed(study: &str) {
     use std::{process::Stdio, thread::sleep, time::Duration};
     let whole = table(&bench(study), &[]);

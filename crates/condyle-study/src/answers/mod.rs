@@ -198,7 +198,13 @@ impl Answers {
     }
 
     /// Returns how a search for an optimum ended, in a sentence; none for other studies.
-    fn end_of_search(&self) -> Option<String> {
+    pub(crate) fn end_of_search(&self) -> Option<String> {
+        let is_unknown = self.best.as_ref().is_none_or(|best| best.row.is_none());
+        let front = self.front.as_ref().filter(|front| !front.tests.is_empty());
+        if self.design == "optimise" && is_unknown && self.robust.is_none() && front.is_none() {
+            let advice = "widen the ranges of the inputs or the limits, or allow more tests";
+            return Some(format!("No tested design keeps every limit: {advice}.\n"));
+        }
         let best = self
             .best
             .as_ref()
@@ -563,18 +569,25 @@ pub(crate) fn table<T>(
     std::iter::once(head).chain(all.iter().map(row)).collect()
 }
 
-/// Returns the same table for the inputs with the largest effects; the pictures of the page show all inputs. Empty if
+/// Returns the same table for the inputs with the largest effects, with the number of others in its last row. Empty if
 /// there are no inputs.
 fn table_of_most<T>(
     head: &[&str],
     all: &[&T],
     row: impl Fn(&T) -> Vec<String>,
 ) -> Vec<Vec<String>> {
-    const MAX_ROWS: usize = 12;
+    const MAX_ROWS: usize = 24;
     if all.is_empty() {
         return Vec::new();
     }
-    table(head, &all[..all.len().min(MAX_ROWS)], |one| row(one))
+    let shown = all.len().min(MAX_ROWS);
+    let mut rows = table(head, &all[..shown], |one| row(one));
+    if all.len() > shown {
+        let mut more = vec![String::new(); head.len()];
+        more[0] = format!("and {} more, in answers.json", all.len() - shown);
+        rows.push(more);
+    }
+    rows
 }
 
 #[cfg(test)]
