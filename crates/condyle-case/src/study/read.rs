@@ -196,7 +196,7 @@ fn correlation(section: &Section<'_>, inputs: &[Input], log: &mut Log<'_>) -> Op
 }
 
 impl Study {
-    /// Reports inputs that are given twice, and values and designs that the case does not accept.
+    /// Reports inputs and designs that are given twice, and values and designs that the case does not accept.
     fn check_inputs(&self, log: &mut Log<'_>) {
         let mut left = MAX_TRIED;
         for (place, input) in self.inputs.iter().enumerate() {
@@ -209,7 +209,13 @@ impl Study {
             }
             self.check_input(input, &mut left, log);
         }
-        for alternative in &self.alternatives {
+        for (place, alternative) in self.alternatives.iter().enumerate() {
+            let mut before = self.alternatives[..place].iter();
+            if before.any(|one| one.name == alternative.name) {
+                let message = format!("two designs have the name `{}`", alternative.name);
+                let fault = Fault::new(message, "rename one: answers name the designs");
+                log.problem(alternative.span.clone(), fault);
+            }
             if let Some((why, advice)) = self.refusal(&alternative.set) {
                 let message = format!("the case rejects the design `{}`: {why}", alternative.name);
                 let fault = Fault::new(message, advice);

@@ -498,6 +498,11 @@ fn what_is_wrong_with_a_study_is_said_with_its_place() {
             vec!["is varied twice; remove one entry"],
         ),
         (
+            vary("contact.friction", range)
+                + &"[[alternative]]\nname = \"twin\"\nset = []\n".repeat(2),
+            vec!["two designs have the name `twin`"],
+        ),
+        (
             vary("contact.friction", range) + "[answers]\noutputs = [\"mass_los_mg\"]\n",
             vec!["did you mean `mass_loss_mg`?"],
         ),

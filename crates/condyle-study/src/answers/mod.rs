@@ -491,7 +491,15 @@ fn sentence_of_front(front: &Front) -> Option<String> {
         let (row, one, other) = &front.tests[place];
         let [one, other] = [one, other].map(|value| shown(*value));
         let design = front.inputs.iter();
-        let design = design.map(|input| format!("{} {}", input.name, shown(input.values[place])));
+        let design = design.map(|input| {
+            let (title, unit) = title_of_path(&input.name);
+            let words = format!(
+                "{} {} {unit}",
+                within_sentence(&title),
+                shown(input.values[place])
+            );
+            words.trim_end().to_owned()
+        });
         let design = design.collect::<Vec<_>>().join(", ");
         format!("; its knee, row {row}, has {one} {unit} and {other} {other_unit} with {design}")
     });
