@@ -190,7 +190,10 @@ fn effects_on<'a>(answers: &'a Answers, output: &str) -> Vec<&'a Effect> {
 }
 
 fn tornado(answers: &Answers) -> Option<Picture> {
-    let spread = answers.spreads.first()?;
+    let spread = answers
+        .spreads
+        .first()
+        .filter(|_| !answers.is_sequential())?;
     let effects = effects_on(answers, spread.output);
     let all = effects.iter().map(|effect| {
         let [low, _] = extent(effect.means.iter().map(|mean| mean.1));
@@ -204,9 +207,7 @@ fn tornado(answers: &Answers) -> Option<Picture> {
         }
     });
     let all: Vec<Bar> = all.collect();
-    // Sobol indices take its place.
-    let is_adaptive = answers.aim.is_some();
-    if is_adaptive || all.is_empty() || all.iter().any(|bar| !bar.span[0].is_finite()) {
+    if all.is_empty() || all.iter().any(|bar| !bar.span[0].is_finite()) {
         return None;
     }
     let title = format!("Effects on {}", spread.title);
@@ -254,7 +255,10 @@ fn distributions(answers: &Answers) -> Option<Picture> {
 }
 
 fn main_effects(answers: &Answers) -> Option<Picture> {
-    let spread = answers.spreads.first()?;
+    let spread = answers
+        .spreads
+        .first()
+        .filter(|_| !answers.is_sequential())?;
     let effects = effects_on(answers, spread.output).into_iter();
     let all: Vec<Plot> = effects
         .map(|effect| Plot {

@@ -123,6 +123,11 @@ impl Answers {
         })
     }
 
+    /// Returns whether tests were chosen by those before them, so that means over some of them are no effects of inputs.
+    pub(crate) fn is_sequential(&self) -> bool {
+        ["optimise", "adaptive"].contains(&self.design)
+    }
+
     /// Effects of inputs on an output, the largest first.
     pub(crate) fn effects_on(&self, output: &str) -> Vec<&Effect> {
         let own = self.effects.iter().filter(|one| one.output == output);
@@ -402,8 +407,7 @@ impl Answers {
     /// Returns the table of effects, for designs without a specific table.
     fn table_of_effects(&self) -> Vec<Vec<String>> {
         let is_counted = self.design == "saltelli";
-        let is_sequential = ["optimise", "adaptive"].contains(&self.design);
-        if is_counted || !self.elementary.is_empty() || is_sequential {
+        if is_counted || !self.elementary.is_empty() || self.is_sequential() {
             return Vec::new();
         }
         let output = self.effects.first().map_or("", |one| one.output);
