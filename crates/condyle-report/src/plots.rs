@@ -1,9 +1,11 @@
 //! Plots of studies over runs: a line over a reference or over a cloud of points.
 
-use crate::figure::{Axis, Curve, MEASURED, Panel, finite_range, sheet};
+use std::iter::once;
+
+use crate::figure::{Axis, Curve, MEASURED, Panel, finite_range, run_class, sheet};
 use crate::number::path_in_words;
 
-/// A plot of one line with a dot at every point, of a reference line and of unconnected points; each may be empty.
+/// A plot of one line with a dot at every point, of a reference line and of clouds of points; each may be empty.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Plot {
     /// Title of the vertical axis.
@@ -20,15 +22,16 @@ pub struct Plot {
     pub min_span: f64,
     /// Points (x, y) of the reference line.
     pub reference: Vec<(f64, f64)>,
-    /// Unconnected points (x, y).
-    pub points: Vec<(f64, f64)>,
+    /// Clouds of unconnected points (x, y), each in a colour of its own.
+    pub clouds: Vec<Vec<(f64, f64)>>,
     /// Points (x, y) of the line.
     pub line: Vec<(f64, f64)>,
 }
 
 impl Plot {
     fn all(&self) -> impl Iterator<Item = &(f64, f64)> + Clone {
-        self.reference.iter().chain(&self.points).chain(&self.line)
+        let points = self.clouds.iter().flatten();
+        self.reference.iter().chain(points).chain(&self.line)
     }
 
     /// Returns the panel; `span` is the minimum span of its vertical axis.
@@ -41,11 +44,13 @@ impl Plot {
         };
         let x = self.all().map(|point| point.0);
         let (low, high) = finite_range(x.clone()).unwrap_or((0.0, 1.0));
-        // A point with NaN after each keeps a line from joining the points.
-        let cloud = self
-            .points
-            .iter()
-            .flat_map(|&(x, y)| [(x, y), (x, f64::NAN)]);
+        let clouds = self.clouds.iter().enumerate().map(|(place, points)| {
+            // A point with NaN after each keeps a line from joining the points.
+            let points = points.iter().flat_map(|&(x, y)| [(x, y), (x, f64::NAN)]);
+            Curve::new(cloud(place, self.clouds.len()), points.collect()).dotted()
+        });
+        let reference = Curve::new("first", self.reference.clone());
+        let line = Curve::new("last", self.line.clone()).dotted();
         Panel {
             title: self.title.clone(),
             unit: self.unit.clone(),
@@ -64,20 +69,25 @@ impl Plot {
             size,
             from_zero: self.from_zero,
             min_span: span,
-            curves: vec![
-                Curve::new("first", self.reference.clone()),
-                Curve::new(MEASURED, cloud.collect()).dotted(),
-                Curve::new("last", self.line.clone()).dotted(),
-            ],
+            curves: once(reference).chain(clouds).chain([line]).collect(),
             ..Panel::default()
         }
     }
 }
 
-/// Draws an SVG file of plots in rows of `columns`; `keys` names the reference, the points and the line.
+/// Returns the style of one of `clouds`.
+fn cloud(place: usize, clouds: usize) -> &'static str {
+    if clouds > 1 {
+        run_class(place)
+    } else {
+        MEASURED
+    }
+}
+
+/// Draws an SVG file of plots in rows of `columns`; `keys` names the reference, each cloud of points and the line.
 ///
 /// Plots of the same title have vertical axes of the same length, so that small effects look small.
-pub fn plots_svg(title: &str, plots: &[Plot], columns: usize, keys: [&str; 3]) -> String {
+pub fn plots_svg(title: &str, plots: &[Plot], columns: usize, keys: &[&str]) -> String {
     let span = |plot: &Plot| {
         let same = plots.iter().filter(|other| other.title == plot.title);
         let ranges = same.filter_map(|one| finite_range(one.all().map(|point| point.1)));
@@ -96,13 +106,20 @@ pub fn plots_svg(title: &str, plots: &[Plot], columns: usize, keys: [&str; 3]) -
         across => format!("{} over {across}", plot.title),
     };
     let names: Vec<String> = plots.iter().map(name).collect();
-    let used = [
-        plots.iter().any(|plot| !plot.reference.is_empty()),
-        plots.iter().any(|plot| !plot.points.is_empty()),
-        plots.iter().any(|plot| !plot.line.is_empty()),
-    ];
-    let key = ["first", MEASURED, "last"].into_iter().zip(keys).zip(used);
-    let key: Vec<_> = key.filter(|(_, used)| *used).map(|(key, _)| key).collect();
+    let clouds = keys.len() - 2;
+    let mut key = Vec::new();
+    for (place, &words) in keys.iter().enumerate() {
+        let (class, is_used): (_, &dyn Fn(&Plot) -> bool) = match place.checked_sub(1) {
+            None => ("first", &|plot| !plot.reference.is_empty()),
+            Some(own) if own < clouds => (cloud(own, clouds), &|plot| {
+                plot.clouds.iter().any(|own| !own.is_empty())
+            }),
+            Some(_) => ("last", &|plot| !plot.line.is_empty()),
+        };
+        if plots.iter().any(is_used) {
+            key.push((class, words));
+        }
+    }
     sheet(title, &names.join("; "), &panels, columns.max(1), &key)
 }
 
@@ -144,7 +161,7 @@ mod tests {
             "A study",
             &[plot(Vec::new())],
             2,
-            ["reference", "tests", "ours"],
+            &["reference", "tests", "ours"],
         );
         assert_eq!(svg.matches("<circle").count(), 3);
         assert!(svg.contains("Depth &amp; more") && !svg.contains("Depth & more"));
@@ -155,7 +172,7 @@ mod tests {
     #[test]
     fn marks_take_the_place_of_round_numbers() {
         let marks = vec![(0.0, "ten".to_owned()), (5.0, "twenty".to_owned())];
-        let svg = plots_svg("A study", &[plot(marks)], 2, ["a", "b", "c"]);
+        let svg = plots_svg("A study", &[plot(marks)], 2, &["a", "b", "c"]);
         assert!(svg.contains(">ten<") && svg.contains(">twenty<") && !svg.contains(">3<"));
     }
 
@@ -165,10 +182,10 @@ mod tests {
             title: "mass".to_owned(),
             unit: "mg".to_owned(),
             x_title: "friction & more".to_owned(),
-            points: vec![(1e-7, 2.0), (2e-7, 3.0), (3e-7, 1.0)],
+            clouds: vec![vec![(1e-7, 2.0), (2e-7, 3.0), (3e-7, 1.0)]],
             ..Plot::default()
         };
-        let svg = plots_svg("A study", &[plot], 3, ["", "tests", ""]);
+        let svg = plots_svg("A study", &[plot], 3, &["", "tests", ""]);
         assert_eq!(svg.matches("<circle").count(), 3);
         assert!(roxmltree::Document::parse(&svg).is_ok());
         let points = svg
@@ -176,5 +193,16 @@ mod tests {
             .nth(1)
             .unwrap_or_default();
         assert!(!points.split('"').next().unwrap_or_default().contains('l'));
+    }
+    #[test]
+    fn several_clouds_have_colours_of_their_own_and_names() {
+        let plot = Plot {
+            clouds: vec![vec![(1.0, 2.0), (2.0, 3.0)], vec![(1.0, 4.0)]],
+            ..Plot::default()
+        };
+        let svg = plots_svg("A study", &[plot], 1, &["", "flat", "deep", ""]);
+        assert_eq!(svg.matches("class=\"dot run-1\"").count(), 2);
+        assert_eq!(svg.matches("class=\"dot run-2\"").count(), 1);
+        assert!(svg.contains(">flat<") && svg.contains(">deep<"));
     }
 }

@@ -320,7 +320,7 @@ impl Convergence {
         let shown = compared().filter(|output| output.key != "volume_loss_mm3");
         let plots: Vec<Plot> = shown.map(|output| self.plot(output)).collect();
         let line = format!("a run for each value of {}", self.key);
-        plots_svg("Convergence", &plots, 2, ["extrapolated", "", &line])
+        plots_svg("Convergence", &plots, 2, &["extrapolated", "", &line])
     }
 
     fn plot(&self, output: &Scalar) -> Plot {

@@ -1,6 +1,6 @@
 //! The answers of a study as pictures and a page.
 
-use std::path::Path;
+use std::{iter::once, path::Path};
 
 use condyle_report::{
     Plot, plots_svg,
@@ -126,7 +126,7 @@ fn progress(best: &Best) -> Option<Picture> {
         line: best.progress.clone(),
         ..Plot::default()
     };
-    let svg = plots_svg("Search", &[plot], 1, ["", "", "best so far"]);
+    let svg = plots_svg("Search", &[plot], 1, &["", "", "best so far"]);
     Some(("search.svg", "The progress of the search.".to_owned(), svg))
 }
 
@@ -273,7 +273,7 @@ fn main_effects(answers: &Answers) -> Option<Picture> {
     if all.is_empty() {
         return None;
     }
-    let svg = plots_svg("Main effects", &all, 4, ["", "", "mean"]);
+    let svg = plots_svg("Main effects", &all, 4, &["", "", "mean"]);
     Some(("main_effects.svg", caption, svg))
 }
 
@@ -291,7 +291,7 @@ fn scatter(answers: &Answers) -> Option<Picture> {
             let mut effects = answers.effects.iter();
             let own = effects.find(|one| one.output == spread.output && one.input == column.input);
             all.extend(own.map(|effect| Plot {
-                points: effect.points.clone(),
+                clouds: effect.points.clone(),
                 ..plot(spread, effect)
             }));
         }
@@ -300,12 +300,14 @@ fn scatter(answers: &Answers) -> Option<Picture> {
         return None;
     }
     let caption = "Outputs over the inputs that affect the first of them most; of many tests, some are shown.";
-    let svg = plots_svg(
-        "Scatter matrix",
-        &all,
-        columns.len().max(3),
-        ["", "tests", ""],
-    );
+    // The spreads of an output are those of its designs.
+    let designs = answers
+        .spreads
+        .iter()
+        .filter(|one| one.output == first.output);
+    let names = designs.map(|one| one.design.as_deref().unwrap_or("tests"));
+    let keys: Vec<&str> = once("").chain(names).chain([""]).collect();
+    let svg = plots_svg("Scatter matrix", &all, columns.len().max(3), &keys);
     Some(("scatter.svg", caption.to_owned(), svg))
 }
 
@@ -333,7 +335,7 @@ fn front(front: &Front) -> Option<Picture> {
         title: front.titles[1].to_owned(),
         unit: up_unit,
         x_title: format!("{}, {unit}", front.titles[0]),
-        points: front.others.clone(),
+        clouds: vec![front.others.clone()],
         line: tests.map(|(_, one, other)| (*one, *other)).collect(),
         reference: lines_to_knee(front).unwrap_or_default(),
         ..Plot::default()
@@ -347,7 +349,7 @@ fn front(front: &Front) -> Option<Picture> {
         "Pareto front",
         &[plot],
         1,
-        [key, "within limits", "the front"],
+        &[key, "within limits", "the front"],
     );
     let mut caption =
         "Tests within all limits; no test is better in both outputs than one on the front."

@@ -22,6 +22,12 @@ const KEY: f64 = 26.0;
 
 pub(crate) const MEASURED: &str = "specimen";
 
+/// Returns the style of a run, or of another of several alike; styles repeat after six.
+pub(crate) fn run_class(run: usize) -> &'static str {
+    const CLASSES: [&str; 6] = ["run-1", "run-2", "run-3", "run-4", "run-5", "run-6"];
+    CLASSES[run % CLASSES.len()]
+}
+
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Curve {
     /// Its name in the legend of the interactive plot.
@@ -163,8 +169,8 @@ impl Panel {
         let mut out = format!(r#"<path class="{}" d="{}"/>"#, curve.class, path.data());
         if curve.has_dots {
             let class = match curve.class {
-                MEASURED => "dot specimen",
-                _ => "dot",
+                "first" | "last" => "dot".to_owned(),
+                own => format!("dot {own}"),
             };
             let seen = points().filter(|point| point.1.is_finite());
             out.extend(seen.map(|(x, y)| {

@@ -11,7 +11,8 @@ use super::differences::{
 };
 use crate::charts;
 use crate::figure::{
-    ColourRange, Curve, MEASURED, Map, MapStyle, Panel, escape, largest_size, sheet, svg_file,
+    ColourRange, Curve, MEASURED, Map, MapStyle, Panel, escape, largest_size, run_class, sheet,
+    svg_file,
 };
 use crate::maps::{MAPS, MappedField};
 use crate::number::significant;
@@ -217,7 +218,7 @@ fn sheets(runs: &[Run]) -> Vec<Sheet> {
     let wear = together(wear, |curves| curves.next_back());
     let motion = || runs.iter().map(|run| charts::cycle(&run.results));
     let names = runs.iter().map(|run| run.name.as_str());
-    let key: Vec<_> = (0..).map(line).zip(names).collect();
+    let key: Vec<_> = (0..).map(run_class).zip(names).collect();
     let mut sheets: Vec<Sheet> = Vec::new();
     for (name, caption, title, panels, columns) in [
         (
@@ -258,12 +259,6 @@ fn sheets(runs: &[Run]) -> Vec<Sheet> {
     sheets
 }
 
-/// Returns the style of the line of a run; the styles repeat after six runs.
-fn line(run: usize) -> &'static str {
-    const LINES: [&str; 6] = ["run-1", "run-2", "run-3", "run-4", "run-5", "run-6"];
-    LINES[run % LINES.len()]
-}
-
 /// Panels of the same quantity as one, with the curve that `pick` takes of each run.
 fn together(
     of_runs: impl Iterator<Item = Vec<Panel>>,
@@ -274,7 +269,7 @@ fn together(
         for mut panel in panels {
             let curves = std::mem::take(&mut panel.curves).into_iter();
             let mut own = curves.filter(|curve| curve.class != MEASURED);
-            let curve = pick(&mut own).map(|curve| Curve::new(line(run), curve.points));
+            let curve = pick(&mut own).map(|curve| Curve::new(run_class(run), curve.points));
             let place = all.iter().position(|known| known.id == panel.id);
             let place = place.unwrap_or_else(|| {
                 all.push(panel);

@@ -1,5 +1,7 @@
 //! The effects of inputs on outputs.
 
+use std::ops::Range;
+
 use condyle_case::study::Design;
 use serde::Serialize;
 
@@ -36,9 +38,9 @@ pub(crate) struct Effect {
     pub span: f64,
     /// The 95th percentile of the span of an inactive input; none if the tests are not a random sample.
     pub span_by_chance: Option<f64>,
-    /// Values of the input and the output in a subset of the tests, for a picture.
+    /// Values of the input and the output in a subset of the tests of each design, for a picture.
     #[serde(skip)]
-    pub points: Vec<(f64, f64)>,
+    pub points: Vec<Vec<(f64, f64)>>,
 }
 
 pub(crate) fn effects(data: &Data<'_>) -> Vec<Effect> {
@@ -46,9 +48,14 @@ pub(crate) fn effects(data: &Data<'_>) -> Vec<Effect> {
     let mut effects = Vec::new();
     for (place, (input, column)) in inputs.enumerate() {
         for (output, values) in &data.outputs {
-            let mut pairs = pairs(data, place, values);
-            let every = pairs.len().div_ceil(MAX_POINTS).max(1);
-            let points = pairs.iter().copied().step_by(every).collect();
+            let count = designs(data.plan.study());
+            let points = (0..count).map(|design| {
+                let own = pairs(data, place, values, design..design + 1);
+                let every = own.len().div_ceil((MAX_POINTS / count).max(1)).max(1);
+                own.into_iter().step_by(every).collect()
+            });
+            let points = points.collect();
+            let mut pairs = pairs(data, place, values, 0..count);
             let correlation = rank_correlation(&pairs);
             // Equal inputs are sorted by the output, so that sums do not depend on the order of the tests.
             pairs.sort_by(|one, other| one.0.total_cmp(&other.0).then(one.1.total_cmp(&other.1)));
@@ -71,9 +78,9 @@ pub(crate) fn effects(data: &Data<'_>) -> Vec<Effect> {
 }
 
 /// Returns the values of an input and an output in each test that is done: of a Saltelli design in its independent
-/// points, and of several designs the mean of all at each point, since tests that depend on each other have less chance
+/// points, and of several `designs` their mean at each point, since tests that depend on each other have less chance
 /// than as many independent ones. In a one-at-a-time design, tests that change another input do not count.
-fn pairs(data: &Data<'_>, place: usize, output: &[f64]) -> Vec<(f64, f64)> {
+fn pairs(data: &Data<'_>, place: usize, output: &[f64], designs: Range<usize>) -> Vec<(f64, f64)> {
     let is_one_at_a_time = matches!(data.plan.study().design, Design::OneAtATime(_));
     let counts = |row: usize| {
         let test = data.plan.test(row as u64);
@@ -82,13 +89,12 @@ fn pairs(data: &Data<'_>, place: usize, output: &[f64]) -> Vec<(f64, f64)> {
                 test.values[place].is_some() || test.values.iter().all(Option::is_none)
             })
     };
-    let designs = designs(data.plan.study());
     let tests = data.tests_of(0).filter(|test| counts(*test));
     // One design that cannot be solved leaves no mean of all.
     let pairs = tests.map(|test| {
         (
             data.inputs[place].values[test],
-            mean(&output[test..test + designs]),
+            mean(&output[test + designs.start..test + designs.end]),
         )
     });
     pairs
@@ -326,7 +332,7 @@ mod tests {
         });
         assert!(found[0].span > 2.0 * found[0].span_by_chance.unwrap());
         assert!(beyond_chance(&found[1..]) <= 2);
-        assert_eq!(found[0].points.len(), 400);
+        assert_eq!(found[0].points.iter().map(Vec::len).sum::<usize>(), 400);
     }
 
     #[test]
