@@ -282,7 +282,7 @@ pub(crate) struct Front {
     /// none without two tests on it.
     pub hypervolume: Option<f64>,
     /// The row of the knee point: the test on the front farthest below the line that joins its ends, in units of their
-    /// distances (Das 1999); none if no test lies below.
+    /// distances (Das 1999); none on a front that is nearly straight or concave.
     pub knee: Option<u64>,
     /// True if the study searched for the front.
     pub is_searched: bool,
@@ -385,11 +385,13 @@ pub(crate) fn hypervolume(front: &[(u64, f64, f64)], worst: [f64; 2]) -> Option<
 }
 
 fn knee(front: &[(u64, f64, f64)]) -> Option<u64> {
+    /// Distance below the line that makes a test a knee: fronts that are nearly straight have none.
+    const MIN_BELOW: f64 = 0.05;
     let (first, last) = (front.first()?, front.last()?);
     let [width, height] = [last.1 - first.1, first.2 - last.2];
     let below =
         |test: &(u64, f64, f64)| 1.0 - (test.1 - first.1) / width - (test.2 - last.2) / height;
-    let inner = front.iter().filter(|test| below(test) > 0.0);
+    let inner = front.iter().filter(|test| below(test) > MIN_BELOW);
     let most = inner.max_by(|one, other| below(one).total_cmp(&below(other)));
     most.map(|test| test.0)
 }
@@ -407,6 +409,8 @@ mod tests {
         assert_eq!(knee(&front), Some(3));
         let concave = [(7, 0.0, 4.0), (3, 3.0, 3.0), (5, 4.0, 0.0)];
         assert_eq!((knee(&concave), knee(&front[..1])), (None, None));
+        let straight = [(7, 0.0, 4.0), (3, 2.0, 1.9), (5, 4.0, 0.0)];
+        assert_eq!(knee(&straight), None);
         assert_eq!(hypervolume(&front[..1], [0.0, 4.0]), None);
     }
 
