@@ -107,19 +107,14 @@ pub fn plots_svg(title: &str, plots: &[Plot], columns: usize, keys: &[&str]) -> 
     };
     let names: Vec<String> = plots.iter().map(name).collect();
     let clouds = keys.len() - 2;
-    let mut key = Vec::new();
-    for (place, &words) in keys.iter().enumerate() {
-        let (class, is_used): (_, &dyn Fn(&Plot) -> bool) = match place.checked_sub(1) {
-            None => ("first", &|plot| !plot.reference.is_empty()),
-            Some(own) if own < clouds => (cloud(own, clouds), &|plot| {
-                plot.clouds.iter().any(|own| !own.is_empty())
-            }),
-            Some(_) => ("last", &|plot| !plot.line.is_empty()),
-        };
-        if plots.iter().any(is_used) {
-            key.push((class, words));
-        }
-    }
+    let of_clouds = (0..clouds).map(|own| cloud(own, clouds));
+    let classes = once("first").chain(of_clouds).chain(["last"]);
+    let is_used = |class: &str| {
+        let mut curves = panels.iter().flat_map(|panel| &panel.curves);
+        curves.any(|curve| curve.class == class && !curve.points.is_empty())
+    };
+    let key = classes.zip(keys.iter().copied());
+    let key: Vec<_> = key.filter(|(class, _)| is_used(class)).collect();
     sheet(title, &names.join("; "), &panels, columns.max(1), &key)
 }
 
@@ -194,6 +189,7 @@ mod tests {
             .unwrap_or_default();
         assert!(!points.split('"').next().unwrap_or_default().contains('l'));
     }
+
     #[test]
     fn several_clouds_have_colours_of_their_own_and_names() {
         let plot = Plot {

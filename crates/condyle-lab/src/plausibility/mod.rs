@@ -219,30 +219,25 @@ pub(crate) fn updates_overshoot(finished: &Finished<'_>) -> Option<PlausibilityW
     let found = [
         // Where nodes alternately wear and rest, all of the sum changes.
         (
-            changed,
-            sum,
+            percent_of(changed, sum),
             rates,
             "changes the wear rates of the nodes by",
             "their sum",
         ),
         (
-            reversed,
-            sum,
+            percent_of(reversed, sum),
             rates,
             "reverses a change of the wear rates of the nodes by",
             "the rates",
         ),
         // The sums hide a few nodes.
         (
-            deepest_mm - worn_mm,
-            worn_mm,
+            percent_of(deepest_mm - worn_mm, worn_mm),
             MAX_ALTERNATING_DEPTH_PERCENT,
             "may leave the deepest wear too deep by",
             "it",
         ),
     ];
-    let found =
-        found.map(|(part, whole, limit, does, of)| (percent_of(part, whole), limit, does, of));
     let (percent, limit, does, of) = found
         .into_iter()
         .find(|(percent, limit, ..)| percent > limit)?;

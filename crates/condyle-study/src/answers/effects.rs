@@ -83,9 +83,8 @@ pub(crate) fn effects(data: &Data<'_>) -> Vec<Effect> {
 fn pairs(data: &Data<'_>, place: usize, output: &[f64], designs: Range<usize>) -> Vec<(f64, f64)> {
     let is_one_at_a_time = matches!(data.plan.study().design, Design::OneAtATime(_));
     let counts = |row: usize| {
-        let test = data.plan.test(row as u64);
         !is_one_at_a_time
-            || test.is_some_and(|test| {
+            || data.plan.test(row as u64).is_some_and(|test| {
                 test.values[place].is_some() || test.values.iter().all(Option::is_none)
             })
     };

@@ -34,8 +34,8 @@ impl Case {
         warnings: &mut Vec<BuildWarning>,
     ) -> Result<bool, BuildError> {
         // Femora and inserts of knees are recognised; other joints have bodies of other shapes.
-        let recognition = body.recognise(mesh).filter(|_| self.tests_knee());
-        let Some(recognition) = recognition else {
+        let recognition = self.tests_knee().then(|| body.recognise(mesh));
+        let Some(recognition) = recognition.flatten() else {
             return Ok(false);
         };
         let size_mm = longest_mm(mesh);
