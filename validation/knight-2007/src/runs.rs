@@ -152,7 +152,7 @@ pub(crate) fn depth_svg(force: &[Ran], displacement: &[Ran]) -> Result<String, S
     }
     let reference = updates_of(finest);
     let keys = [reference.as_str(), "", "as titled"];
-    Ok(plots_svg("Wear over the test", &plots, 2, keys))
+    Ok(plots_svg("Wear over the test", &plots, 2, &keys))
 }
 
 fn updates_of(ran: &Ran) -> String {
