@@ -35,6 +35,11 @@ class Emulator:
         return self._model["output"]
 
     @property
+    def design(self) -> str | None:
+        """The name of the design, if the study compares designs."""
+        return self._model["design"]
+
+    @property
     def q2(self) -> float:
         """The part of the variance that predictions of each test from all others explain; condyle uses emulators from 0.9 on."""
         return self._model["q2"]
@@ -91,7 +96,7 @@ class Emulator:
         return places
 
     def __repr__(self) -> str:
-        return f"<condyle.Emulator of {self.output}, Q2 {self.q2:.4f}>"
+        return f"<condyle.Emulator of {_name(self.output, self.design)}, Q2 {self.q2:.4f}>"
 
 
 def _correlation(one: NDArray[np.float64], other: NDArray[np.float64], lengths: NDArray[np.float64]) -> NDArray[np.float64]:
@@ -101,13 +106,17 @@ def _correlation(one: NDArray[np.float64], other: NDArray[np.float64], lengths: 
     return np.prod((1.0 + a + a * a / 3.0) * np.exp(-a), axis=2)
 
 
-def read(folder: Path, output: str) -> Emulator:
+def read(folder: Path, output: str, design: str | None) -> Emulator:
     """Reads an emulator from the folder of a study."""
     path = folder / "emulators.json"
     models = json.loads(path.read_text(encoding="utf-8")) if path.is_file() else []
     for model in models:
-        if model["output"] == output:
+        if model["output"] == output and model["design"] == design:
             return Emulator(model)
-    names = ", ".join(model["output"] for model in models)
+    names = ", ".join(_name(model["output"], model["design"]) for model in models)
     reason = "none: its inputs are no sample of numbers, or there are too few tests"
-    raise BadInput(f"the study has no emulator of {output!r}; it has {names or reason}")
+    raise BadInput(f"the study has no emulator of {_name(output, design)}; it has {names or reason}")
+
+
+def _name(output: str, design: str | None) -> str:
+    return repr(output) if design is None else f"{output!r} of the design {design!r}"

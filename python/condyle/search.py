@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 import os
 from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING
@@ -119,14 +118,14 @@ class Search:
     def _found(self, result: Result | Mapping[str, float] | str | Exception) -> tuple[list[float], str] | str:
         if isinstance(result, (str, Exception)):
             return str(result).partition("\n")[0].strip() or type(result).__name__
-        keys, doubts = self._study._raw.outputs, ""
+        raw, doubts = self._study._raw, ""
         if isinstance(result, Result):
             doubts = " ".join(doubt["check"] for doubt in result.plausibility)
-            result = {key: result.summary[key] for key in keys if result.summary.get(key) is not None}
+            result = {key: result.summary[key] for key in raw.results if result.summary.get(key) is not None}
         for key in result:
-            if key not in keys:
-                raise BadInput(f"a test has no output {key!r}; it has {', '.join(keys)}")
-        return [float(result.get(key, math.nan)) for key in keys], doubts
+            if key not in raw.results:
+                raise BadInput(f"a test has no output {key!r}; it has {', '.join(raw.outputs)}")
+        return raw.output_values({key: float(value) for key, value in result.items()}), doubts
 
     def __repr__(self) -> str:
         return f"<condyle.Search: {self.tested} of at most {self._study.tests} tests done, {len(self._pending)} pending>"

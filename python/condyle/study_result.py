@@ -61,13 +61,13 @@ class StudyResult:
             raise KeyError(f"there is no column {column!r}; there are {', '.join(self.table)}")
         return self.table[column]
 
-    def emulator(self, output: str) -> Emulator:
-        """The emulator of an output, such as ``mass_loss_mg``.
+    def emulator(self, output: str, design: str | None = None) -> Emulator:
+        """The emulator of an output, such as ``mass_loss_mg``; in a study that compares designs, that of one ``design``.
 
         Raises:
             BadInput: an output without an emulator.
         """
-        return read(self._folder, output)
+        return read(self._folder, output, design)
 
     def to_pandas(self) -> pd.DataFrame:
         """The table as a data frame with the rows as its index; units are in ``.attrs["units"]``."""

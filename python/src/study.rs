@@ -26,9 +26,9 @@ pub enum Found {
 }
 
 impl Found {
-    fn result(self) -> PyResult<TestResult> {
+    fn result(self, study: &Study) -> PyResult<TestResult> {
         match self {
-            Self::Outputs(values, doubts) if values.len() == catalogue::outputs().count() => {
+            Self::Outputs(values, doubts) if values.len() == study.outputs.all().count() => {
                 Ok(Ok(TestOutputs { values, doubts }))
             }
             Self::Outputs(..) => Err(errors::bad_input(
@@ -65,7 +65,21 @@ impl RawStudy {
     /// The keys of the outputs of every test.
     #[getter]
     fn outputs(&self) -> Vec<&'static str> {
-        catalogue::outputs().map(|output| output.key).collect()
+        let outputs = self.plan.study().outputs.all();
+        outputs.map(|output| output.key).collect()
+    }
+
+    /// The keys of the results from which outputs follow, and of the outputs.
+    #[getter]
+    fn results(&self) -> Vec<&'static str> {
+        let results = catalogue::results().map(|one| one.key);
+        results.chain(self.outputs()).collect()
+    }
+
+    /// The values of the outputs of a test with these results; NaN for those that do not follow from them.
+    fn output_values(&self, results: BTreeMap<String, f64>) -> Vec<f64> {
+        let number = |key: &str| results.get(key).copied().unwrap_or(f64::NAN);
+        self.plan.study().outputs.values(&number)
     }
 
     /// Reads a study from `text` as if it stood in the file `path`. Files that it names are looked up in `files` first,
@@ -205,7 +219,7 @@ impl RawHeldStudy {
     fn keep(&self, study: &RawStudy, found: Vec<(u64, Found)>) -> PyResult<()> {
         let tested = |(row, found): (u64, Found)| {
             let test = study.plan.row(row, None).map_err(errors::of_study)?;
-            Ok((test, found.result()?))
+            Ok((test, found.result(study.plan.study())?))
         };
         let found: Vec<_> = found.into_iter().map(tested).collect::<PyResult<_>>()?;
         self.with(|held| held.keep(&study.plan, &found))
@@ -225,7 +239,7 @@ impl RawHeldStudy {
     /// Stores results of tests of a search by the values of their inputs.
     fn tell(&self, study: &RawStudy, found: Vec<(Vec<f64>, Found)>) -> PyResult<()> {
         let told = found.into_iter();
-        let told = told.map(|(values, found)| Ok((values, found.result()?)));
+        let told = told.map(|(values, found)| Ok((values, found.result(study.plan.study())?)));
         let told = told.collect::<PyResult<Vec<_>>>()?;
         self.with(|held| held.tell(&study.plan, told))
     }

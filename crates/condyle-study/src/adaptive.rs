@@ -4,7 +4,7 @@
 use std::iter;
 
 use condyle_case::study::Design;
-use condyle_results::catalogue;
+use condyle_results::split_unit;
 use nalgebra::DMatrix;
 use serde::Serialize;
 
@@ -141,7 +141,10 @@ impl Seen {
             return None;
         };
         let points: Vec<Vec<f64>> = known.iter().map(|(test, _)| point(study, test)).collect();
-        let values: Vec<f64> = known.iter().map(|one| value(one, goal.output)).collect();
+        let values: Vec<f64> = known
+            .iter()
+            .map(|one| value(study, one, goal.output))
+            .collect();
         let tests = points.iter().cloned().zip(values);
         let (done, failed): (Vec<_>, Vec<_>) = tests.partition(|(_, value)| value.is_finite());
         let (at, of): (Vec<Vec<f64>>, Vec<f64>) = done.into_iter().unzip();
@@ -273,7 +276,7 @@ impl Aim {
             || title.to_owned(),
             |(sign, limit)| {
                 let side = if sign > 0.0 { "above" } else { "below" };
-                let unit = catalogue::output(self.output).map_or("", |output| output.unit());
+                let unit = split_unit(self.output).1.unwrap_or_default();
                 format!("probability of a {title} {side} {limit} {unit}")
                     .trim_end()
                     .to_owned()

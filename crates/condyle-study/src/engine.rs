@@ -289,7 +289,10 @@ impl TestBench {
         let doubts = summary.plausibility.iter();
         let doubts: Vec<&str> = doubts.map(|doubt| doubt.check.as_str()).collect();
         Ok(TestOutputs {
-            values: catalogue::outputs().map(|output| summary[output]).collect(),
+            values: plan
+                .study()
+                .outputs
+                .values(&|key| catalogue::scalar(key).map_or(f64::NAN, |scalar| summary[scalar])),
             doubts: doubts.join(" "),
         })
     }

@@ -151,9 +151,12 @@ fn robust(robust: &Robust) -> Picture {
 
 fn indices(answers: &Answers) -> Option<Picture> {
     let all = answers.largest_indices();
+    if all.is_empty() {
+        return None;
+    }
     let title = format!(
         "Total Sobol index: part of the variance of {}",
-        label(all.first()?.output)
+        answers.output_of_indices()
     );
     let most = all.into_iter().take(MAX_INPUTS).map(|index| Bar {
         name: answers.name_of(&index.input).to_owned(),

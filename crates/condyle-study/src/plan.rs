@@ -8,7 +8,6 @@ use condyle_case::{
     study::{Design, Input, Study, Variation},
 };
 use condyle_lab::RunError;
-use condyle_results::catalogue::{self, Scalar};
 
 use crate::{
     design::{
@@ -44,7 +43,7 @@ pub struct Test {
 /// The outputs of a test that was done.
 #[derive(Clone, Debug, PartialEq)]
 pub struct TestOutputs {
-    /// Values in the order of [`catalogue::outputs`].
+    /// Values in the order of the outputs of the study.
     pub values: Vec<f64>,
     /// Names of the plausibility checks that the test fails, separated by spaces.
     pub doubts: String,
@@ -198,16 +197,9 @@ impl Plan {
     /// Returns the columns of the table for the inputs and the outputs.
     pub(crate) fn columns(&self) -> (Vec<&str>, Vec<&'static str>) {
         let inputs = self.study.inputs.iter().map(|input| input.key.as_str());
-        (
-            inputs.collect(),
-            catalogue::outputs().map(|output| output.key).collect(),
-        )
+        let outputs = self.study.outputs.all().map(|output| output.key);
+        (inputs.collect(), outputs.collect())
     }
-}
-
-pub(crate) fn output_value(values: &[f64], output: &Scalar) -> f64 {
-    let place = catalogue::outputs().position(|one| one.key == output.key);
-    place.map_or(f64::NAN, |place| values[place])
 }
 
 /// Returns the number of designs that are compared, one for the case alone.
@@ -289,6 +281,8 @@ impl FromStr for Shard {
 
 #[cfg(test)]
 mod tests {
+    use condyle_results::catalogue;
+
     use super::*;
 
     #[test]

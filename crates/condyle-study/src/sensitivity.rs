@@ -5,7 +5,7 @@ use std::{collections::BTreeMap, path::Path};
 use condyle::parameter::unit_of;
 use condyle_case::{
     case::{Assignment, Case},
-    study::{Alternative, Design, FactorialKeys, Study},
+    study::{Alternative, Design, FactorialKeys, Outputs, Study},
 };
 use condyle_lab::aligned;
 use condyle_results::catalogue::Scalar;
@@ -15,7 +15,7 @@ use crate::{
     answers::table,
     engine::{Listener, TestBench, run_in_memory},
     error::StudyError,
-    plan::{Plan, TestResult, output_value},
+    plan::{Plan, TestResult},
     uncertainty::{compared, records},
 };
 
@@ -140,7 +140,8 @@ fn moved(case: &Case, keys: &[&str], is_factor: bool, by: f64) -> (String, Vec<A
 }
 
 fn results(values: &[f64]) -> Results {
-    let outputs = compared().map(|output| (output.key, output_value(values, output)));
+    let all = Outputs::default();
+    let outputs = compared().map(|output| (output.key, all.value(values, output)));
     outputs.collect()
 }
 

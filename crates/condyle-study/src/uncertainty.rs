@@ -22,7 +22,7 @@ use crate::{
     answers::table,
     engine::{Listener, TestBench, run_in_memory},
     error::StudyError,
-    plan::{Plan, TestResult, output_value},
+    plan::{Plan, TestResult},
     statistics::{central_interval, correlation, extent, mean, standard_deviation},
 };
 
@@ -225,7 +225,7 @@ impl Uncertainty {
         };
         let column = |output: &Scalar| -> Vec<f64> {
             done()
-                .map(|(_, outputs)| output_value(&outputs.values, output))
+                .map(|(_, outputs)| plan.study().outputs.value(&outputs.values, output))
                 .collect()
         };
         let share = |(place, scatter): (usize, &Scatter)| {

@@ -96,10 +96,15 @@ impl Case {
         self.check_round_bearing(&root.part("insert"), log);
     }
 
+    /// Returns the joint whose replacement the machine tests.
+    pub(crate) fn tested_joint(&self) -> TestedJoint {
+        let tested = |rig: &Rig| rig.keys.tests;
+        self.machine.rig.as_ref().map_or(TestedJoint::Knee, tested)
+    }
+
     /// Returns whether the machine tests knees, whose bodies are recognised by their shapes.
     pub(super) fn tests_knee(&self) -> bool {
-        let is_of_knees = |rig: &Rig| rig.keys.tests == TestedJoint::Knee;
-        self.machine.rig.as_ref().is_none_or(is_of_knees)
+        self.tested_joint() == TestedJoint::Knee
     }
 
     /// Reports a cup or trough on a machine for knees, without its counterface, or smaller than that.

@@ -1,8 +1,9 @@
 //! The outputs of a study, and the questions about them.
 
-use condyle_results::catalogue::{self, Scalar};
+use condyle_results::catalogue::Scalar;
 
 use super::declared::{AnswersKeys, BoundKeys};
+use super::outputs::Outputs;
 use crate::config::*;
 
 /// The questions that a study answers.
@@ -38,12 +39,12 @@ impl Answers {
         bounds.filter(move |bound| bound.output.key == output.key)
     }
 
-    pub(super) fn read(root: &Section<'_>, log: &mut Log<'_>) -> Option<Self> {
+    pub(super) fn read(root: &Section<'_>, own: &Outputs, log: &mut Log<'_>) -> Option<Self> {
         let bounds = root.list("limit", log);
-        let bounds = bounds.map(|all| all.iter().map(|one| Bound::read(one, log)).collect());
+        let bounds = bounds.map(|all| all.iter().map(|one| Bound::read(one, own, log)).collect());
         let section = root.table("answers", log);
         let keys = AnswersKeys::read_checked(&section, log)?;
-        let mut output = |key: &str, name: &String| output(name, key, &section, log);
+        let mut output = |key: &str, name: &String| own.named(name, key, &section, log);
         let outputs = keys.outputs.0.iter();
         let outputs: Option<Vec<_>> = outputs.map(|name| output("outputs", name)).collect();
         let rank_by = keys.rank_by.map(|name| output("rank_by", &name));
@@ -76,9 +77,9 @@ impl Answers {
 }
 
 impl Bound {
-    fn read(section: &Section<'_>, log: &mut Log<'_>) -> Option<Self> {
+    fn read(section: &Section<'_>, own: &Outputs, log: &mut Log<'_>) -> Option<Self> {
         let keys = BoundKeys::read_checked(section, log)?;
-        let output = output(&keys.output, "output", section, log)?;
+        let output = own.named(&keys.output, "output", section, log)?;
         let (least, most) = (keys.least, keys.most);
         if least.or(most).is_none() {
             let fault = Fault::new("a limit needs `least`, `most` or both", "add `most = 40.0`");
@@ -110,24 +111,4 @@ impl Bound {
         let distances = self.sides().map(|(sign, limit)| sign * (value - limit));
         distances.fold(f64::NEG_INFINITY, f64::max)
     }
-}
-
-pub(super) fn output(
-    name: &str,
-    key: &str,
-    section: &Section<'_>,
-    log: &mut Log<'_>,
-) -> Option<&'static Scalar> {
-    let found = catalogue::output(name);
-    if found.is_none() {
-        let all: Vec<&str> = catalogue::outputs().map(|output| output.key).collect();
-        let outputs = all.join(", ");
-        let advice = match likeliest(name, &all) {
-            Some(near) => format!("did you mean `{near}`? It can be {outputs}"),
-            None => format!("it can be {outputs}"),
-        };
-        let fault = Fault::new(format!("a run has no output `{name}`"), advice);
-        log.problem(section.value_span(key), fault);
-    }
-    found
 }

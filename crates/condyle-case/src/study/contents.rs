@@ -7,9 +7,10 @@ use std::path::{Path, PathBuf};
 use super::answers::Answers;
 use super::declared::{AdaptiveKeys, Design, MorrisKeys, OptimiseKeys, SampleKeys, Variation};
 use super::input::Input;
+use super::outputs::Outputs;
 use crate::case::{Assignment, Case, CaseReader, ChangeError};
 use crate::config::*;
-use condyle_results::catalogue::{self, Scalar};
+use condyle_results::catalogue::Scalar;
 
 /// A study as its file describes it, checked, with every default filled in.
 #[derive(Clone, Debug)]
@@ -28,6 +29,8 @@ pub struct Study {
     pub correlations: Vec<Correlation>,
     /// Designs that are compared; none for the case alone.
     pub alternatives: Vec<Alternative>,
+    /// The outputs of every test.
+    pub outputs: Outputs,
     /// The questions.
     pub answers: Answers,
     /// For tests given row by row, the values of each test in the order of the inputs.
@@ -75,7 +78,8 @@ impl Study {
     /// The problems of the case.
     pub fn of_case(case_path: &Path, design: Design) -> Result<Self, Problems> {
         let cases = CaseReader::default();
-        let outputs: Vec<_> = catalogue::outputs().collect();
+        let own = Outputs::default();
+        let outputs: Vec<_> = own.all().collect();
         Ok(Self {
             title: String::new(),
             case_path: case_path.to_path_buf(),
@@ -84,6 +88,7 @@ impl Study {
             inputs: Vec::new(),
             correlations: Vec::new(),
             alternatives: Vec::new(),
+            outputs: own,
             answers: Answers {
                 rank_by: outputs[0],
                 outputs,
@@ -104,7 +109,7 @@ impl Study {
         };
         let both = self.answers.pareto.filter(|_| keys.minimise == PARETO);
         both.map_or_else(
-            || catalogue::output(&keys.minimise).into_iter().collect(),
+            || self.outputs.get(&keys.minimise).into_iter().collect(),
             |both| both.to_vec(),
         )
     }
@@ -112,7 +117,7 @@ impl Study {
     /// Returns what an adaptive study is to know; none for other designs.
     pub fn aim(&self) -> Option<Aim> {
         match &self.design {
-            Design::Adaptive(keys) => keys.aim(),
+            Design::Adaptive(keys) => keys.aim(&self.outputs),
             _ => None,
         }
     }
@@ -229,6 +234,9 @@ impl Study {
             design => design.write(&mut out),
         }
         out.line(&format!("{:?}", self.correlations), "");
+        for (key, formula) in self.outputs.formulas() {
+            out.line(key, formula);
+        }
         for design in &self.alternatives {
             let set: Vec<String> = design.set.iter().map(Assignment::to_string).collect();
             out.line(&design.name, &set.join(", "));
@@ -257,7 +265,7 @@ impl AdaptiveKeys {
     }
 
     /// Reads `OUTPUT known to NUMBER %` or `OUTPUT above LIMIT known to a factor of NUMBER`; `below` for the other side.
-    pub(super) fn aim(&self) -> Option<Aim> {
+    pub(super) fn aim(&self, outputs: &Outputs) -> Option<Aim> {
         let number = |text: &str| text.parse::<f64>().ok().filter(|one| one.is_finite());
         let until = self.until.replace('%', " %");
         let words: Vec<&str> = until.split_whitespace().collect();
@@ -285,7 +293,7 @@ impl AdaptiveKeys {
             _ => return None,
         };
         Some(Aim {
-            output: catalogue::output(name)?,
+            output: outputs.get(name)?,
             limit,
             part,
         })

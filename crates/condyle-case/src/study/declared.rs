@@ -175,6 +175,14 @@ settings! {
         set: Names;
     }
 
+    /// An output of the study's own.
+    OutputKeys {
+        /// Its key, which ends in its unit, such as mass_per_million_mg.
+        name: String;
+        /// The formula, with keys of summary.json, such as "mass_loss_mg / 5".
+        formula: String;
+    }
+
     /// The limits of an output.
     BoundKeys {
         /// The output.

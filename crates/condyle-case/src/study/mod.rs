@@ -7,6 +7,7 @@ mod answers;
 mod contents;
 mod declared;
 mod input;
+mod outputs;
 mod read;
 
 pub use answers::{Answers, Bound};
@@ -17,3 +18,4 @@ pub use declared::{
     TruncatedKeys, UniformKeys, Variation, WeibullKeys,
 };
 pub use input::{Input, ScaledKey};
+pub use outputs::Outputs;

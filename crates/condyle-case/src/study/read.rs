@@ -3,12 +3,13 @@
 use std::path::Path;
 use std::sync::Arc;
 
-use super::answers::{Answers, output};
+use super::answers::Answers;
 use super::contents::{Alternative, Correlation, PARETO, Study};
 use super::declared::{
     AdaptiveKeys, AlternativeKeys, CorrelationKeys, Design, HeadingKeys, OptimiseKeys, Variation,
 };
 use super::input::{Input, check_count, read_rows, sorted_numbers};
+use super::outputs::Outputs;
 use crate::case::{Assignment, Case, CaseReader, ChangeError};
 use crate::config::*;
 use condyle_mesh::files::{Disk, Files};
@@ -24,6 +25,7 @@ const TABLES: &[&str] = &[
     "vary",
     "correlation",
     "alternative",
+    "output",
     "limit",
     "answers",
 ];
@@ -64,13 +66,16 @@ fn read_study(
     let heading = HeadingKeys::read(root, log);
     let section = root.table("design", log);
     let design = Design::read_checked(&section, log);
-    let answers = Answers::read(root, log);
-    let (heading, design) = (heading?, design?);
+    let heading = heading?;
     let case_path = heading.case.path().to_path_buf();
     let case = cases.read(&case_path);
     let case = case
         .map_err(|problems| log.problems.extend_from_slice(problems.problems()))
         .ok()?;
+    // Without one of the study's own outputs, questions about it would be further problems.
+    let outputs = Outputs::read(root, &case, log)?;
+    let answers = Answers::read(root, &outputs, log);
+    let design = design?;
     let (inputs, rows) = inputs(root, &design, &case, log)?;
     let alternatives = listed(root, "alternative", log, alternative)?;
     check_count(
@@ -91,6 +96,7 @@ fn read_study(
         inputs,
         correlations,
         alternatives,
+        outputs,
         answers: answers?,
         rows,
         text: String::new(),
@@ -324,8 +330,8 @@ impl Study {
     /// Reports an aim that cannot be read, and inputs without an emulator.
     fn check_adaptive(&self, keys: &AdaptiveKeys, section: &Section<'_>, log: &mut Log<'_>) {
         let name = keys.known().split(' ').next().unwrap_or_default();
-        let is_known = name.is_empty() || output(name, "until", section, log).is_some();
-        if is_known && keys.aim().is_none() {
+        let is_known = name.is_empty() || self.outputs.named(name, "until", section, log).is_some();
+        if is_known && keys.aim(&self.outputs).is_none() {
             let problem = format!("`{}` does not state an output and its accuracy", keys.until);
             let advice = "write an output and a percentage from 0.01 to 50 %, such as `until = \"mass_loss_mg known to 1 \
                           %\"`, or a limit and a factor from 1.1 to 10, such as `until = \"peak_pressure_mpa above 40 known to \
@@ -345,7 +351,7 @@ impl Study {
     /// Reports outputs that a search cannot minimise, and inputs that it cannot choose.
     fn check_search(&self, keys: &OptimiseKeys, section: &Section<'_>, log: &mut Log<'_>) {
         if keys.minimise != PARETO {
-            output(&keys.minimise, "minimise", section, log);
+            self.outputs.named(&keys.minimise, "minimise", section, log);
         } else if self.answers.pareto.is_none() {
             let fault = Fault::new(
                 "a search for a Pareto front needs two outputs",

@@ -284,6 +284,48 @@ fn designs_are_ranked_under_the_same_disturbances() {
 }
 
 #[test]
+fn each_design_has_its_own_emulators_and_formulas_are_outputs_like_others() {
+    let study = format!(
+        "{}[[alternative]]\nname = \"shallow\"\nset = [\"insert.sagittal_radius_mm=80\"]\n\
+         [[alternative]]\nname = \"deep\"\nset = [\"insert.sagittal_radius_mm=45\"]\n\
+         [[output]]\nname = \"mass_per_million_mg\"\nformula = \"mass_loss_mg / 0.1\"\n\
+         [[limit]]\noutput = \"mass_per_million_mg\"\nmost = 6.0\n\
+         [answers]\noutputs = [\"mass_loss_mg\"]\n",
+        of("kind = \"sobol\"\nsize = 16")
+    );
+    let bench = bench(&study);
+    let table = table(&bench, &[]);
+    let head: Vec<&str> = table.lines().next().unwrap().split(',').collect();
+    let place = |key: &str| head.iter().position(|one| *one == key).unwrap();
+    let (mass, formula) = (place("mass_loss_mg"), place("mass_per_million_mg"));
+    for line in table.lines().skip(1) {
+        let cell = |place: usize| -> f64 { line.split(',').nth(place).unwrap().parse().unwrap() };
+        assert_eq!(cell(formula), cell(mass) / 0.1);
+    }
+    let answers = answers(&bench);
+    let emulated = answers["emulated"].as_array().unwrap();
+    for (output, factor) in [("mass_loss_mg", 1.0), ("mass_per_million_mg", 10.0)] {
+        for design in ["shallow", "deep"] {
+            let is_own = |one: &&Value| one["output"] == output && one["design"] == design;
+            let [emulator] = emulated.iter().filter(is_own).collect::<Vec<_>>()[..] else {
+                panic!("{emulated:#?}");
+            };
+            let mean = emulator["distribution"]["mean"].as_f64().unwrap();
+            // The same random points in other units, and the tests of the design.
+            let spreads = answers["spreads"].as_array().unwrap();
+            let spread = spreads.iter().find(is_own).unwrap();
+            let counted = spread["mean"].as_f64().unwrap();
+            assert!(
+                (mean / counted - 1.0).abs() < 0.01,
+                "{output} {design}: {mean} {counted}"
+            );
+            assert!(mean / factor > 0.1 && emulator["tests"] == 16, "{emulator}");
+        }
+    }
+    assert_eq!(answers["indices"].as_array().unwrap().len(), 2 * 2 * 2);
+}
+
+#[test]
 fn scatter_and_limits_belong_to_each_design_and_count_what_could_not_be_solved() {
     let bench = bench(
         "case = \"case.toml\"\n[design]\nkind = \"rows\"\nfile = \"rows.csv\"\n\
@@ -505,6 +547,26 @@ fn what_is_wrong_with_a_study_is_said_with_its_place() {
         (
             vary("contact.friction", range) + "[answers]\noutputs = [\"mass_los_mg\"]\n",
             vec!["did you mean `mass_loss_mg`?"],
+        ),
+        (
+            vary("contact.friction", range)
+                + "[[output]]\nname = \"merit\"\nformula = \"mass_loss_mg + * 2\"\n",
+            vec!["cannot be read from its character 16 on", "sqrt()"],
+        ),
+        (
+            vary("contact.friction", range)
+                + "[[output]]\nname = \"merit\"\nformula = \"mass_los_mg / 5\"\n",
+            vec!["no output `mass_los_mg`", "did you mean `mass_loss_mg`?"],
+        ),
+        (
+            vary("contact.friction", range)
+                + "[[output]]\nname = \"mass_loss_mg\"\nformula = \"1\"\n",
+            vec!["has an output `mass_loss_mg` already"],
+        ),
+        (
+            vary("contact.friction", range)
+                + "[[output]]\nname = \"merit\"\nformula = \"deepest_from_load_deg\"\n",
+            vec!["a test of this joint has no `deepest_from_load_deg`"],
         ),
         (
             vary("contact.friction", range) + "[design]\nkind = \"morris\"\nlevels = 3\n",

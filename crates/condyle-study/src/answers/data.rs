@@ -143,11 +143,13 @@ impl Spread {
 
     /// Returns the title of the output, with the design if there are several.
     pub fn name(&self) -> String {
-        match &self.design {
-            Some(design) => format!("{}, {design}", self.title),
-            None => self.title.to_owned(),
-        }
+        of_design(self.title, self.design.as_deref())
     }
+}
+
+/// Returns the title of an output, with its design if there are several.
+pub(crate) fn of_design(title: &str, design: Option<&str>) -> String {
+    design.map_or_else(|| title.to_owned(), |design| format!("{title}, {design}"))
 }
 
 impl Beyond {

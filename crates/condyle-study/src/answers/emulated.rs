@@ -6,7 +6,7 @@ use serde::Serialize;
 
 use crate::{
     answers::{
-        data::{Data, PERCENTILES, is_sampled},
+        data::{Data, PERCENTILES},
         indices::Indices,
     },
     emulator::{Emulator, Model},
@@ -34,6 +34,8 @@ pub(crate) struct Emulated {
     pub output: &'static str,
     pub title: &'static str,
     pub unit: &'static str,
+    /// The name of the design, if the study compares designs.
+    pub design: Option<String>,
     /// Tests that condition the emulator.
     pub tests: usize,
     pub q2: f64,
@@ -52,6 +54,7 @@ pub(crate) struct Emulated {
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub(crate) struct Exported {
     output: &'static str,
+    design: Option<String>,
     q2: f64,
     inputs: Vec<Range>,
     #[serde(flatten)]
@@ -95,8 +98,8 @@ pub(crate) struct Distribution {
     pub percentiles: [f64; 7],
 }
 
-/// Returns the emulators of all outputs and the Sobol indices from them; empty for studies without a random sample of
-/// numbers of one design.
+/// Returns the emulators of all outputs, of each design by itself, and the Sobol indices from them; empty for studies without
+/// a random sample of numbers.
 pub(crate) fn emulated(data: &Data<'_>) -> (Vec<Emulated>, Vec<Indices>) {
     let study = data.plan.study();
     let is_sample = matches!(
@@ -104,7 +107,7 @@ pub(crate) fn emulated(data: &Data<'_>) -> (Vec<Emulated>, Vec<Indices>) {
         Design::LatinHypercube(_) | Design::Sobol(_) | Design::Saltelli(_) | Design::Adaptive(_)
     );
     let has_words = data.inputs.iter().any(|column| !column.words.is_empty());
-    if !is_sample || has_words || designs(study) > 1 || study.inputs.is_empty() {
+    if !is_sample || has_words || study.inputs.is_empty() {
         return Default::default();
     }
     let inputs = study.inputs.iter().zip(&data.inputs);
@@ -114,13 +117,17 @@ pub(crate) fn emulated(data: &Data<'_>) -> (Vec<Emulated>, Vec<Indices>) {
         Axis::new(input, ends)
     });
     let axes: Vec<Axis<'_>> = axes.collect();
+    let outputs = data.outputs.iter();
+    let emulators =
+        outputs.flat_map(|output| (0..designs(study)).map(move |design| (output, design)));
     let (mut all, mut indices) = (Vec::new(), Vec::new());
-    for (output, values) in &data.outputs {
-        let Some(emulator) = emulator(data, &axes, values) else {
+    for ((output, values), design) in emulators {
+        let Some(emulator) = emulator(data, &axes, values, design) else {
             continue;
         };
-        let mut emulated = Emulated::new(output, &axes, &emulator);
-        emulated.failed = failed(data, values);
+        let name = study.alternatives.get(design).map(|one| one.name.clone());
+        let mut emulated = Emulated::new(output, name, &axes, &emulator);
+        emulated.failed = failed(data, values, design);
         if emulated.why_not_used().is_none() {
             let population = Population::new(data.plan, &emulator, &axes);
             emulated.distribution = Some(Distribution::new(&population.sorted()));
@@ -136,23 +143,20 @@ pub(crate) fn emulated(data: &Data<'_>) -> (Vec<Emulated>, Vec<Indices>) {
     (all, indices)
 }
 
-/// Returns the share of the tests of the sample that failed.
-fn failed(data: &Data<'_>, values: &[f64]) -> f64 {
-    let is_used = |row: usize| data.kept[row] && (!data.is_sample() || is_sampled(data.plan, row));
-    let used = (0..values.len()).filter(|row| is_used(*row));
+/// Returns the share of the tests of a design that failed.
+fn failed(data: &Data<'_>, values: &[f64], design: usize) -> f64 {
+    let used = data.tests_of(design).filter(|row| data.kept[*row]);
     let failed = used.map(|row| f64::from(!values[row].is_finite()));
     mean(&failed.collect::<Vec<f64>>())
 }
 
-/// Returns an emulator of an output from the first tests that are done; of a Saltelli design, of those of the sample.
-fn emulator(data: &Data<'_>, axes: &[Axis<'_>], values: &[f64]) -> Option<Emulator> {
-    let rows = values.iter().enumerate();
-    let is_used = |row| !data.is_sample() || is_sampled(data.plan, row);
-    let done = rows.filter(|(row, value)| value.is_finite() && is_used(*row));
-    let places = done.take(MAX_TESTS).map(|(row, value)| {
+/// Returns an emulator of an output of a design from its first tests that are done.
+fn emulator(data: &Data<'_>, axes: &[Axis<'_>], values: &[f64], design: usize) -> Option<Emulator> {
+    let done = data.tests_of(design).filter(|row| values[*row].is_finite());
+    let places = done.take(MAX_TESTS).map(|row| {
         let columns = axes.iter().zip(&data.inputs);
         let point = columns.map(|(axis, column)| axis.place(column.values[row]));
-        (point.collect::<Vec<f64>>(), *value)
+        (point.collect::<Vec<f64>>(), values[row])
     });
     let (points, values): (Vec<_>, Vec<_>) = places.unzip();
     // With fewer tests than lengths, the likeliest lengths mean little.
@@ -167,9 +171,15 @@ fn emulator(data: &Data<'_>, axes: &[Axis<'_>], values: &[f64]) -> Option<Emulat
 }
 
 impl Emulated {
-    fn new(output: &Scalar, axes: &[Axis<'_>], emulator: &Emulator) -> Self {
+    fn new(
+        output: &Scalar,
+        design: Option<String>,
+        axes: &[Axis<'_>],
+        emulator: &Emulator,
+    ) -> Self {
         let exported = Exported {
             output: output.key,
+            design: design.clone(),
             q2: emulator.q2(),
             inputs: axes.iter().map(Range::new).collect(),
             model: emulator.model(),
@@ -178,6 +188,7 @@ impl Emulated {
             output: output.key,
             title: output.label,
             unit: output.unit(),
+            design,
             tests: emulator.left_out().len(),
             q2: exported.q2,
             failed: 0.0,
@@ -214,6 +225,7 @@ fn of_output(axes: &[Axis<'_>], emulator: &Emulator, emulated: &Emulated) -> Vec
         };
         Indices {
             output: emulated.output,
+            design: emulated.design.clone(),
             input: axis.input.key.clone(),
             // Rounding may leave the index of an inactive input below 0.
             first: all[place][0].max(0.0),
@@ -281,7 +293,7 @@ mod tests {
         for seed in 1..=10 {
             let tests = points(count, exact.len(), seed);
             let emulator = Emulator::fit(&tests, &values(&tests, of)).unwrap();
-            let emulated = Emulated::new(&MASS_LOSS_MG, &axes, &emulator);
+            let emulated = Emulated::new(&MASS_LOSS_MG, None, &axes, &emulator);
             if emulated.q2 < MIN_Q2 {
                 continue;
             }

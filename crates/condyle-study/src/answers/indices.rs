@@ -18,6 +18,8 @@ const SEED: u64 = 20_080_101;
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub(crate) struct Indices {
     pub output: &'static str,
+    /// The name of the design, if the study compares designs.
+    pub design: Option<String>,
     pub input: String,
     /// By the input alone.
     pub first: f64,
@@ -73,6 +75,7 @@ fn of_output(output: &'static str, inputs: &[&str], values: &[f64]) -> Vec<Indic
             .unzip();
         Indices {
             output,
+            design: None,
             input: (*input).to_owned(),
             first,
             first_interval: central_interval(firsts),

@@ -16,7 +16,7 @@ use serde::Serialize;
 use crate::{
     adaptive::Aim,
     answers::{
-        data::{Data, Spread},
+        data::{Data, Spread, of_design},
         effects::{Effect, Elementary},
         emulated::{Emulated, emulated},
         indices::Indices,
@@ -143,11 +143,19 @@ impl Answers {
         })
     }
 
-    /// Sobol indices of the first output, the largest total first.
+    /// Sobol indices of the first output and the first design, the largest total first.
     pub(crate) fn largest_indices(&self) -> Vec<&Indices> {
-        let first = self.indices.first().map(|one| one.output);
+        let kind = |one: &Indices| (one.output, one.design.clone());
+        let first = self.indices.first().map(kind);
         let own = self.indices.iter();
-        largest_first(own.filter(|one| Some(one.output) == first), |one| one.total)
+        largest_first(own.filter(|one| Some(kind(one)) == first), |one| one.total)
+    }
+
+    /// Returns the output of [`Self::largest_indices`] in words, with the design if there are several.
+    pub(crate) fn output_of_indices(&self) -> String {
+        self.indices.first().map_or_else(String::new, |one| {
+            of_design(&label(one.output), one.design.as_deref())
+        })
     }
 
     /// Returns the number of doubtful tests and their most frequent doubts in a sentence; none if all are sound.
@@ -187,7 +195,7 @@ impl Answers {
         let [one, other, ..] = all.as_slice() else {
             return None;
         };
-        let (both, output) = (percent(one.first + other.first), label(one.output));
+        let (both, output) = (percent(one.first + other.first), self.output_of_indices());
         let [one, other] = [one, other].map(|index| title_of_path(self.name_of(&index.input)).0);
         Some(format!(
             "{one} and {} explain {both} of the variance of {output}.",
@@ -217,7 +225,7 @@ impl Answers {
         let robust = self.robust.as_ref();
         let robust = robust.map(|robust| (robust.standing, &*robust.statistic, robust.unit));
         let (standing, minimised, unit) = best.or(robust)?;
-        Some(end_of_search(&standing?, label(minimised), unit))
+        Some(end_of_search(&standing?, &label(minimised), unit))
     }
 
     /// Tables in Markdown, short enough for a terminal.
@@ -276,7 +284,14 @@ impl Answers {
         ];
         table(&head, &self.spreads, |spread| {
             let [_, p5, _, p50, _, p95, _] = spread.percentiles;
-            let beyond = spread.beyond.iter().map(|beyond| {
+            // An emulator knows the probability better than the tests that it was fitted to.
+            let mut emulated = self.emulated.iter();
+            let is_emulated = emulated.any(|one| {
+                (one.output, &one.design) == (spread.output, &spread.design)
+                    && one.distribution.is_some()
+            });
+            let counted = spread.beyond.iter().filter(|_| !is_emulated);
+            let beyond = counted.map(|beyond| {
                 let [low, high] = beyond.interval.map(percent);
                 let share = percents(beyond.share);
                 // The share of tests that a search has chosen is no probability and has no interval.
@@ -357,7 +372,7 @@ impl Answers {
                 [p5, p50, p95, own.mean, own.standard_deviation].map(shown)
             });
             let mut row = vec![
-                one.title.to_owned(),
+                of_design(one.title, one.design.as_deref()),
                 one.tests.to_string(),
                 format!("{:.4}", one.q2),
                 used,
@@ -372,10 +387,7 @@ impl Answers {
     fn table_of_indices(&self) -> Vec<Vec<String>> {
         let range = |[low, high]: [f64; 2]| format!("{low:.3} to {high:.3}");
         let all = self.largest_indices();
-        let input = format!(
-            "input, by {}",
-            all.first().map_or("", |one| label(one.output))
-        );
+        let input = format!("input, by {}", self.output_of_indices());
         table_of_most(&[&input, "first", "95 %", "total", "95 %"], &all, |index| {
             vec![
                 self.name_of(&index.input).to_owned(),
@@ -391,7 +403,8 @@ impl Answers {
         let all = self.largest_elementary();
         let input = format!(
             "input, by {}",
-            all.first().map_or("", |one| label(one.output))
+            all.first()
+                .map_or_else(String::new, |one| label(one.output))
         );
         table_of_most(&[&input, "mu*", "mu", "sigma"], &all, |effect| {
             let half = shown(effect.mu_star_half_interval);
@@ -638,6 +651,7 @@ mod tests {
     fn a_first_index_above_the_total_one_is_noise() {
         let index = |first, total| Indices {
             output: "mass_loss_mg",
+            design: None,
             input: "contact.friction".to_owned(),
             first,
             first_interval: [0.0, 1.0],

@@ -1,7 +1,7 @@
 //! Comparison of designs, the optimum of a search, and the Pareto front.
 
 use condyle_case::study::{Bound, Input};
-use condyle_results::catalogue::{self, Scalar};
+use condyle_results::catalogue::Scalar;
 use serde::Serialize;
 
 use crate::{
@@ -245,7 +245,7 @@ impl Best {
             let inputs = plan.study().inputs.iter().zip(&data.inputs);
             let inputs = inputs.map(|(input, column)| valued(&input.key, &column.values));
             best.inputs = inputs.collect();
-            for output in catalogue::outputs() {
+            for output in plan.study().outputs.all() {
                 let values = store.column(plan, output.key)?.values;
                 let own = plan.study().answers.bounds_of(output);
                 best.margins

@@ -1,18 +1,22 @@
 //! Names and numbers of answers in words.
 
-use condyle_results::catalogue;
+use condyle_results::{catalogue, split_unit};
 
-/// Returns the label of an output in the catalogue; of an input, its key.
-pub(crate) fn label(key: &str) -> &str {
-    catalogue::output(key).map_or(key, |output| output.label)
+/// Returns the label of an output; of an input, its key.
+pub(crate) fn label(key: &str) -> String {
+    let is_input = key.contains('.');
+    let of_formula = || match is_input {
+        true => key.to_owned(),
+        false => split_unit(key).0.replace('_', " "),
+    };
+    catalogue::output(key).map_or_else(of_formula, |output| output.label.to_owned())
 }
 
 /// Returns the label with the unit of an output; of an input, its key.
 pub(crate) fn labelled(key: &str) -> String {
-    match catalogue::output(key) {
-        Some(output) if output.unit().is_empty() => output.label.to_owned(),
-        Some(output) => format!("{}, {}", output.label, output.unit()),
-        None => key.to_owned(),
+    match split_unit(key).1 {
+        Some(unit) if !key.contains('.') => format!("{}, {unit}", label(key)),
+        _ => label(key),
     }
 }
 

@@ -13,7 +13,7 @@ use super::{
 };
 use crate::{
     error::StudyError,
-    plan::{Plan, Test, TestOutputs, TestResult, output_value},
+    plan::{Plan, Test, TestOutputs, TestResult},
     store::Store,
 };
 
@@ -75,7 +75,7 @@ impl Store {
             let test = plan.test_with(row, &values)?;
             let lacks = |outputs: &TestOutputs| {
                 let mut needed = needed.iter();
-                needed.find(|output| output_value(&outputs.values, output).is_nan())
+                needed.find(|output| study.outputs.value(&outputs.values, output).is_nan())
             };
             if let Some(output) = result.as_ref().ok().and_then(lacks) {
                 return Err(lacking(output));

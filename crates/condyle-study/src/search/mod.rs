@@ -22,7 +22,7 @@ pub(crate) use self::{
 };
 use crate::{
     distribution::{Place, level_at_share},
-    plan::{Plan, Test, TestResult, output_value},
+    plan::{Plan, Test, TestResult},
 };
 
 /// Tests proposed together: they run at the same time, and the table must not depend on the number of threads.
@@ -153,16 +153,16 @@ pub(crate) fn point(study: &Study, test: &Test) -> Vec<f64> {
 }
 
 /// Returns an output of a test; NaN if the test failed.
-pub(crate) fn value((_, result): &Known, output: &Scalar) -> f64 {
+pub(crate) fn value(study: &Study, (_, result): &Known, output: &Scalar) -> f64 {
     let outputs = result.as_ref();
-    outputs.map_or(f64::NAN, |outputs| output_value(&outputs.values, output))
+    outputs.map_or(f64::NAN, |found| study.outputs.value(&found.values, output))
 }
 
 /// Returns the stored tests of a search in the unit cube.
 fn observed(plan: &Plan, known: &[Known]) -> Observed {
     let study = plan.study();
     let values = |output: &Scalar| {
-        let values = known.iter().map(|one| value(one, output));
+        let values = known.iter().map(|one| value(study, one, output));
         values.collect::<Vec<f64>>()
     };
     let sides = || {
