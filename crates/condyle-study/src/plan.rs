@@ -18,7 +18,8 @@ use crate::{
     error::StudyError,
 };
 
-const MAX_TESTS: f64 = 1e9;
+/// Largest number of tests of a study.
+pub(crate) const MAX_TESTS: f64 = 1e9;
 
 /// A checked study, ready to run.
 pub struct Plan {

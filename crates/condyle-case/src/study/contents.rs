@@ -231,7 +231,13 @@ impl Study {
                     out.line(&format!("chosen {}, {kept:?}", self.chosen()), "");
                 }
             }
-            design => design.write(&mut out),
+            design => {
+                design.write(&mut out);
+                if matches!(design, Design::LatinHypercube(_)) {
+                    // Stored tests of another hypercube must not be taken for those of this one.
+                    out.line("method", "nested");
+                }
+            }
         }
         out.line(&format!("{:?}", self.correlations), "");
         for (key, formula) in self.outputs.formulas() {
@@ -309,6 +315,11 @@ impl Design {
             ..keys.clone()
         };
         match self {
+            // A hypercube begins with those of half its size, and of half of that.
+            Self::LatinHypercube(keys) => Self::LatinHypercube(SampleKeys {
+                size: keys.size >> keys.size.trailing_zeros(),
+                ..keys.clone()
+            }),
             Self::Sobol(keys) => Self::Sobol(sample(keys)),
             Self::Saltelli(keys) => Self::Saltelli(sample(keys)),
             Self::Morris(keys) => Self::Morris(MorrisKeys {

@@ -8,6 +8,7 @@ use nalgebra::DMatrix;
 use crate::{
     design::sobol::sobol_places,
     distribution::{Place, normal_quantile, normal_share},
+    plan::MAX_TESTS,
     random::{Random, mixed},
 };
 
@@ -48,15 +49,46 @@ fn along(number: u64, count: u64) -> Place {
 }
 
 /// Returns the places of test `row` of a Latin hypercube: for each input, one test lies in each of `tests` slices of
-/// equal probability (McKay, Beckman and Conover 1979).
+/// equal probability (McKay, Beckman and Conover 1979). Hypercubes are nested: the tests of one are the first tests of that of
+/// twice the size, whose other tests lie in the empty halves of its slices (Qian 2009).
 pub(crate) fn latin_places(row: u64, tests: u64, inputs: usize, seed: u64) -> Vec<Place> {
+    let smallest = tests >> tests.trailing_zeros();
     let place = |input: usize| {
-        let mut numbers = Random::stream(seed, input as u64);
-        let slice = Permutation::new(tests, &mut numbers).at(row);
-        let within = Random::stream(numbers.next(), row).share();
-        Place::Share((slice as f64 + within) / tests as f64)
+        let seed = Random::stream(seed, input as u64).next();
+        Place::Share(latin_share(row, smallest, seed))
     };
     (0..inputs).map(place).collect()
+}
+
+/// Returns the place of test `row` for one input, where the smallest of the nested hypercubes has `smallest` slices.
+///
+/// Slices are halved again and again. A random bit of each slice states which half the first test in it takes; the second one
+/// joins with the next larger hypercube and takes the other half.
+fn latin_share(row: u64, smallest: u64, seed: u64) -> f64 {
+    let joins = (row / smallest)
+        .checked_ilog2()
+        .map_or(0, |level| level + 1);
+    let mut numbers = Random::stream(seed, u64::from(joins));
+    let (mut slices, mut slice) = if joins == 0 {
+        (smallest, Permutation::new(smallest, &mut numbers).at(row))
+    } else {
+        let before = smallest << (joins - 1);
+        let halved = Permutation::new(before, &mut numbers).at(row - before);
+        let empty = 1 - first_half(before, halved, seed);
+        (2 * before, 2 * halved + empty)
+    };
+    // Finer slices than there can be tests matter to none.
+    while slices < MAX_TESTS as u64 {
+        slice = 2 * slice + first_half(slices, slice, seed);
+        slices *= 2;
+    }
+    let within = Random::stream(!seed, row).share();
+    (slice as f64 + within) / slices as f64
+}
+
+/// Returns the half, 0 or 1, of one of `slices` that the first test in it takes.
+fn first_half(slices: u64, slice: u64, seed: u64) -> u64 {
+    mixed(seed ^ mixed(slices + slice)) >> 63
 }
 
 /// Rounds of the network: four suffice with good rounds (Luby and Rackoff 1988), and these are simple ones.
@@ -272,7 +304,7 @@ mod tests {
 
     #[test]
     fn verify_every_slice_of_every_input_has_one_test() {
-        for (tests, inputs, seed) in [(1, 3, 7), (10, 1, 0), (200, 12, 1)] {
+        for (tests, inputs, seed) in [(1, 3, 7), (10, 1, 0), (200, 12, 1), (64, 3, 2), (75, 2, 3)] {
             let all = shares(tests, inputs, seed);
             for input in 0..inputs {
                 let slice = |row: &Vec<f64>| (row[input] * tests as f64) as u64;
@@ -280,6 +312,14 @@ mod tests {
                 slices.sort_unstable();
                 assert_eq!(slices, (0..tests).collect::<Vec<_>>());
             }
+        }
+    }
+
+    #[test]
+    fn verify_a_hypercube_of_twice_the_size_begins_with_the_same_tests() {
+        for (tests, larger) in [(25, 50), (50, 200), (1, 64), (96, 384)] {
+            let all = shares(larger, 3, 5);
+            assert_eq!(shares(tests, 3, 5), all[..tests as usize]);
         }
     }
 
