@@ -77,7 +77,7 @@ class Study:
 
     @classmethod
     def from_dict(cls, tables: Mapping[str, Any], *, folder: str | os.PathLike[str] = ".", case: Case | None = None) -> Study:
-        """Creates a study from nested dictionaries; ``vary``, ``alternative``, ``limit`` and ``correlation`` are lists of them.
+        """Creates a study from nested dictionaries; ``vary``, ``alternative``, ``output``, ``limit`` and ``correlation`` are lists of them.
 
         Entries that are ``None`` are omitted; otherwise as :meth:`from_text`.
         """

@@ -53,6 +53,12 @@ const MAX_ON_EMINENCE: f64 = 0.05;
 /// Distance at rest below which nodes approximately touch under the loads of a cycle, mm.
 const NEAR_MM: f64 = 0.25;
 
+/// Returns whether a place of an insert is on the eminence between its dishes.
+pub(crate) fn is_on_eminence(dishes: &Dishes, place: &Vec3) -> bool {
+    let half_mm = (dishes.lateral_mm.z - dishes.medial_mm.z) / 2.0;
+    (place.z - dishes.middle_mm().z).abs() < EMINENCE * half_mm
+}
+
 impl AtRest {
     /// Returns a warning if the femur of a knee stands on the eminence between the dishes.
     pub(crate) fn beside_dishes(&self, march: &March) -> Option<String> {
@@ -62,14 +68,7 @@ impl AtRest {
         }
         let places = test.insert.surface().positions;
         let dishes = Dishes::find(&places)?;
-        let (middle, half) = (
-            dishes.middle_mm(),
-            (dishes.lateral_mm.z - dishes.medial_mm.z) / 2.0,
-        );
-        let is_between = |node: &&TouchedNode| {
-            let place = places[node.node as usize];
-            (place.z - middle.z).abs() < EMINENCE * half
-        };
+        let is_between = |node: &&TouchedNode| is_on_eminence(&dishes, &places[node.node as usize]);
         let load = |node: &TouchedNode| -node.force_n.y;
         let between: f64 = self.touched.iter().filter(is_between).map(load).sum();
         let share = between / self.axial_force_n;

@@ -127,7 +127,7 @@ fn cad_knee(scale: f64) -> Bench {
 }
 
 #[test]
-fn a_femur_on_the_eminence_is_reported_by_new_and_check() {
+fn a_femur_on_the_eminence_is_reported_by_new_check_and_run() {
     let bench = cad_knee(0.8);
     let said = bench.say(&NEW);
     assert_eq!(said.code, Some(0), "{}", said.err);
@@ -140,6 +140,23 @@ fn a_femur_on_the_eminence_is_reported_by_new_and_check() {
             "{said}"
         );
     }
+    let settings = [
+        "march.updates=1",
+        "time.increments=40",
+        "accuracy.estimate=false",
+    ];
+    let settings = settings.iter().flat_map(|one| ["--set", one]);
+    let run: Vec<&str> = ["run", "my.toml", "--out", "out"]
+        .into_iter()
+        .chain(settings)
+        .collect();
+    let said = bench.say(&run);
+    assert!(
+        said.out.contains("is on the eminence between the dishes"),
+        "{}{}",
+        said.out,
+        said.err
+    );
     let bench = cad_knee(1.0);
     let said = bench.say(&NEW);
     assert!(!said.err.contains("warning"), "{}", said.err);

@@ -287,11 +287,11 @@ fn designs_are_ranked_under_the_same_disturbances() {
 fn each_design_has_its_own_emulators_and_formulas_are_outputs_like_others() {
     let study = format!(
         "{}[[alternative]]\nname = \"shallow\"\nset = [\"insert.sagittal_radius_mm=80\"]\n\
-         [[alternative]]\nname = \"deep\"\nset = [\"insert.sagittal_radius_mm=45\"]\n\
+         [[alternative]]\nname = \"deep\"\nset = [\"insert.sagittal_radius_mm=70\"]\n\
          [[output]]\nname = \"mass_per_million_mg\"\nformula = \"mass_loss_mg / 0.1\"\n\
          [[limit]]\noutput = \"mass_per_million_mg\"\nmost = 6.0\n\
          [answers]\noutputs = [\"mass_loss_mg\"]\n",
-        of("kind = \"sobol\"\nsize = 16")
+        of("kind = \"sobol\"\nsize = 32")
     );
     let bench = bench(&study);
     let table = table(&bench, &[]);
@@ -319,7 +319,7 @@ fn each_design_has_its_own_emulators_and_formulas_are_outputs_like_others() {
                 (mean / counted - 1.0).abs() < 0.01,
                 "{output} {design}: {mean} {counted}"
             );
-            assert!(mean / factor > 0.1 && emulator["tests"] == 16, "{emulator}");
+            assert!(mean / factor > 0.1 && emulator["tests"] == 32, "{emulator}");
         }
     }
     assert_eq!(answers["indices"].as_array().unwrap().len(), 2 * 2 * 2);

@@ -1,6 +1,7 @@
 //! Checks of the places where an insert wears and of the pressures that it bears.
 
 use condyle::{
+    geometry::Dishes,
     machine::{Chain, TestedJoint},
     spatial::Pose,
 };
@@ -13,6 +14,7 @@ use condyle_results::{
 };
 
 use super::finished::{Finished, SolvedCycle, percent_of, warning};
+use crate::at_rest::is_on_eminence;
 
 /// Distance from the rim, mm, within which a foundation over-estimates pressure and the pressure of an elastic body
 /// is unbounded: about the reach of the neighbours that are missing there.
@@ -32,6 +34,9 @@ const MAX_LIFT_MM: f64 = 0.3;
 const MIN_THICKNESS_MM: f64 = 6.0;
 /// Depth of the scar's edge, as a part of the deepest wear.
 const SCAR: f64 = 0.1;
+
+/// Largest part of the contact on the eminence between the dishes, %; our choice: sound knees have none.
+const MAX_ON_EMINENCE_PERCENT: f64 = 5.0;
 
 pub(crate) fn wear_at_rim(finished: &Finished<'_>) -> Option<PlausibilityWarning> {
     // A worn cup embraces its head up to the rim, and a pin touches with its whole end: there only a high pressure at the rim
@@ -227,6 +232,36 @@ pub(crate) fn femur_mesh(finished: &Finished<'_>) -> Option<PlausibilityWarning>
         " from the triangles of its mesh",
     );
     rough("femur_mesh", words, MAX_DEVIATION_MM, contact, advice)
+}
+
+/// Warns of a femur of a knee that bears on the eminence between the dishes of the insert.
+pub(crate) fn femur_on_eminence(finished: &Finished<'_>) -> Option<PlausibilityWarning> {
+    let test = finished.march.test();
+    if test.machine().mechanism.tests != TestedJoint::Knee {
+        return None;
+    }
+    let unworn = test.insert.surface();
+    let dishes = Dishes::find(&unworn.positions)?;
+    let (mut whole_n, mut between_n) = (0.0, 0.0);
+    for (node, pressure_mpa) in finished.march.state().first_pressure_mpa.iter().enumerate() {
+        // Along the load: a cam presses a post from the side.
+        let along = unworn.normals[node].y.max(0.0);
+        let force_n = pressure_mpa * unworn.shares[node].area_mm2 * along;
+        whole_n += force_n;
+        if is_on_eminence(&dishes, &unworn.positions[node]) {
+            between_n += force_n;
+        }
+    }
+    let percent = percent_of(between_n, whole_n);
+    let message = format!(
+        "{percent:.0} % of the contact of the first cycle is on the eminence between the dishes; up to \
+             {MAX_ON_EMINENCE_PERCENT:.0} % is acceptable"
+    );
+    let advice = "The femur does not lie in the dishes: check that both bodies are of one implant, their length_unit, axes and \
+                  start_mm; dishes of a larger coronal radius have a lower eminence.";
+    let value = (percent, MAX_ON_EMINENCE_PERCENT, "%");
+    (percent > MAX_ON_EMINENCE_PERCENT)
+        .then(|| warning("femur_on_eminence", value, message, advice))
 }
 
 /// Warns of an insert whose triangles are too coarse where the femur touches them.

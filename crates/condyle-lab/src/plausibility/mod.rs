@@ -24,7 +24,8 @@ use finished::{Finished, percent_of, warning};
 type Check = fn(&Finished<'_>) -> Option<PlausibilityWarning>;
 
 /// Place of the femur on the insert, their meshes, and impossible pressure.
-const PLACE: [Check; 5] = [
+const PLACE: [Check; 6] = [
+    bodies::femur_on_eminence,
     bodies::pressure_at_rim,
     bodies::femur_mesh,
     bodies::insert_mesh,

@@ -25,6 +25,8 @@ pub(crate) struct Robust {
     pub inputs: Vec<Valued>,
     /// The limits in words, in the order of the probabilities of keeping them.
     pub limits: Vec<String>,
+    /// The required probability of keeping each of the limits.
+    pub required: Vec<f64>,
     #[serde(flatten)]
     pub comparison: Comparison,
     pub standing: Option<Standing>,
@@ -52,6 +54,8 @@ impl Robust {
                 .iter()
                 .map(|&one| one.to_owned()),
         );
+        let bounds = study.answers.bounds.iter();
+        let required = bounds.flat_map(|bound| bound.sides().map(|_| bound.probability));
         let chosen = study.inputs[..study.chosen()].iter().zip(&data.inputs);
         let valued = chosen
             .map(|(input, column)| Valued::new(&input.key, &column.values, comparison.optimum.row));
@@ -61,6 +65,7 @@ impl Robust {
             statistic: format!("{statistic} of {}", minimised.label),
             inputs: valued.collect(),
             limits,
+            required: required.collect(),
             standing: standing(plan, &known),
             comparison,
         }))
@@ -77,9 +82,15 @@ impl Robust {
         let [own, other] = [optimum, first].map(|design| in_words(&design.statistic));
         let (row, beats, label) = (optimum.row, in_percent(beats), label(self.minimised));
         let (statistic, unit) = (&self.statistic, self.unit);
+        let mut kept = optimum.kept.iter().zip(&self.required);
+        let end = if kept.any(|(kept, required)| kept.value < *required) {
+            " A limit is kept with less than the required probability: allow more tests, or widen the ranges of the inputs or the limit."
+        } else {
+            ""
+        };
         format!(
             "The robust optimum, row {row}, has less {label} than the first design under {beats} of the disturbances, and keeps \
-             every limit under {all}; its {statistic} is {own} {unit}, that of the first design {other} {unit}."
+             every limit under {all}; its {statistic} is {own} {unit}, that of the first design {other} {unit}.{end}"
         )
     }
 
