@@ -341,6 +341,26 @@ def test_an_emulator_predicts_and_does_not_extrapolate(small: condyle.Case, tmp_
         condyle.open_study(tmp_path / "out").emulator("ap_range_mm")
 
 
+def test_every_design_has_its_own_emulator(small: condyle.Case, tmp_path: Path) -> None:
+    study = condyle.Study.from_dict(
+        {
+            "design": {"kind": "sobol", "size": 16},
+            "vary": [{"key": "contact.friction", "low": 0.05, "high": 0.1}],
+            "alternative": [{"name": str(radius), "set": [f"insert.sagittal_radius_mm={radius}"]} for radius in (60, 80)],
+        },
+        case=small,
+    )
+    done = study.run(tmp_path / "out")
+    for design in ("60", "80"):
+        emulator = done.emulator("mass_loss_mg", design)
+        own = done["design"] == design
+        mean, _ = emulator.predict({"contact.friction": done["contact.friction"][own]})
+        np.testing.assert_allclose(mean, done["mass_loss_mg"][own], rtol=0.05)
+        assert emulator.design == design
+    with pytest.raises(condyle.BadInput, match="it has 'mass_loss_mg' of the design '60'"):
+        done.emulator("mass_loss_mg")
+
+
 def test_elementary_effects_are_those_of_salib(small: condyle.Case, tmp_path: Path) -> None:
     salib = pytest.importorskip("SALib.analyze.morris")
     design = {"kind": "morris", "walks": 40, "levels": 8, "seed": 5}
@@ -418,6 +438,21 @@ def test_results_that_do_not_fit_a_search_are_errors(study: condyle.Study, small
         pytest.raises(condyle.BadInput, match="a design of the kind `latin-hypercube` proposes no tests"),
     ):
         search.ask()
+
+
+def test_formulas_are_computed_from_results_unless_they_are_given(small: condyle.Case, tmp_path: Path) -> None:
+    formula = {"name": "twice_mg", "formula": "2 * mass_loss_mg + 0 * newton_iterations"}
+    with pytest.raises(condyle.BadInput, match="no output `newton_iterations`"):
+        condyle.Study.from_dict({**SEARCH, "output": [formula]}, case=small)
+    formula["formula"] = "2 * mass_loss_mg + 0 * cycles"
+    limit = [{"output": "twice_mg", "most": 4.0}]
+    study = condyle.Study.from_dict({**SEARCH, "output": [formula], "limit": limit}, case=small)
+    with study.search(tmp_path / "out") as search:
+        given, tested = search.ask(2)
+        result = condyle.run(search.case(tested), fields=False)
+        search.tell([given, tested], [{"mass_loss_mg": 1.0, "twice_mg": 3.0}, result])
+        table = search.answered().table
+    assert table["twice_mg"].tolist() == [3.0, 2 * result.mass_loss_mg]
 
 
 def test_answers_are_attributes_that_cannot_be_changed(done: condyle.StudyResult) -> None:
