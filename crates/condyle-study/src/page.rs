@@ -13,8 +13,9 @@ use serde::Serialize;
 use crate::{
     answers::{
         Answers,
-        data::Spread,
+        data::{Spread, of_design},
         effects::Effect,
+        emulated::Emulated,
         ranking::{Best, Front, Ranking},
         robust::Robust,
         words::{label, shown},
@@ -89,6 +90,7 @@ fn pictures(answers: &Answers) -> Vec<Picture> {
         distributions(answers),
         main_effects(answers),
         scatter(answers),
+        emulators(answers),
         of_front(false),
     ];
     all.into_iter().flatten().collect()
@@ -312,6 +314,29 @@ fn scatter(answers: &Answers) -> Option<Picture> {
     let keys: Vec<&str> = once("").chain(names).chain([""]).collect();
     let svg = plots_svg("Scatter matrix", &all, columns.len().max(3), &keys);
     Some(("scatter.svg", caption.to_owned(), svg))
+}
+
+fn emulators(answers: &Answers) -> Option<Picture> {
+    let plot = |one: &Emulated| {
+        let [low, high] = extent(one.tested_and_predicted.iter().map(|both| both.0));
+        Plot {
+            title: of_design(one.title, one.design.as_deref()),
+            unit: superscript(one.unit),
+            x_title: format!("tested (Q2 {:.4})", one.q2),
+            clouds: vec![one.tested_and_predicted.clone()],
+            reference: vec![(low, low), (high, high)],
+            ..Plot::default()
+        }
+    };
+    let all: Vec<Plot> = answers.emulated.iter().map(plot).collect();
+    if all.is_empty() {
+        return None;
+    }
+    let keys = ["equal", "predicted from all other tests", ""];
+    let svg = plots_svg("Emulators", &all, 2, &keys);
+    let caption =
+        "Each test as the emulator predicts it from all others: on the line, both are equal.";
+    Some(("emulators.svg", caption.to_owned(), svg))
 }
 
 /// Returns the axes of an output over an input.

@@ -1,5 +1,7 @@
 //! Sobol indices and probabilities of limits from emulators of the outputs.
 
+use std::{num::NonZero, sync::Mutex, thread};
+
 use condyle_case::study::{Bound, Design};
 use condyle_results::catalogue::Scalar;
 use serde::Serialize;
@@ -45,6 +47,9 @@ pub(crate) struct Emulated {
     pub distribution: Option<Distribution>,
     /// Probabilities of being beyond each limit; none if the emulator is not used.
     pub beyond: Vec<Chance>,
+    /// The output of each test, and its prediction from all others.
+    #[serde(skip)]
+    pub tested_and_predicted: Vec<(f64, f64)>,
     #[serde(skip)]
     pub exported: Exported,
 }
@@ -118,29 +123,58 @@ pub(crate) fn emulated(data: &Data<'_>) -> (Vec<Emulated>, Vec<Indices>) {
     });
     let axes: Vec<Axis<'_>> = axes.collect();
     let outputs = data.outputs.iter();
-    let emulators =
-        outputs.flat_map(|output| (0..designs(study)).map(move |design| (output, design)));
-    let (mut all, mut indices) = (Vec::new(), Vec::new());
-    for ((output, values), design) in emulators {
-        let Some(emulator) = emulator(data, &axes, values, design) else {
-            continue;
-        };
-        let name = study.alternatives.get(design).map(|one| one.name.clone());
-        let mut emulated = Emulated::new(output, name, &axes, &emulator);
-        emulated.failed = failed(data, values, design);
-        if emulated.why_not_used().is_none() {
-            let population = Population::new(data.plan, &emulator, &axes);
-            emulated.distribution = Some(Distribution::new(&population.sorted()));
-            let own = study.answers.bounds_of(output);
-            let chance = |bound| Chance::new(bound, &population, emulated.failed);
-            emulated.beyond = own.map(chance).collect();
-            if study.correlations.is_empty() {
-                indices.extend(of_output(&axes, &emulator, &emulated));
-            }
+    let all = outputs.flat_map(|(output, values)| {
+        (0..designs(study)).map(move |design| (*output, values.as_slice(), design))
+    });
+    let all: Vec<_> = all.collect();
+    // The points of an output take seconds, and the outputs' times differ. Their order does not depend on the threads.
+    let left = Mutex::new(all.into_iter().enumerate());
+    let work = || {
+        let mut found = Vec::new();
+        loop {
+            let next = left.lock().expect("no thread panics with it").next();
+            let Some((place, one)) = next else {
+                return found;
+            };
+            found.extend(emulated_output(data, &axes, one).map(|own| (place, own)));
         }
-        all.push(emulated);
+    };
+    let threads = thread::available_parallelism().map_or(1, NonZero::get);
+    let mut found: Vec<_> = thread::scope(|scope| {
+        let threads: Vec<_> = (0..threads).map(|_| scope.spawn(work)).collect();
+        let ended = threads.into_iter();
+        ended
+            .flat_map(|one| one.join().expect("no emulator panics"))
+            .collect()
+    });
+    found.sort_by_key(|(place, _)| *place);
+    let (all, indices): (Vec<_>, Vec<_>) = found.into_iter().map(|(_, own)| own).unzip();
+    (all, indices.concat())
+}
+
+/// Returns the emulator of an output of a design, and the Sobol indices from it; none for too few tests.
+fn emulated_output(
+    data: &Data<'_>,
+    axes: &[Axis<'_>],
+    (output, values, design): (&'static Scalar, &[f64], usize),
+) -> Option<(Emulated, Vec<Indices>)> {
+    let study = data.plan.study();
+    let emulator = emulator(data, axes, values, design)?;
+    let name = study.alternatives.get(design).map(|one| one.name.clone());
+    let mut emulated = Emulated::new(output, name, axes, &emulator);
+    emulated.failed = failed(data, values, design);
+    let mut indices = Vec::new();
+    if emulated.why_not_used().is_none() {
+        let population = Population::new(data.plan, &emulator, axes);
+        emulated.distribution = Some(Distribution::new(&population.sorted()));
+        let own = study.answers.bounds_of(output);
+        let chance = |bound| Chance::new(bound, &population, emulated.failed);
+        emulated.beyond = own.map(chance).collect();
+        if study.correlations.is_empty() {
+            indices = of_output(axes, &emulator, &emulated);
+        }
     }
-    (all, indices)
+    Some((emulated, indices))
 }
 
 /// Returns the share of the tests of a design that failed.
@@ -189,11 +223,12 @@ impl Emulated {
             title: output.label,
             unit: output.unit(),
             design,
-            tests: emulator.left_out().len(),
+            tests: emulator.tested_and_predicted().len(),
             q2: exported.q2,
             failed: 0.0,
             distribution: None,
             beyond: Vec::new(),
+            tested_and_predicted: emulator.tested_and_predicted(),
             exported,
         }
     }

@@ -35,13 +35,18 @@ pub(crate) struct Indices {
 impl Indices {
     /// Returns the first index in words. It cannot exceed the total one, except by the scatter of both.
     pub fn first_in_words(&self) -> String {
-        let noise = if self.first > self.total {
-            " (noise)"
-        } else {
-            ""
-        };
-        format!("{:.3}{noise}", self.first)
+        in_words(self.first, self.total)
     }
+
+    /// Returns the total index in words. It cannot exceed 1, except by its scatter.
+    pub fn total_in_words(&self) -> String {
+        in_words(self.total, 1.0)
+    }
+}
+
+fn in_words(index: f64, most: f64) -> String {
+    let noise = if index > most { " (noise)" } else { "" };
+    format!("{index:.3}{noise}")
 }
 
 /// Returns the indices of a Saltelli design; empty for other designs.

@@ -393,7 +393,7 @@ impl Answers {
                 self.name_of(&index.input).to_owned(),
                 index.first_in_words(),
                 range(index.first_interval),
-                format!("{:.3}", index.total),
+                index.total_in_words(),
                 range(index.total_interval),
             ]
         })
@@ -661,5 +661,6 @@ mod tests {
         };
         assert_eq!(index(0.31, 0.3).first_in_words(), "0.310 (noise)");
         assert_eq!(index(0.3, 0.3).first_in_words(), "0.300");
+        assert_eq!(index(0.3, 1.01).total_in_words(), "1.010 (noise)");
     }
 }

@@ -283,6 +283,13 @@ impl Emulator {
         left_out.collect()
     }
 
+    /// Returns the output of every test, and its prediction from all others.
+    pub fn tested_and_predicted(&self) -> Vec<(f64, f64)> {
+        let errors = self.left_out().into_iter().map(|error| error.mean);
+        let both = self.values.iter().zip(errors);
+        both.map(|(value, error)| (*value, value - error)).collect()
+    }
+
     /// Returns the standard deviation by which a test scatters around the process, from the nugget.
     pub fn noise(&self) -> f64 {
         self.scale * (self.process.variance * self.nugget()).sqrt()
