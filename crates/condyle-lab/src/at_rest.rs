@@ -44,20 +44,11 @@ pub struct AtRest {
     pub(crate) nodes_near: usize,
 }
 
-/// Half-width of the eminence, relative to the distance of the lowest points of the dishes from the
-/// middle; the contact of knees begins at about 0.6.
-const EMINENCE: f64 = 0.4;
 /// Share of the load on the eminence beyond which a femur stands there; sound knees have none.
 const MAX_ON_EMINENCE: f64 = 0.05;
 
 /// Distance at rest below which nodes approximately touch under the loads of a cycle, mm.
 const NEAR_MM: f64 = 0.25;
-
-/// Returns whether a place of an insert is on the eminence between its dishes.
-pub(crate) fn is_on_eminence(dishes: &Dishes, place: &Vec3) -> bool {
-    let half_mm = (dishes.lateral_mm.z - dishes.medial_mm.z) / 2.0;
-    (place.z - dishes.middle_mm().z).abs() < EMINENCE * half_mm
-}
 
 impl AtRest {
     /// Returns a warning if the femur of a knee stands on the eminence between the dishes.
@@ -68,7 +59,7 @@ impl AtRest {
         }
         let places = test.insert.surface().positions;
         let dishes = Dishes::find(&places)?;
-        let is_between = |node: &&TouchedNode| is_on_eminence(&dishes, &places[node.node as usize]);
+        let is_between = |node: &&TouchedNode| dishes.is_on_eminence(&places[node.node as usize]);
         let load = |node: &TouchedNode| -node.force_n.y;
         let between: f64 = self.touched.iter().filter(is_between).map(load).sum();
         let share = between / self.axial_force_n;

@@ -18,8 +18,7 @@ use crate::{
     error::StudyError,
 };
 
-/// Largest number of tests of a study.
-pub(crate) const MAX_TESTS: f64 = 1e9;
+const MAX_TESTS: f64 = 1e9;
 
 /// A checked study, ready to run.
 pub struct Plan {

@@ -14,7 +14,6 @@ use condyle_results::{
 };
 
 use super::finished::{Finished, SolvedCycle, percent_of, warning};
-use crate::at_rest::is_on_eminence;
 
 /// Distance from the rim, mm, within which a foundation over-estimates pressure and the pressure of an elastic body
 /// is unbounded: about the reach of the neighbours that are missing there.
@@ -248,7 +247,7 @@ pub(crate) fn femur_on_eminence(finished: &Finished<'_>) -> Option<PlausibilityW
         let along = unworn.normals[node].y.max(0.0);
         let force_n = pressure_mpa * unworn.shares[node].area_mm2 * along;
         whole_n += force_n;
-        if is_on_eminence(&dishes, &unworn.positions[node]) {
+        if dishes.is_on_eminence(&unworn.positions[node]) {
             between_n += force_n;
         }
     }

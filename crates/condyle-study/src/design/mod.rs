@@ -8,7 +8,6 @@ use nalgebra::DMatrix;
 use crate::{
     design::sobol::sobol_places,
     distribution::{Place, normal_quantile, normal_share},
-    plan::MAX_TESTS,
     random::{Random, mixed},
 };
 
@@ -60,6 +59,9 @@ pub(crate) fn latin_places(row: u64, tests: u64, inputs: usize, seed: u64) -> Ve
     (0..inputs).map(place).collect()
 }
 
+/// Number of slices, at least as many as there can be tests, within which a place is random.
+const MAX_SLICES: u64 = 1 << 30;
+
 /// Returns the place of test `row` for one input, where the smallest of the nested hypercubes has `smallest` slices.
 ///
 /// Slices are halved again and again. A random bit of each slice states which half the first test in it takes; the second one
@@ -77,8 +79,7 @@ fn latin_share(row: u64, smallest: u64, seed: u64) -> f64 {
         let empty = 1 - first_half(before, halved, seed);
         (2 * before, 2 * halved + empty)
     };
-    // Finer slices than there can be tests matter to none.
-    while slices < MAX_TESTS as u64 {
+    while slices < MAX_SLICES {
         slice = 2 * slice + first_half(slices, slice, seed);
         slices *= 2;
     }

@@ -22,6 +22,9 @@ const ACROSS: (f64, f64) = (0.1, 0.425);
 /// the lowest place does.
 const LOW_MM: f64 = 0.3;
 
+/// Half-width of the eminence, relative to the distance of the dishes from the middle; the contact of knees begins at about 0.6.
+const EMINENCE: f64 = 0.4;
+
 impl Dishes {
     /// Finds the dishes of an articulating surface from `points` distributed about evenly on it; none if a side has
     /// none.
@@ -45,6 +48,12 @@ impl Dishes {
             medial_mm: lowest(&medial.collect::<Vec<_>>())?,
             lateral_mm: lowest(&lateral.collect::<Vec<_>>())?,
         })
+    }
+
+    /// Returns whether a place of the insert is on the eminence between the dishes.
+    pub fn is_on_eminence(&self, place: &Vec3) -> bool {
+        let half_mm = (self.lateral_mm.z - self.medial_mm.z) / 2.0;
+        (place.z - self.middle_mm().z).abs() < EMINENCE * half_mm
     }
 
     /// Returns the middle between the dishes, at the height of the lower one, mm.
