@@ -10,6 +10,9 @@ const EXAMINED: usize = 1000;
 const SMOOTHEST: f64 = 0.1;
 /// ... and its scatter under even noise, as a share of the noise: about a dozen vertices estimate it to a fifth.
 const OF_SMOOTHEST: f64 = 0.8;
+/// Deviation of a sphere from its quadratic surface, as a share of (reach)^4 / (radius)^3: that of its term of fourth order, three times
+/// to allow for other shapes and few vertices.
+const OF_CURVATURE: f64 = 3.0 * 0.0095;
 /// Coefficients of a quadratic surface.
 const COEFFICIENTS: usize = 6;
 /// Fewest vertices that a quadratic surface is fitted to: some more than its coefficients, so that a scatter is left.
@@ -17,7 +20,8 @@ const FEWEST: usize = 11;
 
 impl TriangleMesh {
     /// Returns the standard deviation of vertices from the quadratic surfaces through those around them, mm, where the mesh is
-    /// smoothest: edges and coarse facets are somewhere, noise is everywhere. None if too few have enough neighbours.
+    /// smoothest: edges and coarse facets are somewhere, noise is everywhere. The part that the curvature of coarse facets
+    /// explains does not count. None if too few have enough neighbours.
     pub fn scatter_mm(&self) -> Option<f64> {
         let (around, normals) = (self.neighbours(), self.vertex_normals());
         let every = self.vertices.len().div_ceil(EXAMINED).max(1);
@@ -29,10 +33,17 @@ impl TriangleMesh {
             scatter_of(&places.collect::<Vec<_>>(), &normals[at])
         };
         let examined = (0..self.vertices.len()).step_by(every);
-        let mut scatters: Vec<f64> = examined.filter_map(scatter).collect();
-        scatters.sort_by(f64::total_cmp);
-        let smooth = scatters.get((SMOOTHEST * scatters.len() as f64) as usize);
-        smooth.map(|scatter| scatter / OF_SMOOTHEST)
+        let mut scatters: Vec<(f64, f64)> = examined.filter_map(scatter).collect();
+        scatters.sort_by(|a, b| a.0.total_cmp(&b.0));
+        let smooth = (SMOOTHEST * scatters.len() as f64) as usize;
+        let scatter = scatters.get(smooth)?.0 / OF_SMOOTHEST;
+        let mut curved: Vec<f64> = scatters[..=smooth]
+            .iter()
+            .map(|(_, curved)| *curved)
+            .collect();
+        curved.sort_by(f64::total_cmp);
+        let curved = curved[curved.len() / 2];
+        Some((scatter.powi(2) - curved.powi(2)).max(0.0).sqrt())
     }
 
     fn neighbours(&self) -> Vec<Vec<u32>> {
@@ -58,8 +69,8 @@ fn two_rings(around: &[Vec<u32>], at: usize) -> Vec<u32> {
     near
 }
 
-/// Returns the standard deviation of heights along a normal from a quadratic surface.
-fn scatter_of(places: &[Vec3], normal: &Vec3) -> Option<f64> {
+/// Returns the standard deviation of heights along a normal from a quadratic surface, and that of a smooth body of its curvature.
+fn scatter_of(places: &[Vec3], normal: &Vec3) -> Option<(f64, f64)> {
     if places.len() < FEWEST {
         return None;
     }
@@ -80,7 +91,11 @@ fn scatter_of(places: &[Vec3], normal: &Vec3) -> Option<f64> {
     let squares: f64 = rows
         .map(|(row, height)| (height - row.dot(&fitted)).powi(2))
         .sum();
-    Some((squares / (places.len() - COEFFICIENTS) as f64).sqrt())
+    let scatter = (squares / (places.len() - COEFFICIENTS) as f64).sqrt();
+    let [_, _, _, uu, uv, vv]: [f64; COEFFICIENTS] = fitted.into();
+    let curvature = (uu + vv).abs() + (uu - vv).hypot(uv);
+    let reach = places.iter().map(Vec3::norm).fold(0.0, f64::max);
+    Some((scatter, OF_CURVATURE * curvature.powi(3) * reach.powi(4)))
 }
 
 #[cfg(test)]
@@ -110,6 +125,46 @@ mod tests {
             let found = of(noise_mm);
             assert!((found / noise_mm - 1.0).abs() < 0.3, "{noise_mm} {found}");
         }
+    }
+
+    /// Returns a saddle z = x2 / 30 - y2 / 36 in squares of an edge, whose vertices are moved along z by golden parts.
+    fn saddle(edge: f64, by_mm: f64) -> TriangleMesh {
+        let count = (24.0 / edge) as u32;
+        let at = |n: u32| f64::from(n) * edge - 12.0;
+        let places = (0..=count).flat_map(|i| (0..=count).map(move |j| (at(i), at(j))));
+        let arc = |radius: f64, x: f64| radius - (radius * radius - x * x).sqrt();
+        let vertices = places.enumerate().map(|(n, (x, y))| {
+            let part = (n as f64 * 0.618_033_988_75).fract() - 0.5;
+            Vec3::new(
+                x,
+                y,
+                arc(15.0, x) - arc(18.0, y) + part * by_mm * 12f64.sqrt(),
+            )
+        });
+        let vertices = vertices.collect();
+        let corner = |i: u32, j: u32| i * (count + 1) + j;
+        let triangles = (0..count).flat_map(|i| {
+            (0..count).flat_map(move |j| {
+                let [a, b, c, d] =
+                    [(0, 0), (1, 0), (1, 1), (0, 1)].map(|(u, v)| corner(i + u, j + v));
+                [[a, b, c], [a, c, d]]
+            })
+        });
+        let triangles = triangles.collect();
+        TriangleMesh {
+            vertices,
+            triangles,
+        }
+    }
+
+    #[test]
+    fn coarse_facets_of_a_saddle_are_no_noise_and_the_noise_of_a_fine_one_is_measured() {
+        for edge_mm in [4.0, 3.0, 2.0, 1.0] {
+            let found = saddle(edge_mm, 0.0).scatter_mm().unwrap();
+            assert!(found < 0.002, "{edge_mm} {found}");
+        }
+        let found = saddle(1.0, 0.01).scatter_mm().unwrap();
+        assert!((found / 0.01 - 1.0).abs() < 0.3, "{found}");
     }
 
     #[test]

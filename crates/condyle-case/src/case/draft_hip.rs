@@ -55,7 +55,8 @@ impl Drafted {
         of_cup.push(format!(
             "  It opens along ({x:.3}, {y:.3}, {z:.3}) of the file. inclination_deg is that of the preset: check it."
         ));
-        let unusual = if CLEARANCES_MM.contains(&clearance_mm) {
+        // As printed: an export rounds a clearance of 0.4 mm to more than that.
+        let unusual = if CLEARANCES_MM.contains(&((clearance_mm * 1e3).round() / 1e3)) {
             ""
         } else {
             ", which is unusual: check the files"

@@ -197,17 +197,8 @@ impl Rig {
             }
             has_zeroed |= joint.is_zeroed();
         }
-        let presses = |joint: &&RigJoint| {
-            let along_y = joint.keys.axis[0] == 0.0 && joint.keys.axis[2] == 0.0;
-            joint.keys.kind == JointKind::Translation
-                && joint.keys.drive == DriveWord::Loaded
-                && along_y
-                && joint.waveform.is_some()
-        };
-        if self.joints.iter().filter(presses).count() != 1 {
-            let message = "the machine needs one joint that presses the bodies together: a loaded translation along y with \
-                           [joints.load]";
-            return fault("joints", message.to_owned(), "");
+        if let Some((message, advice)) = self.press_fault() {
+            return fault("joints", message, advice);
         }
         let mut springs = self.springs.iter().map(|spring| spring.build(&self.joints));
         if let Some(unattached) = springs.find_map(Result::err) {
@@ -224,6 +215,32 @@ impl Rig {
             );
         }
         Some(self)
+    }
+
+    /// Returns the fault, with advice, of a machine without one joint that presses the bodies together.
+    fn press_fault(&self) -> Option<(String, &'static str)> {
+        let can_press = |joint: &&RigJoint| {
+            let along_y = joint.keys.axis[0] == 0.0 && joint.keys.axis[2] == 0.0;
+            joint.keys.kind == JointKind::Translation
+                && joint.keys.drive == DriveWord::Loaded
+                && along_y
+                && joint.waveform.is_some()
+        };
+        let mut pressing = self.joints.iter().filter(can_press);
+        let (Some(press), None) = (pressing.next(), pressing.next()) else {
+            let message = "the machine needs one joint that presses the bodies together: a loaded translation along y with \
+                           [joints.load]";
+            return Some((message.to_owned(), ""));
+        };
+        let advice = "change the sign of its axis or of its load: the counterface is pressed along [0, -1, 0], the bearing along \
+                      [0, 1, 0]";
+        (!press.presses()).then(|| {
+            let message = format!(
+                "the load of \"{}\" never presses the bodies together",
+                press.name()
+            );
+            (message, advice)
+        })
     }
 
     /// Returns two loaded joints of a kind whose axes are parallel; of rotations, only those through the same point.

@@ -284,6 +284,16 @@ impl RigJoint {
         &self.keys.name
     }
 
+    /// Returns whether this translation along y presses the bodies together at any time.
+    pub(super) fn presses(&self) -> bool {
+        let upwards = match self.keys.moves {
+            MovedBody::Counterface => self.keys.axis[1],
+            MovedBody::Insert => -self.keys.axis[1],
+        };
+        let mut loads = self.waveform.iter().flat_map(Waveform::knots);
+        loads.any(|knot| knot.value * upwards < 0.0)
+    }
+
     /// Returns the unit of its waveform.
     pub fn unit(&self) -> &'static str {
         let channel = channel_of(self.keys.kind, self.keys.drive);

@@ -136,6 +136,106 @@ fn bodies_that_are_no_hip_are_refused_with_the_reason() {
     said.assert_refused(2, &["not larger than its head"]);
 }
 
+/// Scatters the vertices off the axis, where slivers meet, by a standard deviation.
+fn scattered(mut body: TriangleMesh, by_mm: f64) -> TriangleMesh {
+    let vertices = body.vertices.iter_mut().enumerate();
+    for (at, vertex) in vertices.filter(|(_, vertex)| vertex.x.hypot(vertex.z) > 1.0) {
+        // Multiples of the golden section are spread evenly over 0 to 1: their deviation is 1 / sqrt(12).
+        let part = |times: f64| (at as f64 * times * 0.618_033_988_75).fract() - 0.5;
+        *vertex += Vec3::new(part(1.0), part(3.0), part(7.0)) * (by_mm * 12f64.sqrt());
+    }
+    body
+}
+
+#[test]
+fn the_noise_of_a_scanned_cup_is_doubtful_and_its_coarse_export_is_not() {
+    let bench = Bench::new();
+    write(&bench, "head.stl", head());
+    for (name, by_mm) in [("exact", 0.0), ("scan", 0.01)] {
+        write(&bench, "cup.stl", scattered(cup(), by_mm));
+        bench.say(&[
+            "new", "hip.toml", "--force", "--head", "head.stl", "--cup", "cup.stl",
+        ]);
+        let small = [
+            "insert.edge_mm=2.5",
+            "insert.layers=1",
+            "march.updates=1",
+            "accuracy.estimate=false",
+        ];
+        let mut run = vec!["run", "hip.toml", "--out", name];
+        run.extend(small.iter().flat_map(|set| ["--set", set]));
+        let said = bench.say(&run);
+        assert_eq!(said.code, Some(0), "{}", said.err);
+        let doubts = bench.summary(name).plausibility;
+        let doubt = doubts.iter().find(|doubt| doubt.check == "noisy_mesh");
+        assert_eq!(doubt.is_some(), by_mm > 0.0, "{doubts:?}");
+        let found_mm = doubt.map_or(by_mm, |doubt| doubt.value);
+        assert!((found_mm - by_mm).abs() <= 0.3 * by_mm, "{found_mm}");
+    }
+}
+
+#[test]
+fn an_opening_against_the_socket_is_refused_with_that_of_the_socket() {
+    let bench = Bench::new();
+    write(&bench, "head.stl", head());
+    write(&bench, "cup.stl", cup());
+    bench.say(&["new", "hip.toml", "--head", "head.stl", "--cup", "cup.stl"]);
+    // The cup opens along y before it is turned.
+    for (along, is_right) in [("[-0.8,0.6,0.0]", true), ("[0.8,-0.6,0.0]", false)] {
+        let set = format!("insert.opens_along={along}");
+        let said = bench.say(&["check", "hip.toml", "--set", &set]);
+        if is_right {
+            assert_eq!(said.code, Some(0), "{}", said.err);
+        } else {
+            said.assert_refused(2, &["points away from the opening", "(-0.800, 0.600, "]);
+        }
+    }
+}
+
+#[test]
+fn the_largest_usual_clearance_is_usual_after_rounding() {
+    let bench = Bench::new();
+    write(&bench, "head.stl", head());
+    // 14.400000 mm in single precision, far from the origin of the file, are a little more.
+    let mut wide = cup();
+    for vertex in &mut wide.vertices {
+        if vertex.norm() < 15.0 {
+            *vertex *= 14.400_05 / 14.1;
+        }
+    }
+    write(&bench, "cup.stl", wide);
+    let said = bench.say(&["new", "hip.toml", "--head", "head.stl", "--cup", "cup.stl"]);
+    assert!(said.err.contains("clearance is 0.400 mm."), "{}", said.err);
+}
+
+#[test]
+fn notes_and_doubts_of_a_hip_say_nothing_of_knees() {
+    let bench = Bench::with_case(
+        "[femur]\nshape = \"sphere\"\nradius_mm = 16.0\n[insert]\nshape = \"cup\"\nradius_mm = 16.15\nthickness_mm = 5.5\n\
+         inclination_deg = 65.0\nedge_mm = 2.0\nlayers = 2\n[machine]\npreset = \"iso-14242-4-like\"\n\
+         [march]\nupdates = 1\n[accuracy]\nestimate = false\n",
+    );
+    bench.run_into("hip");
+    let summary = bench.summary("hip");
+    let (doubts, notes) = (summary.plausibility.iter(), summary.notes.iter());
+    let all: Vec<_> = doubts.chain(notes).collect();
+    for check in [
+        "pressure_beyond_flow",
+        "pressure_beyond_yield",
+        "thin_polyethylene",
+    ] {
+        assert!(
+            all.iter().any(|found| found.check == check),
+            "{check}: {all:?}"
+        );
+    }
+    for found in all {
+        let text = format!("{} {}", found.message, found.advice);
+        let words = ["knee", "femur", "tray"];
+        assert!(!words.iter().any(|word| text.contains(word)), "{text}");
+    }
+}
+
 #[test]
 fn a_hip_is_described_in_its_own_words() {
     let bench = Bench::with_case(

@@ -37,11 +37,14 @@ const SCAR: f64 = 0.1;
 /// Largest part of the contact on the eminence between the dishes, %; our choice: sound knees have none.
 const MAX_ON_EMINENCE_PERCENT: f64 = 5.0;
 
+fn tests(finished: &Finished<'_>) -> TestedJoint {
+    finished.march.test().machine().mechanism.tests
+}
+
 pub(crate) fn wear_at_rim(finished: &Finished<'_>) -> Option<PlausibilityWarning> {
     // A worn cup embraces its head up to the rim, and a pin touches with its whole end: there only a high pressure at the rim
     // is a reason to doubt.
-    let tests = finished.march.test().machine().mechanism.tests;
-    if matches!(tests, TestedJoint::Hip | TestedJoint::Specimen) {
+    if matches!(tests(finished), TestedJoint::Hip | TestedJoint::Specimen) {
         return None;
     }
     let depth_mm = &finished.march.fields().wear_depth_mm;
@@ -67,7 +70,7 @@ pub(crate) fn wear_at_rim(finished: &Finished<'_>) -> Option<PlausibilityWarning
 /// Warns if the node with the highest pressure, in the first or the last cycle, lies within 1.5 mm of the rim.
 pub(crate) fn pressure_at_rim(finished: &Finished<'_>) -> Option<PlausibilityWarning> {
     // The end of a pin is pressed evenly, up to its rim.
-    if finished.march.test().machine().mechanism.tests == TestedJoint::Specimen {
+    if tests(finished) == TestedJoint::Specimen {
         return None;
     }
     let at_rim = pressures(finished)
@@ -111,15 +114,28 @@ pub(crate) fn pressure_beyond_flow(finished: &Finished<'_>) -> Option<Plausibili
              pressure is not physical",
         finished.summary[&PEAK_PRESSURE_CYCLE]
     );
-    let advice = "Check the sizes, units, axes, sides and placement of both bodies, and the load: the contact is far smaller \
-                 than that of a knee.";
+    let of_joint = match tests(finished) {
+        TestedJoint::Knee => "that of a knee",
+        _ => "this load needs",
+    };
+    let advice = format!(
+        "Check the sizes, units, axes, sides and placement of both bodies, and the load: the contact is far smaller than {of_joint}."
+    );
     let value = (peak, limit, "MPa");
-    (peak > limit).then(|| warning("pressure_beyond_flow", value, message, advice))
+    (peak > limit).then(|| warning("pressure_beyond_flow", value, message, &advice))
 }
 
-/// The error of the pressure of a foundation by the linear law (`docs/src/three-models.md`).
-const FOUNDATION_PEAK: &str = " A linear foundation also overestimates it, by 18 to 40 % in three unworn knees; --set \
-                               contact.model=deformable avoids this.";
+/// The effect of local yield in the default knee, and the error of the pressure of a foundation by the linear law
+/// (`docs/src/three-models.md`).
+const IN_KNEES: [&str; 2] = [
+    "which occurs in ordinary knees and lowers the mass of the default knee by 0.1 % and its depth by 2 %",
+    " A linear foundation also overestimates it, by 18 to 40 % in three unworn knees; --set contact.model=deformable avoids this.",
+];
+/// The same where neither was computed.
+const NOT_KNOWN: [&str; 2] = [
+    "whose effect on the wear is not known here",
+    " A foundation also neglects the support by the polyethylene around the contact; --set contact.model=deformable includes it.",
+];
 
 /// Warns of pressure at which polyethylene would yield below the surface, for an insert that is modelled without
 /// yield.
@@ -137,10 +153,13 @@ pub(crate) fn pressure_beyond_yield(finished: &Finished<'_>) -> Option<Plausibil
         extents()
     );
     let is_solid = finished.march.state().under_surface.is_some();
-    let foundation = if is_solid { "" } else { FOUNDATION_PEAK };
+    let [effect, of_foundation] = match tests(finished) {
+        TestedJoint::Knee if peak <= FULL_FLOW * YIELD_MPA => IN_KNEES,
+        _ => NOT_KNOWN,
+    };
+    let foundation = if is_solid { "" } else { of_foundation };
     let advice = format!(
-        "The model does not include local yield, which occurs in ordinary knees and lowers the mass of the default \
-         knee by 0.1 % and its depth by 2 %. The pressure is an upper bound.{foundation}"
+        "The model does not include local yield, {effect}. The pressure is an upper bound.{foundation}"
     );
     let value = (peak, limit, "MPa");
     (peak > limit && !yields).then(|| warning("pressure_beyond_yield", value, message, &advice))
@@ -184,7 +203,12 @@ pub(crate) fn thin_polyethylene(finished: &Finished<'_>) -> Option<PlausibilityW
     let message = format!(
         "the thinnest polyethylene under the scar is {thinnest:.2} mm; stresses rise steeply below {MIN_THICKNESS_MM:.0} mm"
     );
-    let advice = "Check that the insert's mesh reaches down to its tray and that its `length_unit` in the case is right.";
+    let advice = match tests(finished) {
+        TestedJoint::Knee => {
+            "Check that the insert's mesh reaches down to its tray and that its `length_unit` in the case is right."
+        }
+        _ => "Check its thickness in the case, or that of its mesh and `length_unit`.",
+    };
     let value = (thinnest, MIN_THICKNESS_MM, "mm");
     (thinnest < MIN_THICKNESS_MM).then(|| warning("thin_polyethylene", value, message, advice))
 }
@@ -224,21 +248,22 @@ pub(crate) fn femur_mesh(finished: &Finished<'_>) -> Option<PlausibilityWarning>
             )
         })
     });
-    let advice = "The mesh is too coarse, too rough, or has a sharp edge there: export the femur with a chord error of at most 0.03 mm, \
-                 without decimation, and smooth a scan.";
-    let words = (
-        "the smooth surface of the femur is",
-        " from the triangles of its mesh",
+    let [name, _] = tests(finished).bodies();
+    let advice = format!(
+        "The mesh is too coarse, too rough, or has a sharp edge there: export the {name} with a chord error of at most 0.03 mm, \
+         without decimation, smooth a scan, and round a sharp edge or keep it 3 mm away from the contact."
     );
-    rough("femur_mesh", words, MAX_DEVIATION_MM, contact, advice)
+    let is = format!("the smooth surface of the {name} is");
+    let words = (is.as_str(), " from the triangles of its mesh");
+    rough("femur_mesh", words, MAX_DEVIATION_MM, contact, &advice)
 }
 
 /// Warns of a femur of a knee that bears on the eminence between the dishes of the insert.
 pub(crate) fn femur_on_eminence(finished: &Finished<'_>) -> Option<PlausibilityWarning> {
-    let test = finished.march.test();
-    if test.machine().mechanism.tests != TestedJoint::Knee {
+    if tests(finished) != TestedJoint::Knee {
         return None;
     }
+    let test = finished.march.test();
     let unworn = test.insert.surface();
     let dishes = Dishes::find(&unworn.positions)?;
     let (mut whole_n, mut between_n) = (0.0, 0.0);
@@ -269,11 +294,20 @@ pub(crate) fn insert_mesh(finished: &Finished<'_>) -> Option<PlausibilityWarning
     let force_n = pressed_mpa.zip(&finished.surface.shares);
     let force_n = force_n.map(|(pressure_mpa, share)| pressure_mpa * share.area_mm2);
     let error_mm = finished.march.insert().mesh_error_mm().iter().copied();
-    let advice = "The mesh is too coarse there: export the insert with a chord error of at most 0.01 mm, without decimation or \
-                  division of its facets.";
-    let words = ("the surface of the insert is uncertain by", "");
+    let [_, name] = tests(finished).bodies();
+    let advice = format!(
+        "The mesh is too coarse there: export the {name} with a chord error of at most 0.01 mm, without decimation or division of \
+         its facets."
+    );
+    let is = format!("the surface of the {name} is uncertain by");
     let contact = force_n.zip(error_mm);
-    rough("insert_mesh", words, MAX_INSERT_ERROR_MM, contact, advice)
+    rough(
+        "insert_mesh",
+        (&is, ""),
+        MAX_INSERT_ERROR_MM,
+        contact,
+        &advice,
+    )
 }
 
 /// Warns of the noise of a scan, whose peaks bear much of the load; the warning of the build names the mesh.

@@ -60,9 +60,10 @@ impl Case {
         let activities = self.built_activities(insert.dish_low_point_mm());
         let flexion_rad = start_flexion_rad(&activities[0].machine);
         let (_, side, limits) = self.insert_inputs();
-        let inputs = (self.femur.clone(), side, limits, flexion_rad);
+        let joint = activities[0].machine.mechanism.tests;
+        let inputs = (self.femur.clone(), side, limits, (joint, flexion_rad));
         let (femur, of_femur) = bodies.femurs.found_or_made(inputs, |warnings| {
-            self.built_femur(flexion_rad, threads, keep, warnings)
+            self.built_femur(joint, flexion_rad, threads, keep, warnings)
         })?;
         let warnings = [self.origin.notes.clone(), of_insert, of_femur].concat();
         let as_linked = |law| self.material.cross_linking.under(law);
@@ -76,9 +77,9 @@ impl Case {
                 InsertShape::Cup(_) | InsertShape::CupMesh(_) | InsertShape::Trough(_) => Some(0.0),
                 _ => None,
             },
-            insert: match activities[0].machine.mechanism.tests {
+            insert: match joint {
                 TestedJoint::Knee => insert,
-                joint => Arc::new(Insert::clone(&insert).with_one_region(joint.bodies()[1])),
+                _ => Arc::new(Insert::clone(&insert).with_one_region(joint.bodies()[1])),
             },
             activities,
             wear: as_linked(self.wear.law()).law,

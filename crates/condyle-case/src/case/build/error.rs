@@ -110,11 +110,11 @@ impl BuildError {
         Self::mesh(file, keys, error)
     }
 
-    /// Returns the error of a femur that presses on a hole of the insert in `file`, `when` being the stage of the run.
+    /// Returns the error of a counterface that presses on a hole of the insert in `file`, `when` being the stage of the run.
     pub fn pressed_hole(file: &Path, hole: &Hole, when: &str) -> Self {
         let message = format!(
-            "the femur presses on the insert at a {hole}, {when}, where its surface is interpolated; fill the hole in the \
-             mesh, or check the positions of the bodies"
+            "the counterface presses on the insert at a {hole}, {when}, where its surface is interpolated; fill the hole in the \
+             mesh, or check the positions of the bodies; an insert with a bore needs shape = \"hexahedra\""
         );
         Self::mesh(file, &["file"], message)
     }

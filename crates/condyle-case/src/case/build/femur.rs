@@ -9,8 +9,10 @@ use condyle::geometry::{
     Counterface, Cylinder, GenericFemur, GenericFemurShape, PlacedFemur, SmoothField, TriangleMesh,
     posterior_arc_centre_mm,
 };
+use condyle::machine::TestedJoint;
 use condyle_mesh::formats::surface_bytes;
 use condyle_mesh::repair::CheckedMesh;
+use condyle_mesh::{FittedSphere, Roundness};
 use serde::{Deserialize, Serialize};
 
 use super::checks::check_side;
@@ -39,9 +41,11 @@ struct PreparedFemur {
 }
 
 impl Case {
-    /// Builds the femur, which starts the cycle flexed by `flexion_rad`; `threads` share the work on a mesh.
+    /// Builds the counterface of a machine for `joint`, which starts the cycle flexed by `flexion_rad`; `threads` share the work
+    /// on a mesh.
     pub(super) fn built_femur(
         &self,
+        joint: TestedJoint,
         flexion_rad: f64,
         threads: usize,
         keep: &dyn Keep,
@@ -80,13 +84,14 @@ impl Case {
             FemurShape::Mesh(femur) => {
                 let placing = femur.placing(side)?;
                 let PreparedFemur { shell, field } =
-                    femur.prepared(placement, &placing, &self.limits, threads, keep)?;
+                    femur.prepared((joint, placement), &placing, &self.limits, threads, keep)?;
                 let (file, mesh) = (&femur.file, &shell.mesh);
-                warn(file, &shell, warnings);
+                warn(file, &shell, &shell.mesh, warnings);
                 if self.check_orientation(Body::Femur, file, mesh, &placing, warnings)? {
                     check_side(file, mesh, side, warnings);
                 }
-                let flexion_axis_mm = femur.axis_mm(&shell.mesh);
+                let flexion_axis_mm = femur.axis_mm(joint, &shell.mesh);
+                warnings.extend(femur.ball_off_axes(joint, &shell.mesh, side));
                 let (x, z) = on_the_right(femur.start_mm.unwrap_or_default(), side);
                 BuiltFemur {
                     surface: Arc::new(Counterface::Mesh(field)),
@@ -100,15 +105,43 @@ impl Case {
 
 impl MeshFemur {
     /// Returns the flexion axis (x, y) of the unplaced component.
-    fn axis_mm(&self, mesh: &TriangleMesh) -> (f64, f64) {
-        match self.flexion_axis_mm {
-            Some([x, y]) => (x, y),
-            None => posterior_arc_centre_mm(mesh),
+    fn axis_mm(&self, joint: TestedJoint, mesh: &TriangleMesh) -> (f64, f64) {
+        match (self.flexion_axis_mm, joint) {
+            (Some([x, y]), _) => (x, y),
+            (None, TestedJoint::Knee | TestedJoint::Ankle) => posterior_arc_centre_mm(mesh),
+            (None, _) => ball_centre_mm(mesh).map_or((0.0, 0.0), |centre| (centre.x, centre.y)),
         }
     }
 
-    fn moved(&self, mesh: TriangleMesh, placement: &FemurPlacement) -> TriangleMesh {
-        match placement.motion(self.axis_mm(&mesh)) {
+    /// Returns a warning if the axes of the machine miss the centre of a ball, of which only x and y are followed.
+    fn ball_off_axes(
+        &self,
+        joint: TestedJoint,
+        mesh: &TriangleMesh,
+        side: Side,
+    ) -> Option<BuildWarning> {
+        let has_no_ball = matches!(joint, TestedJoint::Knee | TestedJoint::Ankle);
+        let centre = (!has_no_ball).then(|| ball_centre_mm(mesh)).flatten()?;
+        let off_mm = on_the_right([0.0, centre.z], side).1;
+        let [x, y, z] = self.origin_mm.unwrap_or_default();
+        let origin = [x + centre.x, y + centre.y, z + off_mm]
+            .map(|mm| format!("{:.3}", (1e3 * mm).round() / 1e3 + 0.0));
+        (off_mm.abs() > MAX_OFF_AXES_MM).then(|| {
+            let remark = format!(
+                "the centre of its ball or socket is {off_mm:.2} mm off the plane z = 0, in which the machine's axes lie; write \
+                 origin_mm = [{}]",
+                origin.join(", ")
+            );
+            BuildWarning::mesh(&self.file, remark)
+        })
+    }
+
+    fn moved(
+        &self,
+        mesh: TriangleMesh,
+        (joint, placement): (TestedJoint, &FemurPlacement),
+    ) -> TriangleMesh {
+        match placement.motion(self.axis_mm(joint, &mesh)) {
             Some(motion) => motion.mesh(mesh),
             None => mesh,
         }
@@ -117,7 +150,7 @@ impl MeshFemur {
     /// Returns the unplaced shell and the field of the placed one, computed or kept from an earlier run.
     fn prepared(
         &self,
-        placement: &FemurPlacement,
+        (joint, placement): (TestedJoint, &FemurPlacement),
         placing: &Placing,
         limits: &Limits,
         threads: usize,
@@ -129,13 +162,14 @@ impl MeshFemur {
         let placing_bytes = placing.bytes();
         let axis = self.flexion_axis_mm.into_iter().flatten();
         let placed = placement.numbers().into_iter().chain(axis);
-        let placed: Vec<u8> = placed.flat_map(f64::to_le_bytes).collect();
+        let mut placed: Vec<u8> = placed.flat_map(f64::to_le_bytes).collect();
+        placed.push(joint as u8);
         let mut inputs = vec![ending.as_encoded_bytes(), &placing_bytes, &bytes];
         // A placement that moves nothing does not change the key under which fields are kept.
         inputs.extend(placement.is_moved().then_some(placed.as_slice()));
         kept(keep, "femur", &inputs, || {
             let shell = parsed_shell(path, &bytes, placing, checks_of(Body::Femur, None))?;
-            let mesh = self.moved(shell.mesh.clone(), placement);
+            let mesh = self.moved(shell.mesh.clone(), (joint, placement));
             let nodes = SmoothField::node_count(&mesh);
             let (most, memory_gb) = (limits.most(Limits::BYTES_OF_FIELD_NODE), limits.memory_gb);
             if nodes > most {
@@ -149,6 +183,29 @@ impl MeshFemur {
             Ok(PreparedFemur { shell, field })
         })
     }
+}
+
+/// Largest distance of a ball from the axes of the machine, mm: that of a drawing whose origin was meant to be in it.
+const MAX_OFF_AXES_MM: f64 = 0.1;
+
+/// Cosine of 78 degrees, within which the normal of a triangle that faces the bearing lies from straight down.
+const MIN_DOWN: f64 = 0.2;
+
+/// Returns the centre of the ball or socket of a mesh, of the triangles that face the bearing: the walls of a plate around it
+/// would be another sphere.
+fn ball_centre_mm(mesh: &TriangleMesh) -> Option<Vec3> {
+    let faces_down = |triangle: &usize| {
+        let [a, b, c] = mesh.corners(*triangle);
+        let normal = (b - a).cross(&(c - a));
+        normal.y < -MIN_DOWN * normal.norm()
+    };
+    let facing = (0..mesh.triangles.len()).filter(faces_down);
+    let facing = TriangleMesh {
+        vertices: mesh.vertices.clone(),
+        triangles: facing.map(|triangle| mesh.triangles[triangle]).collect(),
+    };
+    // Of an open surface, the sphere on either side is found.
+    FittedSphere::new(&facing, Roundness::Convex).map(|sphere| sphere.centre_mm)
 }
 
 /// Mirrors a place [x, z] of the insert frame of a left knee.
@@ -191,7 +248,8 @@ impl Case {
                 let placing = femur.placing(self.heading.side)?;
                 let checks = checks_of(Body::Femur, None);
                 let shell = shell(&femur.file, &placing, checks, &mut Vec::new())?;
-                Ok(femur.moved(shell.mesh, &self.femur.placement))
+                let joint = test.machine().mechanism.tests;
+                Ok(femur.moved(shell.mesh, (joint, &self.femur.placement)))
             }
             (_, Counterface::Generic(femur)) => Ok(generic(femur, about)),
             (_, Counterface::Placed(placed)) => {

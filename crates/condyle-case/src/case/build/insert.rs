@@ -16,7 +16,7 @@ use condyle_mesh::{FittedSphere, Roundness};
 
 use super::checks::off_centre;
 use super::error::{Body, BuildError, BuildWarning, Finding};
-use super::placing::{checks_of, middle_of_mesh, middle_of_points, shell, warn};
+use super::placing::{checked, checks_of, middle_of_mesh, middle_of_points, shell, warn};
 use super::size::{check_points, check_triangles};
 use crate::case::contents::Case;
 use crate::case::insert::{
@@ -29,6 +29,8 @@ use crate::config::DataFile;
 const FLAT_SIZE_MM: (f64, f64) = (46.0, 72.0);
 /// Resolution of reported heights: a copied height then cuts where the program did.
 const PER_MM: f64 = 100.0;
+/// Cosine of the largest angle between the axis of a cup and the mean direction from its socket: a lip turns it by less.
+const MIN_COSINE_TO_SOCKET: f64 = 0.5;
 /// Share of a hundredth of a millimetre that is rounding error, so that a height is not rounded up for it.
 const ROUNDING: f64 = 1e-6;
 
@@ -193,14 +195,22 @@ impl Case {
             let message = "`opens_along` has no direction; write that from the pole of the socket to its centre";
             return Err(BuildError::mesh(path, &["opens_along"], message));
         }
-        let unrolled = UnrolledCup::new(mesh, &socket, opens_along, cup.edge_mm);
-        let shell = checks_of(Body::Insert, None).check(unrolled.mesh.clone());
-        let shell = shell.map_err(|error| BuildError::shell(path, &error))?;
+        if opens_along.normalize().dot(&socket.opens_along) < MIN_COSINE_TO_SOCKET {
+            let [x, y, z]: [f64; 3] = socket.opens_along.into();
+            let message = format!(
+                "`opens_along` points away from the opening of the socket, which is along ({x:.3}, {y:.3}, {z:.3}); correct it, or \
+                 remove it"
+            );
+            return Err(BuildError::mesh(path, &["opens_along"], message));
+        }
+        let unrolled = UnrolledCup::new(mesh.clone(), &socket, opens_along, cup.edge_mm);
+        // Unrolled, its sides are divided: only the vertices of the file scatter.
+        let shell = checked(path, &unrolled.mesh, &mesh, checks_of(Body::Insert, None))?;
         if !shell.closed {
             let message = "the cup is open, so its thickness is unknown; give its closed surface";
             return Err(BuildError::mesh(path, &["file"], message));
         }
-        warn(file, &shell, warnings);
+        warn(file, &shell, &mesh, warnings);
         let mounting = cup_mounting(cup.inclination_deg, cup.anteversion_deg);
         let built = unrolled.insert(&shell.mesh, meshing, &mounting);
         built.map_err(|error| BuildError::shell_insert(path, &error))

@@ -139,7 +139,7 @@ pub(super) fn shell(
 ) -> Result<CheckedMesh, BuildError> {
     let bytes = surface_bytes(file.files(), file.path())?;
     let shell = parsed_shell(file.path(), &bytes, placing, checks)?;
-    warn(file, &shell, warnings);
+    warn(file, &shell, &shell.mesh, warnings);
     Ok(shell)
 }
 
@@ -162,7 +162,7 @@ pub(super) fn parsed_shell(
         );
         return Err(BuildError::mesh(file, &["clip_below_mm"], message));
     }
-    let mut shell = checked(file, &mesh, checks)?;
+    let mut shell = checked(file, &mesh, &mesh, checks)?;
     // A closed shell shows its inside; an open one must face the other body.
     let must_face_up = checks.touching == Touching::FromAbove;
     if !shell.closed && faces_up(&shell.mesh) != must_face_up {
@@ -172,15 +172,16 @@ pub(super) fn parsed_shell(
     Ok(shell)
 }
 
-/// Checks a mesh in place; the noise of a scan is named before the crossings that it causes.
+/// Checks a mesh in place; the noise of the scan from which it was made is named before the crossings that it causes.
 pub(in crate::case) fn checked(
     file: &Path,
     mesh: &TriangleMesh,
+    scan: &TriangleMesh,
     checks: Checks,
 ) -> Result<CheckedMesh, BuildError> {
     checks
         .check(mesh.clone())
-        .map_err(|error| match noise(mesh) {
+        .map_err(|error| match noise(scan) {
             Some((_, noise)) => {
                 BuildError::mesh(file, &["file"], format_args!("{noise}; as it is, {error}"))
             }
@@ -204,13 +205,18 @@ fn noise(mesh: &TriangleMesh) -> Option<(f64, String)> {
     })
 }
 
-/// Adds a warning for each repair of a file, and for each suspicious property.
-pub(super) fn warn(file: &DataFile, shell: &CheckedMesh, warnings: &mut Vec<BuildWarning>) {
+/// Adds a warning for each repair of a file, and for each suspicious property; the noise is that of `scan`.
+pub(super) fn warn(
+    file: &DataFile,
+    shell: &CheckedMesh,
+    scan: &TriangleMesh,
+    warnings: &mut Vec<BuildWarning>,
+) {
     if let Some(piece) = stray_piece(&shell.mesh) {
         let remark = format!("{}; delete it unless it belongs to the body", piece.text);
         warnings.push(BuildWarning::mesh(file, remark).with(Finding::StrayPiece));
     }
-    if let Some((scatter_mm, remark)) = noise(&shell.mesh) {
+    if let Some((scatter_mm, remark)) = noise(scan) {
         warnings.push(BuildWarning::mesh(file, remark).with(Finding::Scatter(scatter_mm)));
     }
     let mut remarks = Vec::new();

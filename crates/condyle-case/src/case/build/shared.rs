@@ -5,6 +5,7 @@ use std::sync::{Arc, Mutex, PoisonError};
 use condyle::contact::{Deformable, KnownCompliance};
 use condyle::evolve::WearTest;
 use condyle::geometry;
+use condyle::machine::TestedJoint;
 use condyle_fem::{Elastic, SolidError};
 
 use super::error::BuildWarning;
@@ -30,8 +31,8 @@ type InsertInputs = (Insert, Side, Limits);
 /// Mesh files must not change while they are shared.
 pub struct SharedBodies {
     pub(super) inserts: Kept<InsertInputs, geometry::Insert>,
-    /// By everything that determines a femur, last its flexion at the start, rad.
-    pub(super) femurs: Kept<(Femur, Side, Limits, f64), BuiltFemur>,
+    /// By everything that determines a femur, last the joint that the machine tests and its flexion at the start, rad.
+    pub(super) femurs: Kept<(Femur, Side, Limits, (TestedJoint, f64)), BuiltFemur>,
     /// Laws of deformable inserts; their known compliance is shared among cases.
     pub(super) elastic: Kept<(InsertInputs, Elastic), Deformable>,
 }

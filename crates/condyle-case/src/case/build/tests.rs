@@ -54,6 +54,47 @@ fn block() -> TriangleMesh {
 const MESH_INSERT: &str = "[insert]\nshape = \"mesh\"\nfile = \"a.stl\"\nedge_mm = 1.0\n";
 
 #[test]
+fn the_axes_of_a_disc_pass_through_its_ball_or_socket_wherever_that_is() {
+    // A cap of 14 mm below a plate, and a socket of 14 mm in the underside of a block.
+    let arc = (0..=10).map(|n| (4.5 * f64::from(n)).to_radians());
+    let cap = arc.map(|angle| (14.0 * angle.sin(), -14.0 * angle.cos()));
+    let below = -14.0 * 45f64.to_radians().cos();
+    let ball: Vec<(f64, f64)> = cap
+        .clone()
+        .chain([(16.0, below), (16.0, below + 4.0), (1e-6, below + 4.0)])
+        .collect();
+    let up = cap.map(|(x, y)| (x, -y)).collect::<Vec<_>>();
+    let socket: Vec<(f64, f64)> = [(1e-6, 20.0), (16.0, 20.0), (16.0, -below)]
+        .into_iter()
+        .chain(up.into_iter().rev())
+        .collect();
+    let case = "[femur]\nshape = \"mesh\"\nfile = \"a.stl\"\n[insert]\nshape = \"flat\"\nedge_mm = 4.0\nlayers = 1\n\
+                [machine]\npreset = \"iso-18192-1-lumbar-like\"\n";
+    for profile in [ball, socket] {
+        let body = TriangleMesh::revolved(&profile, 48);
+        let place = Vec3::new(7.0, 9.0, 3.0);
+        let folder = with_stl("a.stl", &body.mapped(|vertex| vertex + place));
+        let off = built(case, folder.path()).unwrap();
+        let (x, y) = off.test.flexion_axis_mm;
+        assert!((x - 7.0).abs() < 1e-3 && (y - 9.0).abs() < 1e-3, "{x} {y}");
+        let said: Vec<String> = off.warnings.iter().map(ToString::to_string).collect();
+        let said = said.join("\n");
+        assert!(said.contains("is 3.00 mm off the plane z = 0"), "{said}");
+        let line = said.split("write ").nth(1).unwrap().lines().next().unwrap();
+        assert_eq!(line, "origin_mm = [7.000, 9.000, 3.000]");
+        let moved = built(
+            &case.replace("[insert]", &format!("{line}\n[insert]")),
+            folder.path(),
+        )
+        .unwrap();
+        let (x, y) = moved.test.flexion_axis_mm;
+        assert!(x.abs() < 1e-3 && y.abs() < 1e-3, "{x} {y}");
+        let said: Vec<String> = moved.warnings.iter().map(ToString::to_string).collect();
+        assert!(!said.join("").contains("off the plane"), "{said:?}");
+    }
+}
+
+#[test]
 fn shipped_generic_cases_build() {
     for name in ["stanmore-force.toml", "stanmore-displacement.toml"] {
         let built = Case::read(&cases().join(name)).unwrap().build(1).unwrap();

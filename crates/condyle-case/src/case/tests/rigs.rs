@@ -67,6 +67,18 @@ fn machines_that_cannot_work_are_refused_at_their_place() {
             "one joint that presses",
         ),
         (
+            "axis = [0, -1, 0]",
+            "axis = [0, 1, 0]",
+            "machine.joints",
+            "never presses the bodies together",
+        ),
+        (
+            "knots_n = [[0, 3000]]",
+            "knots_n = [[0, 0], [50, -3000]]",
+            "machine.joints",
+            "never presses the bodies together",
+        ),
+        (
             "axis = [0, 0, 1]",
             "axis = [0, 0, 0]",
             "machine.joints.axis",
@@ -139,6 +151,8 @@ fn machines_that_cannot_work_are_refused_at_their_place() {
         assert!(found.contains(message), "{to}: {found}");
         assert!(at.starts_with(key) || key.starts_with(&at), "{to}: {at}");
     }
+    let lifted = HIP.replace("axis = [0, -1, 0]", "axis = [0, 1, 0]\nmoves = \"bearing\"");
+    assert!(Case::parse(&lifted, "case.toml", Path::new("")).is_ok());
     let parallel = format!("{HIP}{second}");
     assert!(refusal(&parallel).1.contains("move along the same line"));
 }
