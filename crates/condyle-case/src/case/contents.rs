@@ -141,6 +141,8 @@ impl Case {
         let within = match &self.femur.shape {
             FemurShape::Sphere(head) if bearing == "cup" => Some(head.radius_mm),
             FemurShape::Cylinder(cylinder) if bearing == "trough" => Some(cylinder.radius_mm),
+            // Its radius is known once its file is read.
+            FemurShape::Mesh(_) => return,
             _ => None,
         };
         match (within, radius_mm) {
@@ -157,8 +159,10 @@ impl Case {
             ),
             (None, _) => report(
                 "shape",
-                format!("a {bearing} needs a {partner}"),
-                format!("write [femur] shape = \"{partner}\" with its radius_mm"),
+                format!("a {bearing} needs a {partner} or a mesh"),
+                format!(
+                    "write [femur] shape = \"{partner}\" with its radius_mm, or \"mesh\" with its file"
+                ),
             ),
         }
     }

@@ -53,7 +53,8 @@ settings! {
         /// Flexion axis [x, y] in the femoral frame; if not given, fitted to the posterior condyles of a knee, to the back of a talus,
         /// to the ball or socket of other joints, and at the origin if there is none.
         flexion_axis_mm: Option<[f64; 2]> = None, in within(-200.0, 200.0);
-        /// Start of the femoral frame in the insert frame, [x, z], before it settles; at the origin if not given.
+        /// Start of the femoral frame in the insert frame, [x, z], before it settles; if not given, at the origin, or with its axis in the
+        /// centre of a cup or trough.
         start_mm: Option<[f64; 2]> = None, in within(-100.0, 100.0);
     }
 }

@@ -209,6 +209,54 @@ fn the_largest_usual_clearance_is_usual_after_rounding() {
 }
 
 #[test]
+fn a_head_of_triangles_wears_its_cup_as_a_ball_does_wherever_its_file_has_it() {
+    let bench = Bench::new();
+    let meridian = (0..=90).map(|n| (f64::from(n) * 2.0).to_radians());
+    let profile: Vec<(f64, f64)> = meridian
+        .map(|angle| (14.0 * angle.sin().max(1e-7), -14.0 * angle.cos()))
+        .collect();
+    let head = TriangleMesh::revolved(&profile, 180);
+    let head = head.mapped(|vertex| vertex + Vec3::new(5.0, 3.0, 0.0));
+    let mut stl = Vec::new();
+    write_stl(&mut stl, &head).unwrap();
+    std::fs::write(bench.path("head.stl"), stl).unwrap();
+    let case = |femur: &str, cup_mm: f64| {
+        format!(
+            "[femur]\n{femur}\n[insert]\nshape = \"cup\"\nradius_mm = {cup_mm}\nedge_mm = 2.0\nlayers = 2\n\
+             [machine]\npreset = \"iso-14242-1-like\"\n[march]\nupdates = 2\n[time]\nincrements = 40\n\
+             [accuracy]\nestimate = false\n"
+        )
+    };
+    let mesh =
+        "shape = \"mesh\"\nfile = \"head.stl\"\naxes = [\"anterior\", \"superior\", \"right\"]";
+    bench.write(
+        "ball.toml",
+        &case("shape = \"sphere\"\nradius_mm = 14.0", 14.1),
+    );
+    bench.write("mesh.toml", &case(mesh, 14.1));
+    bench.write("tight.toml", &case(mesh, 13.9));
+    let (ball_mg, mesh_mg) = (
+        mass_mg(&bench, "ball.toml", "ball"),
+        mass_mg(&bench, "mesh.toml", "mesh"),
+    );
+    assert!(
+        (mesh_mg / ball_mg - 1.0).abs() < 2e-3,
+        "{mesh_mg} {ball_mg}"
+    );
+    let [ball_mpa, mesh_mpa] =
+        ["ball", "mesh"].map(|out| bench.summary(out)[&catalogue::PEAK_PRESSURE_MPA]);
+    assert!(
+        (mesh_mpa / ball_mpa - 1.0).abs() < 0.02,
+        "{mesh_mpa} {ball_mpa}"
+    );
+    let said = bench.say(&["run", "tight.toml", "--out", "tight"]);
+    said.assert_refused(
+        2,
+        &["the cup of radius 13.900 mm is not larger than its head of 14.000 mm"],
+    );
+}
+
+#[test]
 fn notes_and_doubts_of_a_hip_say_nothing_of_knees() {
     let bench = Bench::with_case(
         "[femur]\nshape = \"sphere\"\nradius_mm = 16.0\n[insert]\nshape = \"cup\"\nradius_mm = 16.15\nthickness_mm = 5.5\n\

@@ -56,7 +56,6 @@ impl Case {
             .found_or_made(self.insert_inputs(), |warnings| {
                 self.built_insert(&self.insert, warnings)
             })?;
-        self.check_head(&insert)?;
         let activities = self.built_activities(insert.dish_low_point_mm());
         let flexion_rad = start_flexion_rad(&activities[0].machine);
         let (_, side, limits) = self.insert_inputs();
@@ -65,18 +64,24 @@ impl Case {
         let (femur, of_femur) = bodies.femurs.found_or_made(inputs, |warnings| {
             self.built_femur(joint, flexion_rad, threads, keep, warnings)
         })?;
+        self.check_head(&insert, femur.ball_radius_mm)?;
         let warnings = [self.origin.notes.clone(), of_insert, of_femur].concat();
         let as_linked = |law| self.material.cross_linking.under(law);
         let comparison_laws = self.wear.comparison_laws().into_iter().map(as_linked);
+        let is_round = matches!(
+            self.insert.shape,
+            InsertShape::Cup(_) | InsertShape::CupMesh(_) | InsertShape::Trough(_)
+        );
         let test = WearTest {
             contact: self.contact_law(&insert, keep, bodies)?,
             counterface: Arc::clone(&femur.surface),
             flexion_axis_mm: femur.flexion_axis_mm,
-            start_mm: femur.start_mm,
-            start_height_mm: match &self.insert.shape {
-                InsertShape::Cup(_) | InsertShape::CupMesh(_) | InsertShape::Trough(_) => Some(0.0),
-                _ => None,
+            // Wherever the file has it, the axis of a mesh starts in the centre of a round bearing.
+            start_mm: match &self.femur.shape {
+                FemurShape::Mesh(mesh) if is_round && mesh.start_mm.is_none() => (0.0, 0.0),
+                _ => femur.start_mm,
             },
+            start_height_mm: is_round.then_some(0.0),
             insert: match joint {
                 TestedJoint::Knee => insert,
                 _ => Arc::new(Insert::clone(&insert).with_one_region(joint.bodies()[1])),
@@ -139,22 +144,25 @@ impl Case {
         Ok(Arc::new(law))
     }
 
-    /// Rejects a head that does not fit into its cup of triangles.
-    fn check_head(&self, cup: &Insert) -> Result<(), BuildError> {
-        let (InsertShape::CupMesh(mesh), FemurShape::Sphere(head)) =
-            (&self.insert.shape, &self.femur.shape)
-        else {
+    /// Rejects a head that does not fit into its cup, where one of them is from a file.
+    fn check_head(&self, cup: &Insert, head_mm: Option<f64>) -> Result<(), BuildError> {
+        let is_cup = matches!(
+            self.insert.shape,
+            InsertShape::Cup(_) | InsertShape::CupMesh(_)
+        );
+        let file = self.insert.file().or_else(|| self.femur.file());
+        let (true, Some(head_mm), Some(file)) = (is_cup, head_mm, file) else {
             return Ok(());
         };
-        let (cup_mm, head_mm) = (shell_mm(cup).0, head.radius_mm);
+        let cup_mm = shell_mm(cup).0;
         if head_mm < cup_mm {
             return Ok(());
         }
         let message = format!(
-            "the cup of radius {cup_mm:.3} mm is not larger than its head of {head_mm} mm; check length_unit and the files"
+            "the cup of radius {cup_mm:.3} mm is not larger than its head of {head_mm:.3} mm; check length_unit and the files"
         );
         let keys = &["file", "length_unit"];
-        Err(BuildError::mesh(mesh.file.path(), keys, message))
+        Err(BuildError::mesh(file.path(), keys, message))
     }
 
     /// Rejects settings that cannot be combined with a resting backside.

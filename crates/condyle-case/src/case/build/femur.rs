@@ -29,6 +29,8 @@ pub(super) struct BuiltFemur {
     pub surface: Arc<Counterface>,
     /// (x, y) in the femoral frame.
     pub flexion_axis_mm: (f64, f64),
+    /// Radius of a ball or socket, or of that of a mesh.
+    pub ball_radius_mm: Option<f64>,
     /// (x, z) of the flexion axis in the insert frame.
     pub start_mm: (f64, f64),
 }
@@ -55,6 +57,7 @@ impl Case {
         let at_origin = |surface, start_mm: Option<[f64; 2]>, default_mm| BuiltFemur {
             surface: Arc::new(surface),
             flexion_axis_mm: (0.0, 0.0),
+            ball_radius_mm: None,
             start_mm: start_mm.map_or(default_mm, |start| on_the_right(start, side)),
         };
         Ok(match &self.femur.shape {
@@ -73,7 +76,10 @@ impl Case {
             }
             FemurShape::Sphere(femur) => {
                 let surface = Counterface::sphere(femur.radius_mm);
-                at_origin(surface, femur.start_mm, (0.0, 0.0))
+                BuiltFemur {
+                    ball_radius_mm: Some(femur.radius_mm),
+                    ..at_origin(surface, femur.start_mm, (0.0, 0.0))
+                }
             }
             FemurShape::Cylinder(femur) => {
                 let radius_mm = femur.radius_mm;
@@ -90,12 +96,14 @@ impl Case {
                 if self.check_orientation(Body::Femur, file, mesh, &placing, warnings)? {
                     check_side(file, mesh, side, warnings);
                 }
-                let flexion_axis_mm = femur.axis_mm(joint, &shell.mesh);
-                warnings.extend(femur.ball_off_axes(joint, &shell.mesh, side));
+                let ball = ball(joint, mesh);
+                let flexion_axis_mm = femur.axis_mm(joint, mesh, ball.as_ref());
+                warnings.extend(ball.as_ref().and_then(|ball| femur.off_axes(ball, side)));
                 let (x, z) = on_the_right(femur.start_mm.unwrap_or_default(), side);
                 BuiltFemur {
                     surface: Arc::new(Counterface::Mesh(field)),
                     flexion_axis_mm,
+                    ball_radius_mm: ball.map(|ball| ball.radius_mm),
                     start_mm: (x + axis_ahead_mm(flexion_axis_mm, flexion_rad), z),
                 }
             }
@@ -105,23 +113,22 @@ impl Case {
 
 impl MeshFemur {
     /// Returns the flexion axis (x, y) of the unplaced component.
-    fn axis_mm(&self, joint: TestedJoint, mesh: &TriangleMesh) -> (f64, f64) {
+    fn axis_mm(
+        &self,
+        joint: TestedJoint,
+        mesh: &TriangleMesh,
+        ball: Option<&FittedSphere>,
+    ) -> (f64, f64) {
         match (self.flexion_axis_mm, joint) {
             (Some([x, y]), _) => (x, y),
             (None, TestedJoint::Knee | TestedJoint::Ankle) => posterior_arc_centre_mm(mesh),
-            (None, _) => ball_centre_mm(mesh).map_or((0.0, 0.0), |centre| (centre.x, centre.y)),
+            (None, _) => ball.map_or((0.0, 0.0), |ball| (ball.centre_mm.x, ball.centre_mm.y)),
         }
     }
 
     /// Returns a warning if the axes of the machine miss the centre of a ball, of which only x and y are followed.
-    fn ball_off_axes(
-        &self,
-        joint: TestedJoint,
-        mesh: &TriangleMesh,
-        side: Side,
-    ) -> Option<BuildWarning> {
-        let has_no_ball = matches!(joint, TestedJoint::Knee | TestedJoint::Ankle);
-        let centre = (!has_no_ball).then(|| ball_centre_mm(mesh)).flatten()?;
+    fn off_axes(&self, ball: &FittedSphere, side: Side) -> Option<BuildWarning> {
+        let centre = ball.centre_mm;
         let off_mm = on_the_right([0.0, centre.z], side).1;
         let [x, y, z] = self.origin_mm.unwrap_or_default();
         let origin = [x + centre.x, y + centre.y, z + off_mm]
@@ -141,7 +148,8 @@ impl MeshFemur {
         mesh: TriangleMesh,
         (joint, placement): (TestedJoint, &FemurPlacement),
     ) -> TriangleMesh {
-        match placement.motion(self.axis_mm(joint, &mesh)) {
+        let axis_mm = self.axis_mm(joint, &mesh, ball(joint, &mesh).as_ref());
+        match placement.motion(axis_mm) {
             Some(motion) => motion.mesh(mesh),
             None => mesh,
         }
@@ -191,9 +199,12 @@ const MAX_OFF_AXES_MM: f64 = 0.1;
 /// Cosine of 78 degrees, within which the normal of a triangle that faces the bearing lies from straight down.
 const MIN_DOWN: f64 = 0.2;
 
-/// Returns the centre of the ball or socket of a mesh, of the triangles that face the bearing: the walls of a plate around it
-/// would be another sphere.
-fn ball_centre_mm(mesh: &TriangleMesh) -> Option<Vec3> {
+/// Returns the ball or socket of the mesh of a joint that has one, of the triangles that face the bearing: the walls of a plate
+/// around it would be another sphere.
+fn ball(joint: TestedJoint, mesh: &TriangleMesh) -> Option<FittedSphere> {
+    if matches!(joint, TestedJoint::Knee | TestedJoint::Ankle) {
+        return None;
+    }
     let faces_down = |triangle: &usize| {
         let [a, b, c] = mesh.corners(*triangle);
         let normal = (b - a).cross(&(c - a));
@@ -205,7 +216,7 @@ fn ball_centre_mm(mesh: &TriangleMesh) -> Option<Vec3> {
         triangles: facing.map(|triangle| mesh.triangles[triangle]).collect(),
     };
     // Of an open surface, the sphere on either side is found.
-    FittedSphere::new(&facing, Roundness::Convex).map(|sphere| sphere.centre_mm)
+    FittedSphere::new(&facing, Roundness::Convex)
 }
 
 /// Mirrors a place [x, z] of the insert frame of a left knee.

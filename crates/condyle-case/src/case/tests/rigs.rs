@@ -142,7 +142,7 @@ fn machines_that_cannot_work_are_refused_at_their_place() {
             "shape = \"sphere\"",
             "shape = \"cylinder\"",
             "insert.shape",
-            "needs a sphere",
+            "needs a sphere or a mesh",
         ),
     ] {
         let changed = HIP.replace(change, to);
