@@ -257,6 +257,29 @@ fn a_head_of_triangles_wears_its_cup_as_a_ball_does_wherever_its_file_has_it() {
 }
 
 #[test]
+fn a_load_in_kilonewtons_is_doubtful() {
+    let bench = Bench::new();
+    let shown = bench.say(&["machine", "show", "iso-14242-1-like"]).out;
+    for (file, scale) in [("newtons.toml", 1.0), ("kilonewtons.toml", 0.001)] {
+        let loaded = shown.replace("[joints.load]", &format!("[joints.load]\nscale = {scale}"));
+        assert_ne!(loaded, shown);
+        bench.write(file, &loaded);
+        bench.write(
+            "case.toml",
+            &format!(
+                "[femur]\nshape = \"sphere\"\nradius_mm = 14.0\n[insert]\nshape = \"cup\"\nradius_mm = 14.1\nedge_mm = 2.5\n\
+                 layers = 1\n[machine]\nfile = \"{file}\"\n[march]\nupdates = 1\n[time]\nincrements = 40\n\
+                 [accuracy]\nestimate = false\n"
+            ),
+        );
+        let said = bench.say(&["run", "case.toml", "--out", file.trim_end_matches(".toml")]);
+        assert_eq!(said.code, Some(0), "{}", said.err);
+        let doubt = "the largest axial force is 3.0 N";
+        assert_eq!(said.out.contains(doubt), scale < 1.0, "{}", said.out);
+    }
+}
+
+#[test]
 fn notes_and_doubts_of_a_hip_say_nothing_of_knees() {
     let bench = Bench::with_case(
         "[femur]\nshape = \"sphere\"\nradius_mm = 16.0\n[insert]\nshape = \"cup\"\nradius_mm = 16.15\nthickness_mm = 5.5\n\

@@ -1,7 +1,7 @@
 //! Checks of the machine: whether it reaches its loads, and whether its springs stay within their travel.
 
 use condyle::machine::{
-    CycleRow, Drive, JointIndex, JointKind, Machine, Spring, Waveform,
+    CycleRow, Drive, JointIndex, JointKind, Machine, Spring, TestedJoint, Waveform,
     knee::{AP, IE, IS, KNEE, ML, VV},
 };
 use condyle_results::{PlausibilityWarning, joint_range};
@@ -44,6 +44,10 @@ const APPLIED: [Applied; 3] = [
 /// unlimited travel.
 const FARTHEST_MM: f64 = 10.0;
 
+/// Smallest plausible peak of the axial force on a joint, N; our choice: the smallest of a standard is 150 N, on the disc of a neck,
+/// and the largest one in kN is 3.
+const MIN_PEAK_LOAD_N: f64 = 10.0;
+
 /// A load of the machine that contact and springs do not balance.
 struct Missed {
     percent: f64,
@@ -51,6 +55,20 @@ struct Missed {
     most: f64,
     load: f64,
     cycle: &'static str,
+}
+
+/// Warns of an axial force so small that its unit is probably not N.
+pub(crate) fn load_small(finished: &Finished<'_>) -> Option<PlausibilityWarning> {
+    let tests = finished.march.test().machine().mechanism.tests;
+    let forces_n = finished.cycles().flat_map(|cycle| cycle.rows);
+    let peak_n = forces_n.map(|row| row.axial_force_n).fold(0.0, f64::max);
+    let message = format!(
+        "the largest axial force is {peak_n:.1} N; that of a joint is at least {MIN_PEAK_LOAD_N:.0} N"
+    );
+    let advice = "Write loads in N: a waveform in kN needs scale = 1000.";
+    let value = (peak_n, MIN_PEAK_LOAD_N, "N");
+    (tests != TestedJoint::Specimen && peak_n < MIN_PEAK_LOAD_N)
+        .then(|| warning("load_small", value, message, advice))
 }
 
 pub(crate) fn not_reached(finished: &Finished<'_>) -> Vec<PlausibilityWarning> {

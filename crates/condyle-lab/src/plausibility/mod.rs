@@ -23,8 +23,9 @@ use finished::{Finished, percent_of, warning};
 /// A check of one number; none if the run is plausible.
 type Check = fn(&Finished<'_>) -> Option<PlausibilityWarning>;
 
-/// Place of the femur on the insert, their meshes, and impossible pressure.
-const PLACE: [Check; 6] = [
+/// The unit of the load, the place of the femur on the insert, their meshes, and impossible pressure.
+const PLACE: [Check; 7] = [
+    loads::load_small,
     bodies::femur_on_eminence,
     bodies::pressure_at_rim,
     bodies::femur_mesh,
