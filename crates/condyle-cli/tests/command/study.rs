@@ -339,6 +339,9 @@ fn scatter_and_limits_belong_to_each_design_and_count_what_could_not_be_solved()
     );
     let said = bench.say(&["study", "study.toml", "--out", "out"]);
     assert!(said.out.contains("66.7 % to 100.0 %"), "{}", said.out);
+    let page = fs::read_to_string(bench.path("out/study.html")).unwrap();
+    let compared = "Compared are the 2 of 3 disturbances under which every design could be solved";
+    assert!(page.contains(compared), "{page:.2000}");
     let answers = answers(&bench);
     let spreads = answers["spreads"].as_array().unwrap().iter();
     let peaks = spreads.filter(|spread| spread["output"] == "peak_pressure_mpa");

@@ -536,11 +536,24 @@ fn sentence_of_search(best: &Best) -> Option<String> {
 
 fn sentence_of_designs(ranking: &Ranking) -> Option<String> {
     let first = ranking.designs.first()?;
+    let (solved, tested) = (ranking.disturbances, ranking.tested);
+    if solved == 0 {
+        return Some(format!(
+            "The designs cannot be compared: under none of the {tested} disturbances every design could be solved."
+        ));
+    }
+    let compared = if solved < tested {
+        format!(
+            " Compared are the {solved} of {tested} disturbances under which every design could be solved."
+        )
+    } else {
+        String::new()
+    };
     let best = with_interval(first.best, first.best_interval);
     let within = with_interval(first.within_limits, first.within_limits_interval);
     let (name, title) = (&first.name, ranking.title);
     Some(format!(
-        "{name} ranks first: it has the least {title} under {best} of the disturbances, and keeps every limit under {within}."
+        "{name} ranks first: it has the least {title} under {best} of the disturbances, and keeps every limit under {within}.{compared}"
     ))
 }
 

@@ -19,8 +19,10 @@ pub(crate) struct Ranking {
     pub output: &'static str,
     pub title: &'static str,
     pub unit: &'static str,
-    /// Disturbances under which the tests of all designs are done.
+    /// Disturbances under which the tests of all designs are solved, and which are compared.
     pub disturbances: usize,
+    /// Disturbances under which all designs were tested.
+    pub tested: usize,
     pub designs: Vec<RankedDesign>,
 }
 
@@ -82,6 +84,11 @@ impl Ranking {
             title: output.label,
             unit: output.unit(),
             disturbances: common.len(),
+            tested: data
+                .kept
+                .chunks(count)
+                .filter(|tests| tests.iter().all(|is| *is))
+                .count(),
             designs: ranked(&outcomes.collect::<Vec<_>>()),
         }))
     }
