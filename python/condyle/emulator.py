@@ -114,7 +114,7 @@ def read(folder: Path, output: str, design: str | None) -> Emulator:
         if model["output"] == output and model["design"] == design:
             return Emulator(model)
     names = ", ".join(_name(model["output"], model["design"]) for model in models)
-    reason = "none: its inputs are no sample of numbers, or there are too few tests"
+    reason = "none: it is a search, its inputs are no numbers, or there are too few tests"
     raise BadInput(f"the study has no emulator of {_name(output, design)}; it has {names or reason}")
 
 

@@ -51,7 +51,7 @@ impl Drafted {
         let mut of_head = ball.remarks("head", "a ball");
         let mut of_cup = socket.remarks("cup", "a socket");
         let [x, y, z]: [f64; 3] = socket.sphere.opens_along.into();
-        of_head.push("  The case has the ball by its radius, not the file.".to_owned());
+        of_head.push("  The case has the ball by its radius. To test the head of the file, write shape = \"mesh\", file and axes in [femur].".to_owned());
         of_cup.push(format!(
             "  It opens along ({x:.3}, {y:.3}, {z:.3}) of the file. inclination_deg is that of the preset: check it."
         ));

@@ -326,6 +326,21 @@ fn each_design_has_its_own_emulators_and_formulas_are_outputs_like_others() {
 }
 
 #[test]
+fn emulators_of_chosen_tests_predict_and_give_no_probabilities() {
+    let bench = bench(&of("kind = \"full-factorial\"\npoints = 4"));
+    table(&bench, &[]);
+    let answers = answers(&bench);
+    let mass = &answers["emulated"][0];
+    assert_eq!(
+        (&mass["tests"], &mass["is_sample"]),
+        (&16.into(), &false.into())
+    );
+    assert!(mass["distribution"].is_null(), "{mass}");
+    assert_eq!(answers["indices"].as_array().map(Vec::len), Some(0));
+    assert!(bench.path("out/emulators.json").is_file());
+}
+
+#[test]
 fn scatter_and_limits_belong_to_each_design_and_count_what_could_not_be_solved() {
     let bench = bench(
         "case = \"case.toml\"\n[design]\nkind = \"rows\"\nfile = \"rows.csv\"\n\

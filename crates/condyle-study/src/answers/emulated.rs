@@ -43,6 +43,8 @@ pub(crate) struct Emulated {
     pub q2: f64,
     /// The share of the tests that failed.
     pub failed: f64,
+    /// True if the tests are a sample of the inputs' distributions, or chosen for an emulator over them.
+    pub is_sample: bool,
     /// The distribution of the predictions; none if the emulator is not used.
     pub distribution: Option<Distribution>,
     /// Probabilities of being beyond each limit; none if the emulator is not used.
@@ -103,16 +105,13 @@ pub(crate) struct Distribution {
     pub percentiles: [f64; 7],
 }
 
-/// Returns the emulators of all outputs, of each design by itself, and the Sobol indices from them; empty for studies without
-/// a random sample of numbers.
+/// Returns the emulators of all outputs, of each design by itself, and the Sobol indices from them; empty for inputs without
+/// numbers, for a search, which has its own, and for tests that change one input at a time.
 pub(crate) fn emulated(data: &Data<'_>) -> (Vec<Emulated>, Vec<Indices>) {
     let study = data.plan.study();
-    let is_sample = matches!(
-        study.design,
-        Design::LatinHypercube(_) | Design::Sobol(_) | Design::Saltelli(_) | Design::Adaptive(_)
-    );
+    let has_none = matches!(study.design, Design::Optimise(_) | Design::OneAtATime(_));
     let has_words = data.inputs.iter().any(|column| !column.words.is_empty());
-    if !is_sample || has_words || study.inputs.is_empty() {
+    if has_none || has_words || study.inputs.is_empty() {
         return Default::default();
     }
     let inputs = study.inputs.iter().zip(&data.inputs);
@@ -163,6 +162,10 @@ fn emulated_output(
     let name = study.alternatives.get(design).map(|one| one.name.clone());
     let mut emulated = Emulated::new(output, name, axes, &emulator);
     emulated.failed = failed(data, values, design);
+    emulated.is_sample = matches!(
+        study.design,
+        Design::LatinHypercube(_) | Design::Sobol(_) | Design::Saltelli(_) | Design::Adaptive(_)
+    );
     let mut indices = Vec::new();
     if emulated.why_not_used().is_none() {
         let population = Population::new(data.plan, &emulator, axes);
@@ -226,6 +229,7 @@ impl Emulated {
             tests: emulator.tested_and_predicted().len(),
             q2: exported.q2,
             failed: 0.0,
+            is_sample: true,
             distribution: None,
             beyond: Vec::new(),
             tested_and_predicted: emulator.tested_and_predicted(),
@@ -235,6 +239,9 @@ impl Emulated {
 
     /// Returns why no answers are computed from it; none if they are.
     pub fn why_not_used(&self) -> Option<String> {
+        if !self.is_sample {
+            return Some("the tests are no sample".to_owned());
+        }
         if self.q2 < MIN_Q2 {
             return Some(format!("Q2 is below {MIN_Q2}"));
         }
