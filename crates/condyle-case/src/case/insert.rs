@@ -186,6 +186,13 @@ variants! {
     }
 }
 
+impl InsertShape {
+    /// Returns whether the bearing surrounds its counterface, whose centre or axis then starts in its own.
+    pub(super) fn is_round(&self) -> bool {
+        matches!(self, Self::Cup(_) | Self::CupMesh(_) | Self::Trough(_))
+    }
+}
+
 impl Insert {
     pub(super) fn axes(&self) -> Option<&Axes> {
         match &self.shape {

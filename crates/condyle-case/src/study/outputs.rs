@@ -63,6 +63,16 @@ peg::parser! {
     }
 }
 
+impl Formula {
+    fn value(&self, number: &dyn Fn(&str) -> f64) -> f64 {
+        let given = number(self.output.key);
+        if given.is_finite() {
+            return given;
+        }
+        arithmetic::formula(&self.text, number).unwrap_or(f64::NAN)
+    }
+}
+
 impl Outputs {
     /// Returns all outputs, in the order of the table.
     pub fn all(&self) -> impl Iterator<Item = &'static Scalar> {
@@ -83,11 +93,7 @@ impl Outputs {
     /// Returns the values of all outputs of a test whose results `number` returns by their keys, NaN for those that it does
     /// not have. A formula is computed unless its own value is among them, as that of a laboratory may be.
     pub fn values(&self, number: &dyn Fn(&str) -> f64) -> Vec<f64> {
-        let computed = self.formulas.iter().map(|formula| {
-            let given = number(formula.output.key);
-            let compute = || arithmetic::formula(&formula.text, number).unwrap_or(f64::NAN);
-            if given.is_finite() { given } else { compute() }
-        });
+        let computed = self.formulas.iter().map(|formula| formula.value(number));
         let plain = catalogue::outputs().map(|output| number(output.key));
         plain.chain(computed).collect()
     }

@@ -162,10 +162,7 @@ fn emulated_output(
     let name = study.alternatives.get(design).map(|one| one.name.clone());
     let mut emulated = Emulated::new(output, name, axes, &emulator);
     emulated.failed = failed(data, values, design);
-    emulated.is_sample = matches!(
-        study.design,
-        Design::LatinHypercube(_) | Design::Sobol(_) | Design::Saltelli(_) | Design::Adaptive(_)
-    );
+    emulated.is_sample = is_over_distributions(&study.design);
     let mut indices = Vec::new();
     if emulated.why_not_used().is_none() {
         let population = Population::new(data.plan, &emulator, axes);
@@ -178,6 +175,14 @@ fn emulated_output(
         }
     }
     Some((emulated, indices))
+}
+
+/// Returns whether a design takes its tests from the distributions of the inputs.
+fn is_over_distributions(design: &Design) -> bool {
+    matches!(
+        design,
+        Design::LatinHypercube(_) | Design::Sobol(_) | Design::Saltelli(_) | Design::Adaptive(_)
+    )
 }
 
 /// Returns the share of the tests of a design that failed.

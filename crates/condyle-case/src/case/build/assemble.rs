@@ -68,10 +68,7 @@ impl Case {
         let warnings = [self.origin.notes.clone(), of_insert, of_femur].concat();
         let as_linked = |law| self.material.cross_linking.under(law);
         let comparison_laws = self.wear.comparison_laws().into_iter().map(as_linked);
-        let is_round = matches!(
-            self.insert.shape,
-            InsertShape::Cup(_) | InsertShape::CupMesh(_) | InsertShape::Trough(_)
-        );
+        let is_round = self.insert.shape.is_round();
         let test = WearTest {
             contact: self.contact_law(&insert, keep, bodies)?,
             counterface: Arc::clone(&femur.surface),

@@ -88,25 +88,37 @@ impl Case {
             }
             FemurShape::Plane => at_origin(Counterface::Plane, None, (0.0, 0.0)),
             FemurShape::Mesh(femur) => {
-                let placing = femur.placing(side)?;
-                let PreparedFemur { shell, field } =
-                    femur.prepared((joint, placement), &placing, &self.limits, threads, keep)?;
-                let (file, mesh) = (&femur.file, &shell.mesh);
-                warn(file, &shell, &shell.mesh, warnings);
-                if self.check_orientation(Body::Femur, file, mesh, &placing, warnings)? {
-                    check_side(file, mesh, side, warnings);
-                }
-                let ball = ball(joint, mesh);
-                let flexion_axis_mm = femur.axis_mm(joint, mesh, ball.as_ref());
-                warnings.extend(ball.as_ref().and_then(|ball| femur.off_axes(ball, side)));
-                let (x, z) = on_the_right(femur.start_mm.unwrap_or_default(), side);
-                BuiltFemur {
-                    surface: Arc::new(Counterface::Mesh(field)),
-                    flexion_axis_mm,
-                    ball_radius_mm: ball.map(|ball| ball.radius_mm),
-                    start_mm: (x + axis_ahead_mm(flexion_axis_mm, flexion_rad), z),
-                }
+                return self.built_mesh(femur, (joint, flexion_rad), threads, keep, warnings);
             }
+        })
+    }
+
+    fn built_mesh(
+        &self,
+        femur: &MeshFemur,
+        (joint, flexion_rad): (TestedJoint, f64),
+        threads: usize,
+        keep: &dyn Keep,
+        warnings: &mut Vec<BuildWarning>,
+    ) -> Result<BuiltFemur, BuildError> {
+        let (side, placement) = (self.heading.side, &self.femur.placement);
+        let placing = femur.placing(side)?;
+        let PreparedFemur { shell, field } =
+            femur.prepared((joint, placement), &placing, &self.limits, threads, keep)?;
+        let (file, mesh) = (&femur.file, &shell.mesh);
+        warn(file, &shell, mesh, warnings);
+        if self.check_orientation(Body::Femur, file, mesh, &placing, warnings)? {
+            check_side(file, mesh, side, warnings);
+        }
+        let ball = ball(joint, mesh);
+        let flexion_axis_mm = femur.axis_mm(joint, mesh, ball.as_ref());
+        warnings.extend(ball.as_ref().and_then(|ball| femur.off_axes(ball, side)));
+        let (x, z) = on_the_right(femur.start_mm.unwrap_or_default(), side);
+        Ok(BuiltFemur {
+            surface: Arc::new(Counterface::Mesh(field)),
+            flexion_axis_mm,
+            ball_radius_mm: ball.map(|ball| ball.radius_mm),
+            start_mm: (x + axis_ahead_mm(flexion_axis_mm, flexion_rad), z),
         })
     }
 }
