@@ -13,6 +13,11 @@ use super::input::check_count;
 use crate::case::Case;
 use crate::config::*;
 
+/// Columns of the table of tests that are neither inputs nor outputs.
+const OTHER_COLUMNS: [&str; 5] = ["row", "design", "status", "reason", "checksum"];
+/// Largest number of characters of a formula: parentheses are read by recursion, on the stack of a thread.
+const MAX_CHARACTERS: usize = 500;
+
 /// The outputs of every test of a study.
 #[derive(Clone, Debug, Default)]
 pub struct Outputs {
@@ -123,16 +128,28 @@ impl Outputs {
 
     fn formula(&self, section: &Section<'_>, log: &mut Log<'_>) -> Option<Formula> {
         let keys = OutputKeys::read_checked(section, log)?;
-        let is_taken = catalogue::scalar(&keys.name).is_some() || self.get(&keys.name).is_some();
+        let name = keys.name.as_str();
+        let is_taken = catalogue::scalar(name).is_some()
+            || self.get(name).is_some()
+            || OTHER_COLUMNS.contains(&name);
         let is_word = |c: char| c.is_ascii_alphanumeric() || c == '_';
-        if is_taken || keys.name.is_empty() || !keys.name.chars().all(is_word) {
+        if is_taken || name.is_empty() || !name.chars().all(is_word) {
             let message = if is_taken {
-                format!("every test has an output `{}` already", keys.name)
+                format!("every test has a column `{name}` already")
             } else {
-                format!("`{}` is no name of an output", keys.name)
+                format!("`{name}` is no name of an output")
             };
             let advice = "use letters, digits and `_`, with the unit at the end, such as `mass_per_million_mg`";
             log.problem(section.value_span("name"), Fault::new(message, advice));
+            return None;
+        }
+        if keys.formula.chars().count() > MAX_CHARACTERS {
+            let message = format!("a formula has at most {MAX_CHARACTERS} characters");
+            let fault = Fault::new(
+                message,
+                "shorten it, or compute it from the table afterwards",
+            );
+            log.problem(section.value_span("formula"), fault);
             return None;
         }
         let names = RefCell::new(Vec::new());
@@ -237,6 +254,8 @@ mod tests {
             let found = arithmetic::formula(text, &number).unwrap();
             assert!((found - expected).abs() < 1e-12, "{text}: {found}");
         }
+        let deep = format!("{}1{}", "(".repeat(249), ")".repeat(249));
+        assert_eq!(arithmetic::formula(&deep, &number), Ok(1.0));
         for (text, column) in [
             ("", 1),
             ("a + ", 5),

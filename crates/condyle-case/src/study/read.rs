@@ -213,6 +213,11 @@ impl Study {
                 );
                 log.problem(input.span.clone(), fault);
             }
+            if self.outputs.get(&input.key).is_some() {
+                let message = format!("`{}` is an input and an output", input.key);
+                let fault = Fault::new(message, "give the output another name");
+                log.problem(input.span.clone(), fault);
+            }
             self.check_input(input, &mut left, log);
         }
         for (place, alternative) in self.alternatives.iter().enumerate() {

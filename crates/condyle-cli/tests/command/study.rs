@@ -579,7 +579,19 @@ fn what_is_wrong_with_a_study_is_said_with_its_place() {
         (
             vary("contact.friction", range)
                 + "[[output]]\nname = \"mass_loss_mg\"\nformula = \"1\"\n",
-            vec!["has an output `mass_loss_mg` already"],
+            vec!["has a column `mass_loss_mg` already"],
+        ),
+        (
+            vary("contact.friction", range) + "[[output]]\nname = \"status\"\nformula = \"1\"\n",
+            vec!["has a column `status` already"],
+        ),
+        (
+            vary("contact.friction", range)
+                + &format!(
+                    "[[output]]\nname = \"merit\"\nformula = \"{}\"\n",
+                    "(".repeat(501)
+                ),
+            vec!["a formula has at most 500 characters"],
         ),
         (
             vary("contact.friction", range)

@@ -539,7 +539,7 @@ fn sentence_of_designs(ranking: &Ranking) -> Option<String> {
     let (solved, tested) = (ranking.disturbances, ranking.tested);
     if solved == 0 {
         return Some(format!(
-            "The designs cannot be compared: under none of the {tested} disturbances every design could be solved."
+            "The designs cannot be compared: under none of the {tested} disturbances could every design be solved."
         ));
     }
     let compared = if solved < tested {
