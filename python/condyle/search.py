@@ -119,11 +119,12 @@ class Search:
         if isinstance(result, (str, Exception)):
             return str(result).partition("\n")[0].strip() or type(result).__name__
         raw, doubts = self._study._raw, ""
+        known = raw.results
         if isinstance(result, Result):
             doubts = " ".join(doubt["check"] for doubt in result.plausibility)
-            result = {key: result.summary[key] for key in raw.results if result.summary.get(key) is not None}
+            result = {key: result.summary[key] for key in known if result.summary.get(key) is not None}
         for key in result:
-            if key not in raw.results:
+            if key not in known:
                 raise BadInput(f"a test has no output {key!r}; it has {', '.join(raw.outputs)}")
         return raw.output_values({key: float(value) for key, value in result.items()}), doubts
 

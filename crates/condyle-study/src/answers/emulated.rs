@@ -226,18 +226,19 @@ impl Emulated {
             inputs: axes.iter().map(Range::new).collect(),
             model: emulator.model(),
         };
+        let tested_and_predicted = emulator.tested_and_predicted();
         Self {
             output: output.key,
             title: output.label,
             unit: output.unit(),
             design,
-            tests: emulator.tested_and_predicted().len(),
+            tests: tested_and_predicted.len(),
             q2: exported.q2,
             failed: 0.0,
             is_sample: true,
             distribution: None,
             beyond: Vec::new(),
-            tested_and_predicted: emulator.tested_and_predicted(),
+            tested_and_predicted,
             exported,
         }
     }

@@ -29,7 +29,7 @@ pub(super) struct BuiltFemur {
     pub surface: Arc<Counterface>,
     /// (x, y) in the femoral frame.
     pub flexion_axis_mm: (f64, f64),
-    /// Radius of a ball or socket, or of that of a mesh.
+    /// Radius of its ball or socket, which is fitted to a mesh.
     pub ball_radius_mm: Option<f64>,
     /// (x, z) of the flexion axis in the insert frame.
     pub start_mm: (f64, f64),
@@ -63,7 +63,7 @@ impl Case {
         Ok(match &self.femur.shape {
             FemurShape::Generic(femur) => {
                 let generic = GenericFemur::new(femur.shape);
-                let surface = match placement.motion((0.0, 0.0)) {
+                let surface = match placement.motion(|| (0.0, 0.0)) {
                     Some(motion) => Counterface::Placed(PlacedFemur::new(
                         generic,
                         motion.rotation,
@@ -160,7 +160,7 @@ impl MeshFemur {
         mesh: TriangleMesh,
         (joint, placement): (TestedJoint, &FemurPlacement),
     ) -> TriangleMesh {
-        let axis_mm = self.axis_mm(joint, &mesh, ball(joint, &mesh).as_ref());
+        let axis_mm = || self.axis_mm(joint, &mesh, ball(joint, &mesh).as_ref());
         match placement.motion(axis_mm) {
             Some(motion) => motion.mesh(mesh),
             None => mesh,

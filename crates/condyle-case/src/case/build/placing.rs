@@ -333,11 +333,16 @@ impl InsertPlacement {
 }
 
 impl FemurPlacement {
-    /// Returns the motion of a component that flexes about (x, y) of the femoral frame; `None` for no motion.
+    /// Returns the motion of a component that flexes about `axis_mm`, (x, y) of the femoral frame, which only a motion needs; `None`
+    /// for no motion.
     ///
     /// A component moves on its bone in the direction opposite to that of the bone over the component: Ry(-external)
     /// Rx(varus) Rz(-flexion).
-    pub(super) fn motion(&self, (x, y): (f64, f64)) -> Option<RigidMotion> {
+    pub(super) fn motion(&self, axis_mm: impl FnOnce() -> (f64, f64)) -> Option<RigidMotion> {
+        if !self.is_moved() {
+            return None;
+        }
+        let (x, y) = axis_mm();
         let rotation = rotation(
             -self.flexion_deg,
             self.varus_deg,
@@ -350,8 +355,7 @@ impl FemurPlacement {
         );
         let about_mm = Vec3::new(x, y, 0.0);
         let shift_mm = about_mm - rotation * about_mm + shift_mm;
-        self.is_moved()
-            .then_some(RigidMotion { rotation, shift_mm })
+        Some(RigidMotion { rotation, shift_mm })
     }
 }
 
@@ -469,7 +473,7 @@ mod tests {
     }
 
     fn femur(placement: &FemurPlacement, point: Vec3) -> Vec3 {
-        let motion = placement.motion((1.0, 2.0)).expect("it moves");
+        let motion = placement.motion(|| (1.0, 2.0)).expect("it moves");
         motion.point(&(point + Vec3::new(1.0, 2.0, 0.0))) - Vec3::new(1.0, 2.0, 0.0)
     }
 
@@ -539,7 +543,7 @@ mod tests {
         let middle = Vec3::new(4.0, 30.0, -5.0);
         let motion = centred.motion(|| middle).expect("it moves");
         assert!(motion.point(&middle).norm() < 1e-12);
-        assert!(NONE.motion(|| middle).is_none() && ON_BONE.motion((0.0, 0.0)).is_none());
+        assert!(NONE.motion(|| middle).is_none() && ON_BONE.motion(|| (0.0, 0.0)).is_none());
     }
 
     #[test]
