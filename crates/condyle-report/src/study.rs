@@ -123,7 +123,9 @@ pub fn bars_svg(title: &str, unit: &str, middle: Option<f64>, bars: &[Bar]) -> S
 /// The distribution of an output.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Distribution {
-    /// The output.
+    /// The output; its distributions for several designs have the same axis.
+    pub output: &'static str,
+    /// Its name, with that of the design.
     pub title: String,
     /// Its unit.
     pub unit: String,
@@ -137,7 +139,15 @@ pub struct Distribution {
 
 /// Returns the text of an SVG file with one panel per output.
 pub fn distributions_svg(all: &[Distribution]) -> String {
-    let panels: Vec<Panel> = all.iter().map(histogram).collect();
+    let panel = |one: &Distribution| {
+        let own = all.iter().filter(|other| other.output == one.output);
+        let ends = own.flat_map(|own| {
+            let ends = [own.sorted.first(), own.sorted.last()];
+            ends.into_iter().flatten().chain(&own.limits).copied()
+        });
+        histogram(one, finite_range(ends).unwrap_or((0.0, 1.0)))
+    };
+    let panels: Vec<Panel> = all.iter().map(panel).collect();
     let names: Vec<&str> = all.iter().map(|one| one.title.as_str()).collect();
     let desc = format!("Distributions of {} over the tests.", names.join(", "));
     let has_limits = all.iter().any(|one| !one.limits.is_empty());
@@ -150,12 +160,7 @@ pub fn distributions_svg(all: &[Distribution]) -> String {
     sheet("Distributions", &desc, &panels, 2, &key[..shown])
 }
 
-fn histogram(one: &Distribution) -> Panel {
-    let ends = [one.sorted.first(), one.sorted.last()]
-        .into_iter()
-        .flatten();
-    let ends = ends.chain(&one.limits).copied();
-    let (low, high) = finite_range(ends).unwrap_or((0.0, 1.0));
+fn histogram(one: &Distribution, (low, high): (f64, f64)) -> Panel {
     let outline = outline(&one.sorted);
     let highest = outline.iter().map(|point| point.1).fold(0.0, f64::max);
     let upright = |class, at: &f64| Curve::new(class, vec![(*at, 0.0), (*at, highest)]);
@@ -235,8 +240,27 @@ mod tests {
     }
 
     #[test]
+    fn distributions_of_one_output_have_the_same_axis() {
+        let of = |output, sorted| Distribution {
+            output,
+            title: "a".to_owned(),
+            unit: String::new(),
+            sorted,
+            marks: Vec::new(),
+            limits: Vec::new(),
+        };
+        let svg = distributions_svg(&[
+            of("a", vec![1.0, 2.0]),
+            of("a", vec![71.0, 72.0]),
+            of("b", vec![1.0, 2.0]),
+        ]);
+        assert_eq!(svg.matches(">60<").count(), 2);
+    }
+
+    #[test]
     fn one_value_alone_and_none_are_drawn() {
         let of = |sorted| Distribution {
+            output: "a",
             title: "a".to_owned(),
             unit: String::new(),
             sorted,

@@ -188,18 +188,10 @@ fn elementary(answers: &Answers) -> Option<Picture> {
     Some(("morris.svg", caption.to_owned(), svg))
 }
 
-fn effects_on<'a>(answers: &'a Answers, output: &str) -> Vec<&'a Effect> {
-    let mut own = answers.effects_on(output);
-    own.truncate(MAX_INPUTS);
-    own
-}
-
 fn tornado(answers: &Answers) -> Option<Picture> {
-    let spread = answers
-        .spreads
-        .first()
-        .filter(|_| !answers.is_sequential())?;
-    let effects = effects_on(answers, spread.output);
+    let spread = answers.spreads.first()?;
+    let mut effects = answers.main_effects_on(spread.output);
+    effects.truncate(MAX_INPUTS);
     let all = effects.iter().map(|effect| {
         let [low, _] = extent(effect.means.iter().map(|mean| mean.1));
         Bar {
@@ -236,6 +228,7 @@ fn tornado(answers: &Answers) -> Option<Picture> {
 fn distributions(answers: &Answers) -> Option<Picture> {
     let several = answers.spreads.iter().filter(|spread| spread.tests > 1);
     let all = several.map(|spread| Distribution {
+        output: spread.output,
         title: spread.name(),
         unit: superscript(spread.unit),
         sorted: spread.sorted.clone(),
@@ -260,19 +253,24 @@ fn distributions(answers: &Answers) -> Option<Picture> {
 }
 
 fn main_effects(answers: &Answers) -> Option<Picture> {
-    let spread = answers
-        .spreads
-        .first()
-        .filter(|_| !answers.is_sequential())?;
-    let effects = effects_on(answers, spread.output).into_iter();
+    let spread = answers.spreads.first()?;
+    let effects = answers.main_effects_on(spread.output);
+    let is_emulated = effects.iter().any(|effect| effect.is_emulated);
     let all: Vec<Plot> = effects
+        .into_iter()
+        .take(MAX_INPUTS)
         .map(|effect| Plot {
             line: effect.means.clone(),
             ..plot(spread, effect)
         })
         .collect();
+    let of = if is_emulated {
+        "the emulator's predictions of "
+    } else {
+        ""
+    };
     let caption = format!(
-        "Mean of {} over each input, in slices of a tenth of the tests or at each level.",
+        "Mean of {of}{} over each input, in slices of a tenth of its values or at each level.",
         spread.title
     );
     if all.is_empty() {
@@ -284,7 +282,7 @@ fn main_effects(answers: &Answers) -> Option<Picture> {
 
 fn scatter(answers: &Answers) -> Option<Picture> {
     let first = answers.spreads.first()?;
-    let columns = effects_on(answers, first.output);
+    let columns = answers.effects_on(first.output);
     let columns = &columns[..columns.len().min(MAX_COLUMNS)];
     let mut all = Vec::new();
     // One of each output: the effects are those of all designs.

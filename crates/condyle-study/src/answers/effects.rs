@@ -6,7 +6,7 @@ use condyle_case::study::Design;
 use serde::Serialize;
 
 use crate::{
-    answers::data::Data,
+    answers::{data::Data, emulated::Emulated},
     design::Walk,
     plan::designs,
     random::Random,
@@ -36,14 +36,19 @@ pub(crate) struct Effect {
     pub words: Vec<String>,
     /// Largest less smallest mean of the output, in its unit.
     pub span: f64,
-    /// The 95th percentile of the span of an inactive input; none if the tests are not a random sample.
+    /// The 95th percentile of the span of an inactive input; none if the tests are not a random sample, or the means are
+    /// those of an emulator.
     pub span_by_chance: Option<f64>,
+    /// True if the means are those of the predictions of an emulator.
+    pub is_emulated: bool,
     /// Values of the input and the output in a subset of the tests of each design, for a picture.
     #[serde(skip)]
     pub points: Vec<Vec<(f64, f64)>>,
 }
 
-pub(crate) fn effects(data: &Data<'_>) -> Vec<Effect> {
+/// Returns the effects of every input on every output: from its emulators, of which the tests in a slice are only a noisy
+/// sample, where answers are computed from these.
+pub(crate) fn effects(data: &Data<'_>, emulated: &[Emulated]) -> Vec<Effect> {
     let inputs = data.plan.study().inputs.iter().zip(&data.inputs);
     let mut effects = Vec::new();
     for (place, (input, column)) in inputs.enumerate() {
@@ -57,10 +62,14 @@ pub(crate) fn effects(data: &Data<'_>) -> Vec<Effect> {
             let points = points.collect();
             let mut pairs = pairs(data, place, values, 0..count);
             let correlation = rank_correlation(&pairs);
+            let predicted = predicted_pairs(emulated, output.key, count, place);
+            let is_emulated = predicted.is_some();
+            pairs = predicted.unwrap_or(pairs);
             // Equal inputs are sorted by the output, so that sums do not depend on the order of the tests.
             pairs.sort_by(|one, other| one.0.total_cmp(&other.0).then(one.1.total_cmp(&other.1)));
             let slices = slices(&pairs);
             let means: Vec<(f64, f64)> = slices.iter().map(|slice| means(slice)).collect();
+            let is_counted = data.is_sample() && !is_emulated;
             effects.push(Effect {
                 output: output.key,
                 input: input.key.clone(),
@@ -68,7 +77,8 @@ pub(crate) fn effects(data: &Data<'_>) -> Vec<Effect> {
                 rank_correlation: correlation.filter(|_| column.words.is_empty()),
                 words: column.words.clone(),
                 span: span(means.iter().map(|mean| mean.1)),
-                span_by_chance: data.is_sample().then(|| span_by_chance(&slices)),
+                span_by_chance: is_counted.then(|| span_by_chance(&slices)),
+                is_emulated,
                 points,
                 means,
             });
@@ -99,6 +109,24 @@ fn pairs(data: &Data<'_>, place: usize, output: &[f64], designs: Range<usize>) -
     pairs
         .filter(|(x, y)| x.is_finite() && y.is_finite())
         .collect()
+}
+
+/// Returns values of an input and the mean of the predictions at each, of several designs their mean; none unless answers are
+/// computed from the emulators of all designs.
+fn predicted_pairs(
+    emulated: &[Emulated],
+    output: &str,
+    designs: usize,
+    place: usize,
+) -> Option<Vec<(f64, f64)>> {
+    let own = emulated.iter().filter(|one| one.output == output);
+    let own: Option<Vec<&Vec<(f64, f64)>>> = own.map(|one| one.main_effects.get(place)).collect();
+    let own = own.filter(|own| own.len() == designs)?;
+    let at = |node: usize| {
+        let effects: Vec<f64> = own.iter().map(|effect| effect[node].1).collect();
+        (own[0][node].0, mean(&effects))
+    };
+    Some((0..own[0].len()).map(at).collect())
 }
 
 /// Returns the pairs at each value if there are few, otherwise in slices; `sorted` by the input.
@@ -213,6 +241,7 @@ mod tests {
     use condyle_results::catalogue::MASS_LOSS_MG;
 
     use crate::{
+        answers::emulated::emulated,
         design::{Saltelli, morris_places},
         distribution::Place,
         plan::Plan,
@@ -272,25 +301,25 @@ mod tests {
         Plan::read(&folder.path().join("study.toml")).unwrap()
     }
 
-    /// Returns the effects where the output of a test is `of` its row and its inputs, each a share of its range.
-    fn effects_of(
-        plan: &Plan,
+    /// Returns tests whose output is `of` their row and their inputs.
+    fn data<'a>(
+        plan: &'a Plan,
         shares: &dyn Fn(u64) -> Vec<f64>,
         of: &dyn Fn(u64, &[f64]) -> f64,
-    ) -> Vec<Effect> {
+    ) -> Data<'a> {
         let shares: Vec<Vec<f64>> = (0..plan.tests()).map(shares).collect();
         let column = |place: usize| Column {
             values: shares.iter().map(|shares| shares[place]).collect(),
             words: Vec::new(),
         };
         let values = (0..).zip(&shares).map(|(row, shares)| of(row, shares));
-        effects(&Data {
+        Data {
             plan,
             inputs: (0..KEYS.len()).map(column).collect(),
             outputs: vec![(&MASS_LOSS_MG, values.collect())],
             within: vec![true; shares.len()],
             kept: vec![true; shares.len()],
-        })
+        }
     }
 
     /// Returns how many of the effects exceed what an input without influence spans by chance.
@@ -311,7 +340,7 @@ mod tests {
             };
             places.map(share).collect()
         };
-        let found = effects_of(&plan, &shares, &|_, shares| shares[0]);
+        let found = effects(&data(&plan, &shares, &|_, shares| shares[0]), &[]);
         assert!(found[0].span > 2.0 * found[0].span_by_chance.unwrap());
         // One in twenty is expected; if dependent rows are shuffled too, nearly all exceed it.
         assert!(beyond_chance(&found[1..]) <= 2);
@@ -326,12 +355,41 @@ mod tests {
             let mut numbers = Random::stream(5, row / 2);
             (0..KEYS.len()).map(|_| numbers.share()).collect()
         };
-        let found = effects_of(&plan, &shares, &|row, shares| {
-            shares[0] + 10.0 * (row % 2) as f64
-        });
+        let of = |row, shares: &[f64]| shares[0] + 10.0 * (row % 2) as f64;
+        let found = effects(&data(&plan, &shares, &of), &[]);
         assert!(found[0].span > 2.0 * found[0].span_by_chance.unwrap());
         assert!(beyond_chance(&found[1..]) <= 2);
         assert_eq!(found[0].points.iter().map(Vec::len).sum::<usize>(), 400);
+    }
+
+    /// A tenth of 60 tests differs by chance by more than half of the effect of the second input.
+    #[test]
+    fn verify_effects_by_an_emulator_are_those_of_the_function() {
+        let design = "[design]\nsize = 60\n[[alternative]]\nname = \"a\"\nset = [\"insert.edge_mm=2\"]\n\
+                      [[alternative]]\nname = \"b\"\nset = [\"insert.edge_mm=3\"]";
+        let plan = plan(design);
+        let values = |row| {
+            let mut numbers = Random::stream(5, row / 2);
+            let low = KEYS.iter().map(|(_, low)| low);
+            low.map(|low| low * (1.0 + 0.01 * numbers.share()))
+                .collect()
+        };
+        let of = |row, values: &[f64]| {
+            let share = |place: usize| 100.0 * (values[place] / KEYS[place].1 - 1.0);
+            (3.0 * share(0) + 0.5 * share(1)) * (1.0 + (row % 2) as f64)
+        };
+        let data = data(&plan, &values, &of);
+        let found = effects(&data, &emulated(&data).0);
+        // Over the means of tenths, of both designs, of which the second has twice the effects.
+        for (effect, exact) in found.iter().zip([4.05, 0.675, 0.0, 0.0]) {
+            assert!(effect.is_emulated && effect.span_by_chance.is_none());
+            assert!(
+                (effect.span - exact).abs() < 0.05,
+                "{}: {}",
+                effect.input,
+                effect.span
+            );
+        }
     }
 
     #[test]

@@ -11,6 +11,7 @@ use crate::{
         data::{Data, PERCENTILES},
         indices::Indices,
     },
+    distribution::number_at_share,
     emulator::{Emulator, Model},
     plan::designs,
     population::{Axis, Population},
@@ -52,6 +53,10 @@ pub(crate) struct Emulated {
     /// The output of each test, and its prediction from all others.
     #[serde(skip)]
     pub tested_and_predicted: Vec<(f64, f64)>,
+    /// For each input, its values and the mean of the predictions at each over the distributions of all others; none if the
+    /// emulator is not used, or the inputs are correlated.
+    #[serde(skip)]
+    pub main_effects: Vec<Vec<(f64, f64)>>,
     #[serde(skip)]
     pub exported: Exported,
 }
@@ -171,7 +176,7 @@ fn emulated_output(
         let chance = |bound| Chance::new(bound, &population, emulated.failed);
         emulated.beyond = own.map(chance).collect();
         if study.correlations.is_empty() {
-            indices = of_output(axes, &emulator, &emulated);
+            (indices, emulated.main_effects) = of_output(axes, &emulator, &emulated);
         }
     }
     Some((emulated, indices))
@@ -239,6 +244,7 @@ impl Emulated {
             distribution: None,
             beyond: Vec::new(),
             tested_and_predicted,
+            main_effects: Vec::new(),
             exported,
         }
     }
@@ -256,15 +262,23 @@ impl Emulated {
     }
 }
 
-/// Returns the indices of the emulator's mean. Their intervals are 1.96 standard errors by the jackknife over groups of
+/// Returns the indices and the main effects of the emulator's mean. The intervals of the indices are 1.96 standard errors by the jackknife over groups of
 /// tests (Efron 1982) and the part of the variance that the emulator does not explain, to either side.
-fn of_output(axes: &[Axis<'_>], emulator: &Emulator, emulated: &Emulated) -> Vec<Indices> {
+fn of_output(
+    axes: &[Axis<'_>],
+    emulator: &Emulator,
+    emulated: &Emulated,
+) -> (Vec<Indices>, Vec<Vec<(f64, f64)>>) {
     let share = |node: usize| (node as f64 + 0.5) / NODES as f64;
     let nodes = |axis: &Axis<'_>| (0..NODES).map(|node| axis.at_share(share(node))).collect();
     let nodes: Vec<Vec<f64>> = axes.iter().map(nodes).collect();
-    let all = emulator.indices(&nodes);
+    let (all, effects) = emulator.indices(&nodes);
+    let effects = axes.iter().zip(effects).map(|(axis, effect)| {
+        let values = (0..NODES).map(|node| number_at_share(axis.input, share(node)));
+        values.zip(effect).collect()
+    });
     let groups = (0..GROUPS).filter_map(|group| emulator.without(|test| test % GROUPS == group));
-    let without: Vec<Vec<[f64; 2]>> = groups.map(|one| one.indices(&nodes)).collect();
+    let without: Vec<Vec<[f64; 2]>> = groups.map(|one| one.indices(&nodes).0).collect();
     let index = |(place, axis): (usize, &Axis<'_>)| {
         let interval = |kind: usize| {
             let own: Vec<f64> = without.iter().map(|one| one[place][kind]).collect();
@@ -283,7 +297,8 @@ fn of_output(axes: &[Axis<'_>], emulator: &Emulator, emulated: &Emulated) -> Vec
             bases: emulated.tests,
         }
     };
-    axes.iter().enumerate().map(index).collect()
+    let indices = axes.iter().enumerate().map(index).collect();
+    (indices, effects.collect())
 }
 
 fn jackknife_error(without: &[f64]) -> f64 {
@@ -345,7 +360,7 @@ mod tests {
             if emulated.q2 < MIN_Q2 {
                 continue;
             }
-            for (found, exact) in of_output(&axes, &emulator, &emulated).iter().zip(exact) {
+            for (found, exact) in of_output(&axes, &emulator, &emulated).0.iter().zip(exact) {
                 let intervals = [found.first_interval, found.total_interval];
                 let both = intervals.iter().zip(exact);
                 inside.extend(

@@ -106,7 +106,7 @@ impl Answers {
             failed: counted("failed")?,
             doubtful: counted("done")?,
             spreads: data.spreads(),
-            effects: effects::effects(&data),
+            effects: effects::effects(&data, &emulated),
             elementary: effects::elementary_effects(&data),
             // Counted indices need no emulator.
             indices: if counted_indices.is_empty() {
@@ -123,15 +123,19 @@ impl Answers {
         })
     }
 
-    /// Returns whether tests were chosen by those before them, so that means over some of them are no effects of inputs.
-    pub(crate) fn is_sequential(&self) -> bool {
-        ["optimise", "adaptive"].contains(&self.design)
-    }
-
     /// Effects of inputs on an output, the largest first.
     pub(crate) fn effects_on(&self, output: &str) -> Vec<&Effect> {
         let own = self.effects.iter().filter(|one| one.output == output);
         largest_first(own, |one| one.span)
+    }
+
+    /// Effects of inputs on an output that are means over an input, the largest first; none where tests were chosen by those
+    /// before them, unless the means are those of an emulator.
+    pub(crate) fn main_effects_on(&self, output: &str) -> Vec<&Effect> {
+        let is_sequential = ["optimise", "adaptive"].contains(&self.design);
+        let mut own = self.effects_on(output);
+        own.retain(|effect| effect.is_emulated || !is_sequential);
+        own
     }
 
     /// Elementary effects on the first output, the largest first.
@@ -420,11 +424,11 @@ impl Answers {
     /// Returns the table of effects, for designs without a specific table.
     fn table_of_effects(&self) -> Vec<Vec<String>> {
         let is_counted = self.design == "saltelli";
-        if is_counted || !self.elementary.is_empty() || self.is_sequential() {
+        if is_counted || !self.elementary.is_empty() {
             return Vec::new();
         }
         let output = self.effects.first().map_or("", |one| one.output);
-        let all = self.effects_on(output);
+        let all = self.main_effects_on(output);
         let unit = split_unit(output).1.unwrap_or_default();
         let moves = format!("moves {} by, {unit}", label(output));
         let dash = || "-".to_owned();

@@ -135,8 +135,12 @@ impl Emulator {
     }
 
     fn average(&self, with: &DVector<f64>) -> f64 {
-        let process = &self.process;
-        self.centre + self.scale * (process.mean + with.dot(&process.weights))
+        self.in_unit(with.dot(&self.process.weights))
+    }
+
+    /// Returns the output at a deviation from the mean of the process.
+    fn in_unit(&self, deviation: f64) -> f64 {
+        self.centre + self.scale * (self.process.mean + deviation)
     }
 
     /// Returns the correlation of a place along some axes with every test.
@@ -345,21 +349,25 @@ impl Emulator {
             .collect()
     }
 
-    /// Returns the first and the total Sobol index of every axis for the mean of the process, with `nodes` equally likely
-    /// places along each. The mean is a sum over the tests of products over the axes, w_i c_1(x_1) c_2(x_2) ..., so that
-    /// all variances are products of means over one axis (Oakley and O'Hagan 2004).
-    pub fn indices(&self, nodes: &[Vec<f64>]) -> Vec<[f64; 2]> {
-        let axes = nodes.iter().enumerate().map(|(axis, nodes)| {
+    /// Returns the first and the total Sobol index of every axis for the mean of the process, and its main effects: the mean of
+    /// the output at each node of an axis over all nodes of the others, in the unit of the output.
+    ///
+    /// `nodes` are equally likely places along each axis. The mean is a sum over the tests of products over the axes, w_i
+    /// c_1(x_1) c_2(x_2) ..., so that all variances are products of means over one axis (Oakley and O'Hagan 2004).
+    pub fn indices(&self, nodes: &[Vec<f64>]) -> (Vec<[f64; 2]>, Vec<Vec<f64>>) {
+        let with_nodes = nodes.iter().enumerate().map(|(axis, nodes)| {
             let with_node = |test: usize, node: usize| {
                 let place = [self.points[test][axis]];
                 correlation(&[self.lengths[axis]], &place, &[nodes[node]])
             };
-            let with_nodes = DMatrix::from_fn(self.points.len(), nodes.len(), with_node);
-            let means = with_nodes.column_mean();
-            let products = &with_nodes * with_nodes.transpose() / nodes.len() as f64;
-            (means, products)
+            DMatrix::from_fn(self.points.len(), nodes.len(), with_node)
         });
-        let (means, products): (Vec<DVector<f64>>, Vec<DMatrix<f64>>) = axes.unzip();
+        let with_nodes: Vec<DMatrix<f64>> = with_nodes.collect();
+        let means: Vec<DVector<f64>> = with_nodes.iter().map(DMatrix::column_mean).collect();
+        let products = with_nodes.iter();
+        let products: Vec<DMatrix<f64>> = products
+            .map(|with| with * with.transpose() / with.ncols() as f64)
+            .collect();
         let weights = &self.process.weights;
         let others = |axis: usize| (0..nodes.len()).filter(move |other| *other != axis);
         let mean = means
@@ -371,9 +379,11 @@ impl Emulator {
         });
         let square = mean * mean;
         let variance = weights.dot(&(all * weights)) - square;
-        let index = |axis: usize| {
+        let of_axis = |axis: usize| {
             let alone =
                 others(axis).fold(weights.clone(), |all, one| all.component_mul(&means[one]));
+            let effect = with_nodes[axis].tr_mul(&alone);
+            let effect = effect.iter().map(|one| self.in_unit(*one)).collect();
             let alone = alone.dot(&(&products[axis] * &alone)) - square;
             let rest = weights.component_mul(&means[axis]);
             let count = self.points.len();
@@ -382,9 +392,9 @@ impl Emulator {
                     all.component_mul(&products[one])
                 });
             let of_rest = rest.dot(&(of_rest * &rest)) - square;
-            [alone / variance, 1.0 - of_rest / variance]
+            ([alone / variance, 1.0 - of_rest / variance], effect)
         };
-        (0..nodes.len()).map(index).collect()
+        (0..nodes.len()).map(of_axis).unzip()
     }
 
     /// Returns Q2, the share of the variance of the values that predictions from the other tests explain; 1 for constant
@@ -627,13 +637,29 @@ pub(crate) mod tests {
             let nodes: Vec<f64> = (0..128)
                 .map(|node| (f64::from(node) + 0.5) / 128.0)
                 .collect();
-            let found = emulator.indices(&vec![nodes; exact.len()]);
+            let (found, _) = emulator.indices(&vec![nodes; exact.len()]);
             println!("{found:.4?}");
             for (found, exact) in found.iter().zip(&exact) {
                 for (found, exact) in found.iter().zip(exact) {
                     assert!((found - exact).abs() < within, "{found} {exact}");
                 }
             }
+        }
+    }
+
+    #[test]
+    fn verify_main_effects_are_means_of_predictions() {
+        let nodes: Vec<f64> = (0..8).map(|node| (f64::from(node) + 0.5) / 8.0).collect();
+        let tests = points(60, 3, 1);
+        let emulator = Emulator::fit(&tests, &values(&tests, ishigami)).unwrap();
+        let (_, effects) = emulator.indices(&vec![nodes.clone(); 3]);
+        for (node, at) in nodes.iter().enumerate() {
+            let pairs = nodes
+                .iter()
+                .flat_map(|one| nodes.iter().map(move |other| (one, other)));
+            let predicted = pairs.map(|(one, other)| emulator.mean(&[*one, *at, *other]));
+            let predicted = mean(&predicted.collect::<Vec<_>>());
+            assert!((effects[1][node] - predicted).abs() < 1e-9, "{predicted}");
         }
     }
 
