@@ -20,7 +20,7 @@ use crate::{
         Converge, RunRow, Sensitivity, Study, StudyCommand, StudyExport, StudyMerge, Uncertainty,
     },
     output::{self, Done, Failure, Unwritten, note},
-    progress::{RunProgress, StudyProgress},
+    progress::{self, RunProgress, StudyProgress},
 };
 
 pub fn study(arguments: &Study) -> Done {
@@ -201,8 +201,11 @@ fn run_row(arguments: &RunRow) -> Done {
         let mut progress = RunProgress::new();
         run_case(&case, &options, &mut |event| progress.show(&event))?
     };
-    if let Outcome::Interrupted(_) = outcome {
-        return Ok(ExitCode::from(output::INTERRUPTED));
+    if let Outcome::Interrupted(reached) = outcome {
+        return Err(Failure::interrupted(format_args!(
+            "interrupted: {}; run the row again into another folder, with --out",
+            progress::in_words(&reached)
+        )));
     }
     let (folder, page) = (options.out.display(), options.out.join("report.html"));
     let text = format!("results in {folder}; open {}\n", page.display());

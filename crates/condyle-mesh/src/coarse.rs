@@ -2,7 +2,11 @@
 
 use std::{cmp::Reverse, collections::BinaryHeap};
 
-use crate::{CurvedMesh, Vec3, triangle_mesh::TriangleMesh};
+use crate::{
+    CurvedMesh, Vec3,
+    repair::{by_edge, drop_unused, edge_uses},
+    triangle_mesh::TriangleMesh,
+};
 
 /// Deviation of a body that is simplified for a picture, mm: less than a pixel of a picture that shows the whole body.
 pub const PICTURE_DEVIATION_MM: f64 = 0.1;
@@ -27,28 +31,6 @@ pub fn coarser(body: &TriangleMesh, deviation_mm: f64) -> TriangleMesh {
     collapses.into_mesh()
 }
 
-/// A vertex in the queue: that of least cost leaves first.
-#[derive(Clone, Copy, PartialEq)]
-struct Candidate {
-    cost: f64,
-    vertex: u32,
-}
-
-impl Eq for Candidate {}
-
-impl PartialOrd for Candidate {
-    fn partial_cmp(&self, other: &Self) -> Option<std::cmp::Ordering> {
-        Some(self.cmp(other))
-    }
-}
-
-impl Ord for Candidate {
-    fn cmp(&self, other: &Self) -> std::cmp::Ordering {
-        let costs = self.cost.total_cmp(&other.cost);
-        costs.then(self.vertex.cmp(&other.vertex))
-    }
-}
-
 struct Collapses<'a> {
     body: &'a TriangleMesh,
     /// The triangles of the body around each vertex.
@@ -65,7 +47,8 @@ struct Collapses<'a> {
     removed: Vec<Vec<u32>>,
     /// The number of changes around each vertex: candidates with a smaller one are void.
     stamps: Vec<u32>,
-    queue: BinaryHeap<(Reverse<Candidate>, u32)>,
+    /// The bits of the cost, which increase with it as it is never negative, the vertex and its stamp; the least cost first.
+    queue: BinaryHeap<Reverse<(u64, u32, u32)>>,
     deviation2: f64,
 }
 
@@ -100,17 +83,17 @@ impl<'a> Collapses<'a> {
         if !self.is_fixed[vertex as usize]
             && let Some(cost) = self.least_cost(vertex)
         {
-            let candidate = Reverse(Candidate { cost, vertex });
-            self.queue.push((candidate, self.stamps[vertex as usize]));
+            let stamp = self.stamps[vertex as usize];
+            self.queue.push(Reverse((cost.to_bits(), vertex, stamp)));
         }
     }
 
     /// Takes the vertex of least cost from the queue; those whose surroundings have changed since are dropped.
     fn cheapest(&mut self) -> Option<u32> {
         loop {
-            let (Reverse(next), stamp) = self.queue.pop()?;
-            if stamp == self.stamps[next.vertex as usize] {
-                return Some(next.vertex);
+            let Reverse((_, vertex, stamp)) = self.queue.pop()?;
+            if stamp == self.stamps[vertex as usize] {
+                return Some(vertex);
             }
         }
     }
@@ -281,29 +264,18 @@ impl<'a> Collapses<'a> {
     }
 
     fn into_mesh(self) -> TriangleMesh {
-        let is_used: Vec<bool> = self
-            .around
-            .iter()
-            .map(|around| !around.is_empty())
-            .collect();
-        let mut place = vec![0; is_used.len()];
-        let mut vertices = Vec::new();
-        for (vertex, _) in is_used.iter().enumerate().filter(|(_, is_used)| **is_used) {
-            place[vertex] = vertices.len() as u32;
-            vertices.push(self.body.vertices[vertex]);
-        }
-        let numbers = 0..self.triangles.len() as u32;
         let is_there = |triangle: &u32| {
             let [a, ..] = self.triangles[*triangle as usize];
             self.around[a as usize].contains(triangle)
         };
-        let triangles = numbers
-            .filter(is_there)
-            .map(|triangle| self.triangles[triangle as usize].map(|vertex| place[vertex as usize]));
-        TriangleMesh {
+        let triangles = (0..self.triangles.len() as u32).filter(is_there);
+        let triangles = triangles.map(|triangle| self.triangles[triangle as usize]);
+        let mut mesh = TriangleMesh {
             triangles: triangles.collect(),
-            vertices,
-        }
+            vertices: self.body.vertices.clone(),
+        };
+        drop_unused(&mut mesh);
+        mesh
     }
 }
 
@@ -315,20 +287,11 @@ fn plane([a, b, c]: &[Vec3; 3]) -> (Vec3, f64) {
 
 /// Returns true for each vertex on an edge that has other than two triangles.
 fn border(body: &TriangleMesh) -> Vec<bool> {
-    let edges = body
-        .triangles
-        .iter()
-        .flat_map(|&[a, b, c]| [(a, b), (b, c), (c, a)]);
-    let mut edges: Vec<_> = edges.map(|(a, b)| (a.min(b), a.max(b))).collect();
-    edges.sort_unstable();
     let mut border = vec![false; body.vertices.len()];
-    for same in edges
-        .chunk_by(|one, next| one == next)
-        .filter(|same| same.len() != 2)
-    {
-        let (a, b) = same[0];
-        border[a as usize] = true;
-        border[b as usize] = true;
+    for same in by_edge(&edge_uses(body)).filter(|same| same.len() != 2) {
+        for end in same[0].ends {
+            border[end as usize] = true;
+        }
     }
     border
 }

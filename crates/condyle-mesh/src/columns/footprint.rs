@@ -132,19 +132,9 @@ fn without_teeth(samples: &ColumnGrid, holds: &[bool]) -> Vec<bool> {
             continue;
         }
         // The connected samples outside the body to which this one belongs.
-        let (mut tooth, mut touches_body) = (vec![first], false);
-        let mut is_found = vec![false; holds.len()];
-        is_found[first] = true;
-        let mut at = 0;
-        while let Some(&n) = tooth.get(at) {
-            at += 1;
-            for other in samples.around(n).filter(|&other| kept[other]) {
-                touches_body |= body[other];
-                if !body[other] && !std::mem::replace(&mut is_found[other], true) {
-                    tooth.push(other);
-                }
-            }
-        }
+        let tooth = samples.connected(vec![first], |other| kept[other] && !body[other]);
+        let is_on_body = |&n: &usize| samples.around(n).any(|other| kept[other] && body[other]);
+        let touches_body = tooth.iter().any(is_on_body);
         // A piece that is not connected with the rest is not a tooth.
         if touches_body {
             tooth.iter().for_each(|&n| kept[n] = false);

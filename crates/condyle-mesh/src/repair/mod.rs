@@ -31,3 +31,4 @@ pub use edges::{EdgeReport, edge_report};
 pub(crate) use edges::{EdgeUse, by_edge, edge_uses};
 pub use parts::{LeftOut, Parts, WhyLeftOut};
 pub use touching::Touching;
+pub(crate) use weld::drop_unused;

@@ -43,7 +43,8 @@ fn rename(mesh: &mut TriangleMesh, replacement: &[u32]) {
     }
 }
 
-pub(super) fn drop_unused(mesh: &mut TriangleMesh) {
+/// Removes the vertices of no triangle; the others keep their order.
+pub(crate) fn drop_unused(mesh: &mut TriangleMesh) {
     let mut new_number = vec![u32::MAX; mesh.vertices.len()];
     for &vertex in mesh.triangles.iter().flatten() {
         new_number[vertex as usize] = 0;
