@@ -72,7 +72,8 @@ pub fn sensitivity(
         .collect();
     let plan = Plan::of(study)?;
     let found = run_in_memory(&plan, &bench, threads, listener)?;
-    let as_given = compared()
+    let outputs = compared(|output| as_given.get(output).is_some());
+    let as_given = outputs
         .map(|output| (output.key, as_given[output]))
         .collect();
     let changed = changes.into_iter().zip(found);
@@ -139,10 +140,9 @@ fn moved(case: &Case, keys: &[&str], is_factor: bool, by: f64) -> (String, Vec<A
     (words, set.collect())
 }
 
-fn results(values: &[f64]) -> Results {
-    let all = Outputs::default();
-    let outputs = compared().map(|output| (output.key, all.value(values, output)));
-    outputs.collect()
+/// Returns the outputs among some results.
+fn outputs(results: &Results) -> impl Iterator<Item = &'static Scalar> {
+    compared(|output| results.contains_key(output.key))
 }
 
 impl Changed {
@@ -154,11 +154,18 @@ impl Changed {
         as_given: &Results,
     ) -> Self {
         let (found, not_run) = match found {
-            Ok(outputs) => (Some(results(&outputs.values)), None),
+            Ok(test) => {
+                let all = Outputs::default();
+                let value = |output: &'static Scalar| (output.key, all.value(&test.values, output));
+                (
+                    Some(outputs(as_given).map(value).collect::<Results>()),
+                    None,
+                )
+            }
             Err(reason) => (None, Some(reason)),
         };
         let above_percent = found.as_ref().map(|found| {
-            let above = compared().map(|output| {
+            let above = outputs(as_given).map(|output| {
                 let (value, base) = (found[output.key], as_given[output.key]);
                 (base != 0.0).then(|| 100.0 * (value / base - 1.0))
             });
@@ -180,17 +187,18 @@ impl Sensitivity {
     pub fn markdown(&self) -> String {
         let is_without_effect = |one: &&Changed| one.found.as_ref() == Some(&self.as_given);
         let name = |one: &Changed| format!("{}: {}", one.assumption, one.change);
-        let titles: Vec<String> = compared().map(Scalar::title).collect();
+        let outputs = || outputs(&self.as_given);
+        let titles: Vec<String> = outputs().map(Scalar::title).collect();
         let mut head = vec!["assumption"];
         head.extend(titles.iter().map(String::as_str));
         let mut as_given = vec!["as given".to_owned()];
-        as_given.extend(compared().map(|output| output.text(self.as_given[output.key])));
+        as_given.extend(outputs().map(|output| output.text(self.as_given[output.key])));
         let shown = self.changed.iter().filter(|one| !is_without_effect(one));
         let shown: Vec<_> = shown
             .filter_map(|one| Some((one, one.found.as_ref()?, one.above_percent.as_ref()?)))
             .collect();
         let mut rows = table(&head, &shown, |(one, found, above)| {
-            let cells = compared().zip(above.iter()).map(|(output, above)| {
+            let cells = outputs().zip(above.iter()).map(|(output, above)| {
                 let value = output.text(found[output.key]);
                 above.map_or(value.clone(), |above| format!("{value} ({above:+.1} %)"))
             });

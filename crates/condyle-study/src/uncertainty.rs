@@ -143,8 +143,8 @@ struct Spread {
     laws: Option<[f64; 2]>,
 }
 
-/// Returns the results that sensitivity and uncertainty studies report.
-pub(crate) fn compared() -> impl Iterator<Item = &'static Scalar> {
+/// Returns the results that sensitivity and uncertainty studies report, of those that the runs have: a hip has no AP range.
+pub(crate) fn compared(has: impl Fn(&Scalar) -> bool) -> impl Iterator<Item = &'static Scalar> {
     const KEYS: [&str; 5] = [
         "mass_loss_mg",
         "max_depth_mm",
@@ -152,7 +152,8 @@ pub(crate) fn compared() -> impl Iterator<Item = &'static Scalar> {
         "ap_range_mm",
         "ie_range_deg",
     ];
-    KEYS.into_iter().filter_map(catalogue::scalar)
+    let all = KEYS.into_iter().filter_map(catalogue::scalar);
+    all.filter(move |output| has(output))
 }
 
 /// Runs the case at `case_path` without changes, with its estimate of the error, and again in `size` tests, at least 2, with
@@ -174,9 +175,12 @@ pub fn uncertainty(
     let (mut kept, mut left_out) = (Vec::new(), Vec::new());
     for scatter in scatters() {
         let input = scatter.input(&study.case);
-        let set = input.assignments(Path::new(""), &Level::Number(0.0));
-        // A key with a value may still belong to another machine or law than the case's.
-        if set.is_empty() || study.changed_case(&set).is_err() {
+        // A key with a value may still belong to another machine, shape or law than the case's, which refuses any other value.
+        let is_refused = |deviations: &f64| {
+            let set = input.assignments(Path::new(""), &Level::Number(*deviations));
+            set.is_empty() || study.changed_case(&set).is_err()
+        };
+        if [-1.0, 1.0].iter().all(is_refused) {
             left_out.push(scatter.name);
         } else {
             study.inputs.push(input);
@@ -185,6 +189,14 @@ pub fn uncertainty(
     }
     let plan = Plan::of(study)?;
     let found = run_in_memory(&plan, &TestBench::default(), threads, listener)?;
+    let done = found.iter().filter(|found| found.is_ok()).count();
+    let failed = found.iter().find_map(|found| found.as_ref().err());
+    if let Some(reason) = failed.filter(|_| done < 2) {
+        let problem = format!(
+            "{done} of {size} runs with scattered inputs could be solved, too few for a scatter; the first other one ended with: {reason}"
+        );
+        return Err(StudyError::Plan(problem));
+    }
     Ok(Uncertainty::new(
         &plan, &as_given, &kept, left_out, seed, &found,
     ))
@@ -228,6 +240,7 @@ impl Uncertainty {
                 .map(|(_, outputs)| plan.study().outputs.value(&outputs.values, output))
                 .collect()
         };
+        let compared = || compared(|output| as_given.get(output).is_some());
         let share = |(place, scatter): (usize, &Scatter)| {
             let deviations = done().map(|(test, _)| match test.values[place] {
                 Some(Level::Number(deviations)) => deviations,
@@ -275,7 +288,8 @@ impl Uncertainty {
             "95 % of runs",
             "wear laws",
         ];
-        let results: Vec<&Scalar> = compared().collect();
+        let results = compared(|output| self.numbers.contains_key(output.key));
+        let results: Vec<&Scalar> = results.collect();
         let numbers = table(&head, &results, |output| {
             let spread = &self.numbers[output.key];
             let shown = |value: f64| output.text(value);
@@ -361,7 +375,7 @@ impl Spread {
         let [low, high] = central_interval(values);
         Self {
             value: as_given[output],
-            discretisation: error.map(|error| error.of(output).in_unit.total),
+            discretisation: error.and_then(|error| Some(error.get(output)?.in_unit.total)),
             mean,
             standard_deviation,
             low,

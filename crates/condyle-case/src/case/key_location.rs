@@ -61,6 +61,7 @@ impl Case {
             }
             PlacementError::Unsteady { .. } => ("insert", &["edge_mm"]),
             PlacementError::TightLigament { .. } => ("machine.ligaments", &["slack_length_mm"]),
+            PlacementError::SprungLoad { .. } => ("machine", &["joints", "file", "preset"]),
             _ => START,
         };
         let mut errors: Vec<(KeyLocation, String)> = Vec::new();

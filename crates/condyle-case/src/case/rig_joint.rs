@@ -51,7 +51,7 @@ settings! {
         positive: Option<String> = None;
         /// Motion: a rotation or a translation.
         kind: JointKind;
-        /// Direction of its axis in the bearing frame: the load acts along y, and the counterface lies above the bearing.
+        /// Direction of its axis in the bearing frame: the load acts along y, and the counterface lies above the bearing. z points to the right of a right joint, and to the left of a left one.
         axis: [f64; 3], in within(-1.0, 1.0);
         /// Body that it moves, which determines the sign.
         moves: MovedBody = MovedBody::Counterface;
@@ -89,7 +89,7 @@ settings! {
         spring_rest_deg: Option<f64> = None, in within(-180.0, 180.0);
         /// State while the machine settles at the start of the cycle, before the first cycle.
         settling: Settling = Settling::Driven;
-        /// True if it reads zero where the machine has settled; true for loaded translations if not given.
+        /// True for a translation that reads zero where the machine has settled; true for loaded ones if not given.
         zeroed: Option<bool> = None;
     }
 }
@@ -176,6 +176,70 @@ impl RigJointKeys {
                 message,
                 "use whole turns and drive = \"prescribed\"",
             );
+        }
+        faults.extend(self.faults_of_unused_keys(section));
+        faults
+    }
+
+    /// Returns the keys that have no effect with its drive, each with the reason.
+    fn faults_of_unused_keys(&self, section: &Section<'_>) -> Vec<(&'static str, Fault)> {
+        let mut faults = Vec::new();
+        let name = &self.name;
+        let mut add =
+            |key, message: String, advice: &str| faults.push((key, Fault::new(message, advice)));
+        let is_locked = self.drive == DriveWord::Locked;
+        let has_spring = section.value(self.spring_key()).is_some();
+        for (keys, has_effect, advice) in [
+            (
+                ["locked_at_deg", "locked_at_mm"],
+                is_locked,
+                "or write drive = \"locked\"",
+            ),
+            (
+                ["free_play_deg", "free_play_mm"],
+                has_spring,
+                "or give the joint a spring",
+            ),
+            (
+                ["spring_rest_deg", "spring_rest_mm"],
+                has_spring,
+                "or give the joint a spring",
+            ),
+            (
+                ["point_from", "point_from"],
+                self.point_mm.is_some(),
+                "or give `point_mm`",
+            ),
+        ] {
+            let is_given = |key: &&str| section.value(key).is_some();
+            if let Some(key) = keys.into_iter().find(is_given).filter(|_| !has_effect) {
+                let message = format!("`{key}` has no effect on the joint \"{name}\"");
+                add(key, message, &format!("remove it, {advice}"));
+            }
+        }
+        if self.zeroed == Some(true) {
+            let is_held = matches!(
+                self.settling,
+                Settling::Driven | Settling::DrivenWithoutLoad
+            );
+            let why = match self.kind {
+                JointKind::Rotation => Some("only translations can read zero there"),
+                // Zero would be both its reading there and the value of its drive.
+                _ if is_held && self.drive != DriveWord::Loaded => {
+                    Some("its drive holds it while the machine settles")
+                }
+                JointKind::Translation => None,
+            };
+            if let Some(why) = why {
+                let message = format!(
+                    "the joint \"{name}\" cannot read zero where the machine has settled: {why}"
+                );
+                add(
+                    "zeroed",
+                    message,
+                    "remove `zeroed`, or write settling = \"free\" for a translation",
+                );
+            }
         }
         faults
     }
@@ -321,7 +385,8 @@ impl RigJoint {
             && own.point_mm == others.point_mm
             && own.point_from == others.point_from
             && own.settling == others.settling
-            && self.is_zeroed() == other.is_zeroed()
+            // The first activity sets the zero of all, whatever drives a joint in the others.
+            && own.zeroed == others.zeroed
     }
 
     pub(super) fn is_zeroed(&self) -> bool {

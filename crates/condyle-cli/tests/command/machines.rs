@@ -97,3 +97,113 @@ fn a_machine_that_cannot_press_is_refused_with_its_line() {
     let said = bench.say(&["machine", "check", "rig.toml"]);
     said.assert_refused(2, &["one joint that presses", "rig.toml:"]);
 }
+
+/// A ball in a wide cup under 500 N, on a machine that tilts it before it moves aside and down.
+const TILTED: &str = "[femur]\nshape = \"sphere\"\nradius_mm = 14.0\nstart_mm = [4, 0]\n\
+                      [insert]\nshape = \"cup\"\nradius_mm = 18\nopening_deg = 60\ninclination_deg = 0\nedge_mm = 2\nlayers = 1\n\
+                      [contact]\nfriction = 0\n[march]\ncycles = 1000\nupdates = 1\n[time]\nincrements = 20\n\
+                      [accuracy]\nestimate = false\n[machine]\ntests = \"specimen\"\n\
+                      [[machine.joints]]\nname = \"tilt\"\nkind = \"rotation\"\naxis = [0, 0, 1]\ndrive = \"locked\"\n\
+                      locked_at_deg = 30\n\
+                      [[machine.joints]]\nname = \"anterior\"\nkind = \"translation\"\naxis = [1, 0, 0]\ndrive = \"loaded\"\n\
+                      [[machine.joints]]\nname = \"penetration\"\nkind = \"translation\"\naxis = [0, -1, 0]\ndrive = \"loaded\"\n";
+const LOAD: &str = "[machine.joints.load]\nknots_n = [[0, 500]]\n";
+
+#[test]
+fn verify_a_ball_stays_where_it_settled_on_a_machine_that_tilts_first() {
+    let bench = Bench::with_case(&format!("{TILTED}{LOAD}"));
+    let checked = bench.say(&["check", "case.toml"]).out;
+    // The load line is tilted: the contact carries 500 N cos 30 along y.
+    assert!(checked.contains(", 433 N"), "{checked}");
+    bench.run_into("out");
+    let rows = bench.table("out", "kinematics.csv");
+    for column in ["anterior_mm", "penetration_mm"] {
+        for reading in &rows[column] {
+            assert!(reading.abs() < 1e-3, "{column}: {reading}");
+        }
+    }
+    let doubts = bench.summary("out").plausibility;
+    assert!(
+        doubts.iter().all(|one| one.check != "load_not_reached"),
+        "{doubts:?}"
+    );
+}
+
+#[test]
+fn verify_a_spring_along_the_load_carries_its_part() {
+    let sprung = format!("{TILTED}spring_n_per_mm = [300, 300]\nspring_rest_mm = -0.6\n{LOAD}");
+    let bench = Bench::with_case(&sprung.replace("locked_at_deg = 30", "locked_at_deg = 0"));
+    bench.run_into("out");
+    let rows = bench.table("out", "kinematics.csv");
+    let (moved_mm, force_n) = (rows["penetration_mm"][0], rows["axial_force_n"][0]);
+    assert!(
+        (force_n + 300.0 * (moved_mm + 0.6) - 500.0).abs() < 1.0,
+        "{moved_mm} {force_n}"
+    );
+    let doubts = bench.summary("out").plausibility;
+    assert!(
+        doubts.iter().all(|one| one.check != "load_not_reached"),
+        "{doubts:?}"
+    );
+}
+
+#[test]
+fn a_load_that_only_a_spring_restrains_does_not_settle_and_the_reason_is_stated() {
+    let spun = "[[machine.joints]]\nname = \"spin\"\nkind = \"rotation\"\naxis = [0, 1, 0]\ndrive = \"loaded\"\n\
+                spring_nm_per_deg = [1, 1]\n[machine.joints.load]\nknots_nm = [[0, 5], [50, -5]]\n";
+    let bench = Bench::with_case(&format!("{TILTED}{LOAD}{spun}"));
+    let said = bench.say(&["run", "case.toml", "--out", "out"]);
+    assert!(
+        said.err
+            .contains("springs do not act while the machine settles"),
+        "{}",
+        said.err
+    );
+    let held = spun.replace("drive = ", "settling = \"held\"\ndrive = ");
+    bench.write("case.toml", &format!("{TILTED}{LOAD}{held}"));
+    bench.run_into("held");
+}
+
+#[test]
+fn a_specimen_that_rides_on_its_rim_is_doubtful_and_the_end_of_a_pin_is_not() {
+    let at_rim = |bench: &Bench, text: &str| {
+        bench.write("case.toml", text);
+        bench.run_into("out");
+        let doubts = bench.summary("out").plausibility;
+        std::fs::remove_dir_all(bench.path("out")).unwrap();
+        let at_rim = doubts.iter().map(|one| one.check.as_str());
+        at_rim.filter(|check| check.ends_with("at_rim")).count()
+    };
+    let bench = Bench::new();
+    let moved = "kind = \"translation\"\naxis = [1, 0, 0]\ndrive = \"prescribed\"\n[machine.joints.motion]\nknots_mm = [[0, 0], [50, 6]]\n";
+    let free = "kind = \"translation\"\naxis = [1, 0, 0]\ndrive = \"loaded\"\n";
+    let rides = TILTED
+        .replace(free, moved)
+        .replace("opening_deg = 60", "opening_deg = 30");
+    let rides = rides.replace("_deg = 30\n[[", "_deg = 0\n[[");
+    let rides = format!("{}{LOAD}", rides.replace("start_mm = [4, 0]\n", ""));
+    assert_eq!(at_rim(&bench, &rides), 2);
+    let pin = "[femur]\nshape = \"plane\"\n[insert]\nshape = \"pin\"\n[machine]\npreset = \"pin-on-disc\"\n\
+               [march]\nupdates = 1\n[time]\nincrements = 20\n[accuracy]\nestimate = false\n";
+    assert_eq!(at_rim(&bench, pin), 0);
+}
+
+#[test]
+fn uncertainty_and_sensitivity_of_a_hip_report_the_results_that_it_has() {
+    let bench = Bench::with_case(&ORBITAL.replace("updates = 24", "updates = 2"));
+    let said = bench.say(&["uncertainty", "case.toml", "--runs", "3", "--json"]);
+    assert_eq!(said.code, Some(0), "{}", said.err);
+    let found: serde_json::Value = serde_json::from_str(&said.out).unwrap();
+    assert_eq!(found["runs"], 3);
+    let numbers = found["numbers"].as_object().unwrap();
+    assert_eq!(
+        numbers.keys().collect::<Vec<_>>(),
+        ["mass_loss_mg", "max_depth_mm", "peak_pressure_mpa"]
+    );
+    let said = bench.say(&["sensitivity", "case.toml"]);
+    assert!(
+        said.code == Some(0) && !said.out.contains("NaN"),
+        "{}",
+        said.out
+    );
+}

@@ -42,6 +42,25 @@ fn checks(bench: &Bench, out: &str) -> Vec<String> {
 }
 
 #[test]
+fn units_of_loads_and_motions_are_doubtful() {
+    let bench = Bench::new();
+    let rows = [
+        ("flexion]\nknots_deg = [[0, 0], [50, 1.05]]", "motion_small"),
+        (
+            "axial_force]\nwaveform = \"iso-like\"\nscale = 0.001",
+            "load_small",
+        ),
+    ];
+    for (waveform, check) in rows {
+        bench.write("case.toml", &format!("{SMALL}[machine.{waveform}\n"));
+        let said = bench.say(&["run", "case.toml", "--out", "out", "--force"]);
+        assert_eq!(said.code, Some(0), "{}", said.err);
+        let found = checks(&bench, "out");
+        assert!(found.iter().any(|one| one == check), "{check}: {found:?}");
+    }
+}
+
+#[test]
 fn a_sound_run_is_not_accused() {
     let bench = Bench::with_case(&format!(
         "{SMALL}[machine.axial_force]\nknots_n = [[0, 400]]\n[accuracy]\nestimate = false\n"

@@ -34,6 +34,9 @@ const MIN_THICKNESS_MM: f64 = 6.0;
 /// Depth of the scar's edge, as a part of the deepest wear.
 const SCAR: f64 = 0.1;
 
+/// Part of a specimen's surface in contact in the first cycle from which it is the end of a pin.
+const WHOLE_END: f64 = 0.95;
+
 /// Largest part of the contact on the eminence between the dishes, %; our choice: sound knees have none.
 const MAX_ON_EMINENCE_PERCENT: f64 = 5.0;
 
@@ -43,9 +46,8 @@ fn tests(finished: &Finished<'_>) -> TestedJoint {
 }
 
 pub(crate) fn wear_at_rim(finished: &Finished<'_>) -> Option<PlausibilityWarning> {
-    // A worn cup embraces its head up to the rim, and a pin touches with its whole end: there only a high pressure at the rim
-    // is a reason to doubt.
-    if matches!(tests(finished), TestedJoint::Hip | TestedJoint::Specimen) {
+    // A worn cup embraces its head up to the rim: there only a high pressure at the rim is a reason to doubt.
+    if tests(finished) == TestedJoint::Hip || is_end_of_pin(finished) {
         return None;
     }
     let depth_mm = &finished.march.fields().wear_depth_mm;
@@ -68,10 +70,23 @@ pub(crate) fn wear_at_rim(finished: &Finished<'_>) -> Option<PlausibilityWarning
     (percent > MAX_AT_RIM_PERCENT).then(|| warning("wear_at_rim", value, message, advice))
 }
 
+/// Returns whether the surface is the end of a pin, which is pressed and worn up to its rim.
+fn is_end_of_pin(finished: &Finished<'_>) -> bool {
+    let pressures_mpa = &finished.march.state().first_pressure_mpa;
+    let shares = finished.surface.shares.iter().zip(pressures_mpa);
+    let (mut whole_mm2, mut pressed_mm2) = (0.0, 0.0);
+    for (share, pressure_mpa) in shares {
+        whole_mm2 += share.area_mm2;
+        if *pressure_mpa > 0.0 {
+            pressed_mm2 += share.area_mm2;
+        }
+    }
+    tests(finished) == TestedJoint::Specimen && pressed_mm2 > WHOLE_END * whole_mm2
+}
+
 /// Warns if the node with the highest pressure, in the first or the last cycle, lies within 1.5 mm of the rim.
 pub(crate) fn pressure_at_rim(finished: &Finished<'_>) -> Option<PlausibilityWarning> {
-    // The end of a pin is pressed evenly, up to its rim.
-    if tests(finished) == TestedJoint::Specimen {
+    if is_end_of_pin(finished) {
         return None;
     }
     let at_rim = pressures(finished)

@@ -1,7 +1,7 @@
 //! Checks of the machine: whether it reaches its loads, and whether its springs stay within their travel.
 
 use condyle::machine::{
-    CycleRow, Drive, JointIndex, JointKind, Machine, Spring, TestedJoint, Waveform,
+    Axis, CycleRow, Drive, JointIndex, JointKind, Machine, Spring, TestedJoint, Waveform,
     knee::{AP, IE, IS, KNEE, ML, VV},
 };
 use condyle_results::{PlausibilityWarning, joint_range};
@@ -47,6 +47,12 @@ const FARTHEST_MM: f64 = 10.0;
 /// Smallest plausible peak of the axial force on a joint, N; our choice: the smallest of a standard is 150 N, on the disc of a neck,
 /// and the largest one in kN is 3.
 const MIN_PEAK_LOAD_N: f64 = 10.0;
+/// Smallest plausible ranges of prescribed motions; our choice: the smallest of a standard are 4 degrees, on a disc, and 3 mm, and in
+/// radians and m, those of a hip and a knee are 0.75 and 0.005.
+const MIN_TURN_DEG: f64 = 2.0;
+const MIN_STROKE_MM: f64 = 0.1;
+/// Smallest plausible peak of the axial force on specimens, N; our choice: pins are pressed by tens to hundreds of newtons.
+const MIN_PEAK_LOAD_OF_SPECIMENS_N: f64 = 1.0;
 
 /// A load of the machine that contact and springs do not balance.
 struct Missed {
@@ -57,18 +63,76 @@ struct Missed {
     cycle: &'static str,
 }
 
-/// Warns of an axial force so small that its unit is probably not N.
+/// Warns of an axial load so small that its unit is probably not N.
 pub(crate) fn load_small(finished: &Finished<'_>) -> Option<PlausibilityWarning> {
     let tests = finished.march.test().machine().mechanism.tests;
-    let forces_n = finished.cycles().flat_map(|cycle| cycle.rows);
-    let peak_n = forces_n.map(|row| row.axial_force_n).fold(0.0, f64::max);
+    let forces_n = finished.cycles().flat_map(|cycle| {
+        let machine = finished.machine(&cycle);
+        let pressing = machine
+            .pressing_joint()
+            .map(|joint| &machine.joint(joint).drive);
+        let force_n = move |row: &CycleRow| match pressing {
+            // Inertia can multiply a small load.
+            Some(Drive::Loaded(waveform)) => load(waveform, row).abs(),
+            _ => row.axial_force_n,
+        };
+        cycle.rows.iter().map(force_n)
+    });
+    let peak_n = forces_n.fold(0.0, f64::max);
+    let (tested, least_n) = match tests {
+        TestedJoint::Specimen => ("specimen", MIN_PEAK_LOAD_OF_SPECIMENS_N),
+        _ => ("joint", MIN_PEAK_LOAD_N),
+    };
     let message = format!(
-        "the largest axial force is {peak_n:.1} N; that of a joint is at least {MIN_PEAK_LOAD_N:.0} N"
+        "the largest axial force is {peak_n:.1} N; that of a {tested} is at least {least_n:.0} N"
     );
     let advice = "Write loads in N: a waveform in kN needs scale = 1000.";
-    let value = (peak_n, MIN_PEAK_LOAD_N, "N");
-    (tests != TestedJoint::Specimen && peak_n < MIN_PEAK_LOAD_N)
-        .then(|| warning("load_small", value, message, advice))
+    let value = (peak_n, least_n, "N");
+    (peak_n < least_n).then(|| warning("load_small", value, message, advice))
+}
+
+/// Warns of a prescribed motion so small that its unit is probably not degrees or mm.
+pub(crate) fn motion_small(finished: &Finished<'_>) -> Option<PlausibilityWarning> {
+    let mut warned = finished.cycles().flat_map(|cycle| {
+        let machine = finished.machine(&cycle);
+        let own = JointIndex::ALL.into_iter();
+        own.filter_map(move |index| small_motion(machine, &cycle, index))
+    });
+    warned.next()
+}
+
+fn small_motion(
+    machine: &Machine,
+    cycle: &SolvedCycle<'_>,
+    index: JointIndex,
+) -> Option<PlausibilityWarning> {
+    let description = machine.mechanism.joint(index);
+    let is_prescribed = matches!(machine.joint(index).drive, Drive::Prescribed(_));
+    // Heights and varus are small in any unit.
+    let is_along_y = matches!(description.axis, Axis::Along([0.0, _, 0.0]));
+    let is_varus = *machine.mechanism == KNEE && index == VV;
+    if !is_prescribed || is_along_y || is_varus {
+        return None;
+    }
+    let (least, unit, advice) = match description.kind() {
+        JointKind::Rotation => (
+            MIN_TURN_DEG,
+            "degrees",
+            "Write rotations in degrees: a waveform in radians needs scale = 57.2958.",
+        ),
+        JointKind::Translation => (
+            MIN_STROKE_MM,
+            "mm",
+            "Write translations in mm: a waveform in m needs scale = 1000.",
+        ),
+    };
+    let range = joint_range(cycle.rows, index);
+    let message = format!(
+        "the prescribed motion {} is {range:.2} {unit} in the {} cycle; that of a machine is at least {least} {unit}",
+        description.symbol, cycle.name
+    );
+    let value = (range, least, unit);
+    (range > 0.0 && range < least).then(|| warning("motion_small", value, message, advice))
 }
 
 pub(crate) fn not_reached(finished: &Finished<'_>) -> Vec<PlausibilityWarning> {
@@ -141,8 +205,7 @@ fn missing(
     index: JointIndex,
     waveform: &Waveform,
 ) -> f64 {
-    // Contact alone balances the axial joint, so that the part that it does not carry is missed; ligaments pull too.
-    if machine.pressing_joint() == Some(index) && machine.ligaments.is_empty() {
+    if machine.pressing_joint() == Some(index) && is_balanced_by_contact(machine, index) {
         return load(waveform, &rows[row]).abs() - rows[row].axial_force_n;
     }
     let (count, joint) = (rows.len(), machine.joint(index));
@@ -153,6 +216,20 @@ fn missing(
     let rate = (after - before) / 2.0 * per_s;
     let acceleration = (after - 2.0 * now + before) * per_s * per_s;
     joint.inertia * acceleration + joint.damping * rate
+}
+
+/// Returns whether the force of the contact along y alone balances the load of the pressing joint: no ligament or spring pulls,
+/// and no rotation before it tilts its line, those of a knee by a few degrees.
+fn is_balanced_by_contact(machine: &Machine, pressing: JointIndex) -> bool {
+    let before = &machine.mechanism.joints[..pressing.place()];
+    let is_tilted = before
+        .iter()
+        .any(|joint| joint.kind() == JointKind::Rotation);
+    let is_sprung = machine
+        .springs
+        .iter()
+        .any(|spring| spring.along == pressing);
+    machine.ligaments.is_empty() && !is_sprung && (!is_tilted || *machine.mechanism == KNEE)
 }
 
 /// Pull of a spring beyond its free play.

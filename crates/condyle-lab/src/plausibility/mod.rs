@@ -23,9 +23,10 @@ use finished::{Finished, percent_of, warning};
 /// A check of one number; none if the run is plausible.
 type Check = fn(&Finished<'_>) -> Option<PlausibilityWarning>;
 
-/// The unit of the load, the place of the femur on the insert, their meshes, and impossible pressure.
-const PLACE: [Check; 7] = [
+/// The units of loads and motions, the place of the femur on the insert, their meshes, and impossible pressure.
+const PLACE: [Check; 8] = [
     loads::load_small,
+    loads::motion_small,
     bodies::femur_on_eminence,
     bodies::pressure_at_rim,
     bodies::femur_mesh,

@@ -6,6 +6,7 @@ use super::grid::{ColumnGrid, Place};
 use crate::{
     Vec3,
     curved_mesh::{CurvedMesh, Over},
+    divided_mesh::flatten_planes,
     triangle_mesh::TriangleMesh,
 };
 
@@ -42,8 +43,10 @@ impl<'a> VerticalLines<'a> {
         let (low, high) = shell.bounds();
         let counts = [high.x - low.x, high.z - low.z].map(|length| (length / BIN_MM) as usize + 1);
         let curved = CurvedMesh::new(shell);
+        let mut corner_normals = curved.corner_normals();
+        flatten_planes(shell, &mut corner_normals);
         let mut lines = Self {
-            corner_normals: curved.corner_normals(),
+            corner_normals,
             curved,
             is_closed,
             low: Place::new(low.x, low.z),

@@ -20,6 +20,7 @@ use crate::{
 };
 
 pub(crate) use self::facets::Facets;
+pub(crate) use self::normals::flatten_planes;
 pub use self::normals::split_at_creases;
 
 /// Share of a corner below which a place lies on the opposite side, in spite of rounding.

@@ -8,8 +8,9 @@ use super::{
 };
 use crate::{
     Vec3,
+    curved_mesh::lift,
     repair::{by_edge, edge_uses},
-    triangle_mesh::TriangleMesh,
+    triangle_mesh::{TriangleMesh, weighted},
 };
 
 /// Triangles that meet at more than 30 degrees belong to two surfaces.
@@ -76,11 +77,16 @@ impl Normals {
             let normal = normals[fan as usize];
             (is_smooth[fan as usize] && normal.dot(facet) > MIN_COSINE).then_some(normal)
         };
-        let triangles = fan_of.iter().zip(facets);
+        let chords_mm = chords_of_faces_mm(mesh, facets, &across, &is_crease);
+        let at_corners = fan_of.iter().zip(facets).enumerate();
+        let at_corners = at_corners.map(|(triangle, (fans, facet))| {
+            let own = fans.map(|fan| corner(fan, facet));
+            let given = own.map(|normal| normal.unwrap_or(*facet));
+            let is_plane = is_bent_plane(&mesh.corners(triangle), &given, chords_mm[triangle]);
+            if is_plane { [None; 3] } else { own }
+        });
         Self {
-            at_corners: triangles
-                .map(|(fans, facet)| fans.map(|fan| corner(fan, facet)))
-                .collect(),
+            at_corners: at_corners.collect(),
             across,
             is_crease,
         }
@@ -113,6 +119,112 @@ impl Normals {
             tangents,
         )
     }
+}
+
+/// Returns the distance of each triangle from the curved surface by the angles to its neighbours, mm; 0 at creases.
+///
+/// A triangle of a `height_mm`, which may be that over a side, that meets its neighbours at an angle a is a h / 8 from a cylinder
+/// and a h / 4 from a sphere: the mean counts. Of two triangles the lower height counts, so that a flat surface next to a fillet is
+/// flat.
+pub(super) fn chords_mm(
+    facets: &[Vec3],
+    across: &[[Option<TriangleSide>; 3]],
+    is_crease: &[[bool; 3]],
+    height_mm: impl Fn(TriangleSide) -> f64,
+) -> Vec<f64> {
+    let chord = |one: usize| {
+        // Creases and slivers are no part of a smooth surface.
+        let sides = across[one].iter().zip(is_crease[one]).enumerate();
+        let smooth = sides.filter(|(_, (_, is_crease))| !is_crease);
+        let smooth = smooth.filter_map(|(side, (other, _))| Some((side, (*other)?)));
+        let chord = |(side, other): (usize, TriangleSide)| {
+            let angle = facets[one].cross(&facets[other.0]).norm();
+            angle * height_mm((one, side)).min(height_mm(other)) / 6.0
+        };
+        smooth.map(chord).fold(0.0, f64::max)
+    };
+    (0..facets.len()).map(chord).collect()
+}
+
+/// Returns for each triangle the largest distance from the curved surface by the heights over sides, mm: that of all triangles of its
+/// flat face and of its smooth neighbours, since a triangle at a border has few sides that show how curved the surface is.
+fn chords_of_faces_mm(
+    mesh: &TriangleMesh,
+    facets: &[Vec3],
+    across: &[[Option<TriangleSide>; 3]],
+    is_crease: &[[bool; 3]],
+) -> Vec<f64> {
+    /// Sine of the angle below which triangles are parts of a flat face: that of facets of 1 mm on a sphere of radius 1 m.
+    const COPLANAR: f64 = 1e-3;
+    let own = chords_mm(facets, across, is_crease, |side| {
+        height_over_side(mesh, side)
+    });
+    let mut linked: Vec<usize> = (0..own.len()).collect();
+    for (one, sides) in across.iter().enumerate() {
+        for (other, _) in sides.iter().flatten() {
+            if facets[one].cross(&facets[*other]).norm() < COPLANAR {
+                join(&mut linked, one, *other);
+            }
+        }
+    }
+    let mut of_faces = vec![0.0; own.len()];
+    for (triangle, chord_mm) in own.iter().enumerate() {
+        let face = first_of(&mut linked, triangle);
+        of_faces[face] = chord_mm.max(of_faces[face]);
+    }
+    let faces = (0..own.len()).map(|triangle| of_faces[first_of(&mut linked, triangle)]);
+    let faces: Vec<f64> = faces.collect();
+    let with_neighbours = |triangle: usize| {
+        let sides = across[triangle].iter().zip(is_crease[triangle]);
+        let smooth = sides.filter_map(|(other, is_crease)| other.filter(|_| !is_crease));
+        let chords_mm = smooth.map(|(other, _)| faces[other]);
+        chords_mm.fold(faces[triangle], f64::max)
+    };
+    (0..own.len()).map(with_neighbours).collect()
+}
+
+/// Returns the height of a triangle over a side, mm.
+fn height_over_side(mesh: &TriangleMesh, (triangle, side): TriangleSide) -> f64 {
+    let corners = mesh.corners(triangle);
+    let [a, b, c] = [0, 1, 2].map(|step| corners[(side + step) % 3]);
+    (b - a).cross(&(c - a)).norm() / (b - a).norm().max(f64::MIN_POSITIVE)
+}
+
+/// Replaces the normals at the corners of triangles that they bend though they are parts of planes.
+pub(crate) fn flatten_planes(mesh: &TriangleMesh, at_corners: &mut [[Vec3; 3]]) {
+    let (facets, across) = (facet_normals(mesh), sides_across(mesh));
+    let is_crease = creases(mesh, &facets, &across);
+    let chords_mm = chords_of_faces_mm(mesh, &facets, &across, &is_crease);
+    for (triangle, normals) in at_corners.iter_mut().enumerate() {
+        if is_bent_plane(&mesh.corners(triangle), normals, chords_mm[triangle]) {
+            *normals = [facets[triangle]; 3];
+        }
+    }
+}
+
+/// Returns whether normals bend a triangle that is part of a plane, given its distance from the curved surface by the angles to its
+/// neighbours.
+///
+/// Where a fillet leaves a plane, the triangles of both meet at a small angle, as those of one curved surface do. Means of their
+/// normals lean across the plane, and would bend it over its whole width.
+fn is_bent_plane(corners: &[Vec3; 3], normals: &[Vec3; 3], chord_mm: f64) -> bool {
+    /// Ratio of both distances from which they are not those of one surface: where the heights of facets differ by this factor.
+    const MIN_RATIO: f64 = 8.0;
+    /// Bend below which a contact does not notice it, mm.
+    const MIN_BEND_MM: f64 = 0.01;
+    let bend_mm = |weights: [f64; 3]| {
+        let flat = weighted(corners, weights);
+        lift(corners, normals, weights, &flat).norm()
+    };
+    let third = 1.0 / 3.0;
+    let places = [
+        [third; 3],
+        [0.5, 0.5, 0.0],
+        [0.0, 0.5, 0.5],
+        [0.5, 0.0, 0.5],
+    ];
+    let most_mm = places.map(bend_mm).into_iter().fold(0.0, f64::max);
+    most_mm > MIN_BEND_MM.max(MIN_RATIO * chord_mm)
 }
 
 /// Returns the part of an edge that is tangential to the surfaces on both of its sides, by their normals at one end; the

@@ -1,4 +1,8 @@
 use super::*;
+use crate::{
+    columns::{Meshing, column_mesh},
+    repair::checked_mesh,
+};
 
 const RING_MM: f64 = 14.0;
 const TUBE_MM: f64 = 22.0;
@@ -88,6 +92,57 @@ fn verify_flat_facets_that_are_subdivided_are_as_curved_as_whole_ones() {
             "{divisions}: {error} of {chord_error}"
         );
         mesh = in_four(&mesh);
+    }
+}
+
+/// Returns a disc of radius 20 mm whose upper edge has a fillet of some facets, which meet the plane at 90 degrees over twice
+/// their number.
+fn filleted(radius_mm: f64, facets: u32) -> TriangleMesh {
+    let fillet = (0..=facets).map(|n| {
+        let turn = std::f64::consts::FRAC_PI_2 * f64::from(n) / f64::from(facets);
+        let (sine, cosine) = turn.sin_cos();
+        (
+            20.0 - radius_mm * (1.0 - cosine),
+            8.0 - radius_mm * (1.0 - sine),
+        )
+    });
+    let profile: Vec<(f64, f64)> = [(0.0, 0.0), (20.0, 0.0)]
+        .into_iter()
+        .chain(fillet)
+        .chain([(0.0, 8.0)])
+        .collect();
+    checked_mesh(TriangleMesh::revolved(&profile, 48))
+        .unwrap()
+        .mesh
+}
+
+#[test]
+fn verify_a_plane_stays_flat_next_to_a_fillet() {
+    for (radius_mm, facets) in [(0.2, 4), (0.3, 6), (0.5, 8)] {
+        let mut disc = filleted(radius_mm, facets);
+        let curved = DividedMesh::new(&disc);
+        for (x, z) in [(3.0, 4.0), (10.0, -2.0), (-12.0, 9.0)] {
+            let gap = gap(&curved, &Vec3::new(x, 8.5, z));
+            assert!((gap - 0.5).abs() < 1e-3, "fillet of {radius_mm} mm: {gap}");
+        }
+        // The same plane as the backside of an insert.
+        for vertex in &mut disc.vertices {
+            *vertex = Vec3::new(vertex.x, -vertex.y, -vertex.z);
+        }
+        let meshing = Meshing {
+            edge_mm: 2.0,
+            layers: 2,
+        };
+        let (columns, _) = column_mesh(&disc, true, None, meshing).unwrap();
+        let lowest = columns.mesh.nodes.iter().map(|node| node.y);
+        let lowest = lowest.fold(f64::INFINITY, f64::min);
+        assert!(
+            (lowest + 8.0).abs() < 1e-3,
+            "fillet of {radius_mm} mm: {lowest}"
+        );
+        // Without fillet, and with all of its cylinder.
+        let (volume, most) = (columns.mesh.volume(), 400.0 * 8.0 * std::f64::consts::PI);
+        assert!(volume > 0.95 * most && volume < most, "{volume}");
     }
 }
 

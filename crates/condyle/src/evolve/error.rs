@@ -6,7 +6,7 @@ use thiserror::Error;
 use super::WearTest;
 use crate::{
     Vec3,
-    machine::{CycleError, HEAVY, Machine, MachineState, NotSettled},
+    machine::{CycleError, HEAVY, Machine, MachineState, NotSettled, Settling, Spring},
 };
 
 /// The reason why a march ended early.
@@ -135,6 +135,13 @@ pub enum PlacementError {
          {readings}; check axes and start_mm"
     )]
     NotSettled { residual_n: f64, readings: String },
+    /// A load acts where only a spring would hold against it.
+    #[error(
+        "the counterface does not settle on the insert: at the start of the cycle a load acts on the joint \"{joint}\", which its \
+         spring restrains, but springs do not act while the machine settles; set settling = \"held\" for this joint, or let its load \
+         start at zero"
+    )]
+    SprungLoad { joint: &'static str },
     /// A ligament is too short for its attachments.
     #[error(
         "the ligament \"{name}\" is strained by {percent:.0} % where the counterface settles, more than {most_percent:.0} %; check its \
@@ -166,6 +173,15 @@ const SLID_OFF_MM: f64 = 20.0;
 impl PlacementError {
     pub(super) fn not_settled(machine: &Machine, failed: &NotSettled) -> Self {
         let mechanism = machine.mechanism;
+        let is_pulled = |spring: &&Spring| {
+            let joint = machine.joint(spring.along);
+            let is_driven = joint.description.settling == Settling::Driven;
+            is_driven && machine.loads_at(0.0)[spring.along.place()] != 0.0
+        };
+        if let Some(spring) = machine.springs.iter().find(is_pulled) {
+            let joint = mechanism.joint(spring.along).name;
+            return Self::SprungLoad { joint };
+        }
         let in_files = mechanism.in_files.iter().copied();
         let zeroed = in_files.filter(|&index| mechanism.joint(index).is_zeroed);
         let shift = |index| (mechanism.joint(index).symbol, index.of(&failed.positions));

@@ -169,7 +169,7 @@ impl Machine {
     }
 
     /// Returns the load on every joint; 0 on those that are not loaded.
-    pub(super) fn loads_at(&self, phase: f64) -> Vec6 {
+    pub(crate) fn loads_at(&self, phase: f64) -> Vec6 {
         Vec6::from_fn(|j, _| match &self.joints[j].drive {
             Drive::Loaded(waveform) => waveform.at(phase).0,
             Drive::Locked(_) | Drive::Prescribed(_) => 0.0,

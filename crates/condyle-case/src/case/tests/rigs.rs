@@ -127,6 +127,37 @@ fn machines_that_cannot_work_are_refused_at_their_place() {
             "does not fit the",
         ),
         (
+            "drive = \"prescribed\"",
+            "drive = \"prescribed\"\nzeroed = true",
+            "machine.joints.zeroed",
+            "only translations can read zero there",
+        ),
+        (
+            "kind = \"rotation\"\naxis = [0, 0, 1]",
+            "kind = \"translation\"\naxis = [0, 0, 1]\nzeroed = true\nlocked_at_mm = 5\ndrive = \"locked\"\n\
+             [[machine.joints]]\nname = \"turn\"\nkind = \"rotation\"\naxis = [0, 0, 1]",
+            "machine.joints.zeroed",
+            "its drive holds it while the machine settles",
+        ),
+        (
+            "drive = \"prescribed\"",
+            "drive = \"prescribed\"\nlocked_at_deg = 5",
+            "machine.joints.locked_at_deg",
+            "has no effect on the joint \"flexion\"",
+        ),
+        (
+            "drive = \"prescribed\"",
+            "drive = \"prescribed\"\nfree_play_deg = 5",
+            "machine.joints.free_play_deg",
+            "has no effect on the joint \"flexion\"",
+        ),
+        (
+            "drive = \"prescribed\"",
+            "drive = \"prescribed\"\npoint_from = \"origin\"",
+            "machine.joints.point_from",
+            "has no effect on the joint \"flexion\"",
+        ),
+        (
             "tests = \"hip\"",
             "tests = \"hip\"\nap_force_sign = -1",
             "machine.ap_force_sign",
@@ -255,6 +286,18 @@ fn activities_of_a_machine_by_joints_have_their_own_drives() {
     };
     assert_eq!((load_n(0), load_n(1)), (3000.0, 3500.0));
     assert_eq!((activities[0].share, activities[1].share), (0.75, 0.25));
+}
+
+#[test]
+fn a_joint_may_be_loaded_in_one_activity_and_prescribed_in_another() {
+    let aside = "[[JOINTS]]\nname = \"aside\"\nkind = \"translation\"\naxis = [1, 0, 0]\n";
+    let loaded = aside.replace("JOINTS", "machine.joints") + "drive = \"loaded\"\n";
+    let moved = aside.replace("JOINTS", "activity.joints")
+        + "drive = \"prescribed\"\n[activity.joints.motion]\nknots_mm = [[0, 0], [50, 1]]\n";
+    let text = with_activities("[[0, 3000]]", "[[0, 3500]]") + &moved;
+    let text = text.replacen("[[activity]]", &(loaded + "[[activity]]"), 1);
+    let case = Case::parse(&text, "case.toml", Path::new(""));
+    assert!(case.is_ok(), "{:?}", case.err());
 }
 
 #[test]
