@@ -3,6 +3,7 @@
 use std::fmt;
 use std::ops::Range;
 
+use condyle::machine::knee::KNEE;
 use condyle::parameter::split_unit;
 use thiserror::Error;
 use toml::de::{DeTable, DeValue};
@@ -164,29 +165,62 @@ impl<'c> Lines<'c> {
             };
             let offered = choices.offered.iter().flat_map(|offer| &offer.items);
             for name in offered.filter_map(Item::name) {
-                let path = format!("{above}.{name}");
-                let is_below = |other: &Assignment| {
-                    let rest = other.key.strip_prefix(&path);
-                    rest.is_some_and(|rest| rest.is_empty() || rest.starts_with('.'))
-                };
-                let is_set = self.changes.iter().any(is_below);
-                if is_set || choices.other_owner(name, &word).is_none() {
-                    continue;
+                if choices.other_owner(name, &word).is_some() {
+                    notes.extend(self.left_out(document, &format!("{above}.{name}"), change));
                 }
-                let Some((_, value)) = take(document, &path) else {
-                    continue;
-                };
-                let written = match value.get_ref() {
-                    DeValue::Table(_) => format!("[{path}]"),
-                    _ => format!("{path} = {}", &self.shown[value.span()]),
-                };
-                notes.push(BuildWarning::new(format!(
-                    "{written}: ignored, since it does not apply to {} = \"{word}\", which is set",
-                    change.key
-                )));
             }
         }
         notes
+    }
+
+    /// Removes drives and their waveforms, unless they were set too, if another preset of the machine is set: a case that writes all
+    /// keys would keep those of the preset before.
+    pub fn leave_out_drives(&self, document: &mut DeTable<'_>) -> Vec<BuildWarning> {
+        let own = value_at(document, "machine.preset").and_then(|own| own.get_ref().as_str());
+        let own = own.unwrap_or("stanmore-force");
+        let own = quoted(own);
+        let is_other =
+            |change: &&Assignment| change.key == "machine.preset" && change.value() != own;
+        let Some(change) = self.changes.iter().find(is_other) else {
+            return Vec::new();
+        };
+        let mut paths = Vec::new();
+        for joint in &KNEE.joints {
+            paths.push(format!("machine.freedoms.{}.drive", joint.name));
+            if let (Some(load), Some(motion)) = (joint.load_channel(), joint.motion) {
+                paths.extend([load, motion].map(|channel| format!("machine.{}", channel.name)));
+            }
+        }
+        let paths = paths.iter();
+        paths
+            .filter_map(|path| self.left_out(document, path, change))
+            .collect()
+    }
+
+    /// Removes a key or table that does not apply to `change`, unless it was set too.
+    fn left_out(
+        &self,
+        document: &mut DeTable<'_>,
+        path: &str,
+        change: &Assignment,
+    ) -> Option<BuildWarning> {
+        let is_below = |other: &Assignment| {
+            let rest = other.key.strip_prefix(path);
+            rest.is_some_and(|rest| rest.is_empty() || rest.starts_with('.'))
+        };
+        if self.changes.iter().any(is_below) {
+            return None;
+        }
+        let (_, value) = take(document, path)?;
+        let written = match value.get_ref() {
+            DeValue::Table(_) => format!("[{path}]"),
+            _ => format!("{path} = {}", &self.shown[value.span()]),
+        };
+        Some(BuildWarning::new(format!(
+            "{written}: ignored, since it does not apply to {} = {}, which is set",
+            change.key,
+            change.value()
+        )))
     }
 }
 

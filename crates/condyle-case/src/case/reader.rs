@@ -104,6 +104,7 @@ impl CaseReader {
             let items = Case::items_with(self.wear_laws);
             // Old names are replaced first: values that are set have the current ones.
             let mut notes = rename_keys(document);
+            notes.extend(lines.leave_out_drives(document));
             lines.apply(document);
             notes.extend(lines.leave_out(document, &items));
             let root = Section::root(document);

@@ -60,6 +60,9 @@ pub struct Waveform {
     turn: f64,
 }
 
+/// Difference of values that is round-off, relative to the largest one.
+const ROUNDING: f64 = 1e-12;
+
 impl Waveform {
     /// Creates a constant waveform.
     pub fn constant(value: f64) -> Self {
@@ -112,7 +115,9 @@ impl Waveform {
         }
         let (first, last) = (knots[0], knots[knots.len() - 1]);
         if last.percent - first.percent == 100.0 {
-            if last.value != first.value {
+            let sizes = knots.iter().map(|knot| knot.value.abs());
+            // A sum or a sine ends at its first value but for round-off.
+            if (last.value - first.value).abs() > ROUNDING * sizes.fold(0.0, f64::max) {
                 let (first, last) = (first.value, last.value);
                 return Err(WaveformError::Seam { first, last });
             }
@@ -343,6 +348,21 @@ mod tests {
         let third = 167.6 + (1887.3 - 167.6) * (1.0 - (PI / 3.0).cos()) / 2.0;
         assert!((axial.at(0.01).0 - third).abs() < 1e-9);
         assert!((axial.at(1.01).0 - third).abs() < 1e-9);
+    }
+
+    #[test]
+    fn a_sine_that_ends_at_its_first_value_but_for_round_off_is_one() {
+        let mut whole = sine(100);
+        let value = TAU.sin();
+        assert!(value != 0.0);
+        whole.push(Knot {
+            percent: 100.0,
+            value,
+        });
+        assert!(Waveform::new(whole.clone(), Interpolation::Spline).is_ok());
+        whole[100].value = 1e-9;
+        let stepping = Waveform::new(whole, Interpolation::Spline);
+        assert!(matches!(stepping, Err(WaveformError::Seam { .. })));
     }
 
     #[test]

@@ -135,6 +135,39 @@ fn a_choice_that_is_set_leaves_out_keys_of_other_choices_and_warns() {
 }
 
 #[test]
+fn another_preset_of_the_machine_leaves_out_the_drives_of_the_file() {
+    let displacement = "machine.preset=stanmore-displacement";
+    let written = changed("", &[]).unwrap().to_toml();
+    let (case, short) = (
+        changed(&written, &[displacement]).unwrap(),
+        changed("", &[displacement]).unwrap(),
+    );
+    assert_eq!(case.machine, short.machine);
+    let warnings = warnings(&case);
+    assert!(
+        warnings
+            .iter()
+            .any(|one| one.starts_with("machine.freedoms.ap.drive = \"loaded\": ignored")),
+        "{warnings:?}"
+    );
+    assert!(
+        warnings
+            .iter()
+            .any(|one| one.starts_with("[machine.ap_force]: ignored")),
+        "{warnings:?}"
+    );
+    // What is set besides, and the preset of the file, stay.
+    let same = changed(&written, &["machine.preset=stanmore-force"]).unwrap();
+    assert_eq!(same.machine, changed(&written, &[]).unwrap().machine);
+    let locked = changed(
+        &written,
+        &[displacement, "machine.freedoms.ml.drive=locked"],
+    )
+    .unwrap();
+    assert_ne!(locked.machine, short.machine);
+}
+
+#[test]
 fn a_contradiction_of_the_file_or_of_what_is_set_stays_one() {
     let text = WEAR.replace("archard", "kang");
     let shown = refusal(&text, &["march.updates=5"]);
