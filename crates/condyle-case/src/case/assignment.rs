@@ -173,8 +173,8 @@ impl<'c> Lines<'c> {
         notes
     }
 
-    /// Removes drives and their waveforms, unless they were set too, if another preset of the machine is set: a case that writes all
-    /// keys would keep those of the preset before.
+    /// Removes the drives of joints that presets drive differently, and their waveforms, unless they were set too, if another preset
+    /// of the machine is set: a case that writes all keys would keep those of the preset before.
     pub fn leave_out_drives(&self, document: &mut DeTable<'_>) -> Vec<BuildWarning> {
         let own = value_at(document, "machine.preset").and_then(|own| own.get_ref().as_str());
         let own = own.unwrap_or("stanmore-force");
@@ -186,8 +186,8 @@ impl<'c> Lines<'c> {
         };
         let mut paths = Vec::new();
         for joint in &KNEE.joints {
-            paths.push(format!("machine.freedoms.{}.drive", joint.name));
             if let (Some(load), Some(motion)) = (joint.load_channel(), joint.motion) {
+                paths.push(format!("machine.freedoms.{}.drive", joint.name));
                 paths.extend([load, motion].map(|channel| format!("machine.{}", channel.name)));
             }
         }

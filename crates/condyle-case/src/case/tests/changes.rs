@@ -156,6 +156,10 @@ fn another_preset_of_the_machine_leaves_out_the_drives_of_the_file() {
             .any(|one| one.starts_with("[machine.ap_force]: ignored")),
         "{warnings:?}"
     );
+    assert!(
+        warnings.iter().all(|one| !one.contains("ml.drive")),
+        "{warnings:?}"
+    );
     // What is set besides, and the preset of the file, stay.
     let same = changed(&written, &["machine.preset=stanmore-force"]).unwrap();
     assert_eq!(same.machine, changed(&written, &[]).unwrap().machine);
