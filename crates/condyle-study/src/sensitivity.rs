@@ -240,7 +240,9 @@ mod tests {
 
     #[test]
     fn the_table_shows_changes_and_lists_those_without_effect_or_result() {
-        let as_given = results(&values(80.0));
+        let all = Outputs::default();
+        let value = |output: &'static Scalar| (output.key, all.value(&values(80.0), output));
+        let as_given: Results = compared(|_| true).map(value).collect();
         let changed = |assumption, ran: Result<f64, &str>| {
             let outputs = |mass_loss_mg| TestOutputs {
                 values: values(mass_loss_mg),

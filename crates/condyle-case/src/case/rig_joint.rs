@@ -181,67 +181,49 @@ impl RigJointKeys {
         faults
     }
 
-    /// Returns the keys that have no effect with its drive, each with the reason.
+    /// Returns the keys that have no effect, each with the reason.
     fn faults_of_unused_keys(&self, section: &Section<'_>) -> Vec<(&'static str, Fault)> {
-        let mut faults = Vec::new();
-        let name = &self.name;
-        let mut add =
-            |key, message: String, advice: &str| faults.push((key, Fault::new(message, advice)));
+        let is_given = |key: &str| section.value(key).is_some();
         let is_locked = self.drive == DriveWord::Locked;
-        let has_spring = section.value(self.spring_key()).is_some();
-        for (keys, has_effect, advice) in [
-            (
-                ["locked_at_deg", "locked_at_mm"],
-                is_locked,
-                "or write drive = \"locked\"",
-            ),
-            (
-                ["free_play_deg", "free_play_mm"],
-                has_spring,
-                "or give the joint a spring",
-            ),
-            (
-                ["spring_rest_deg", "spring_rest_mm"],
-                has_spring,
-                "or give the joint a spring",
-            ),
-            (
-                ["point_from", "point_from"],
-                self.point_mm.is_some(),
-                "or give `point_mm`",
-            ),
-        ] {
-            let is_given = |key: &&str| section.value(key).is_some();
-            if let Some(key) = keys.into_iter().find(is_given).filter(|_| !has_effect) {
-                let message = format!("`{key}` has no effect on the joint \"{name}\"");
-                add(key, message, &format!("remove it, {advice}"));
-            }
+        let (has_spring, has_point) = (is_given(self.spring_key()), self.point_mm.is_some());
+        let (lock, spring) = ("or write drive = \"locked\"", "or give the joint a spring");
+        let unused = [
+            ("locked_at_deg", is_locked, lock),
+            ("locked_at_mm", is_locked, lock),
+            ("free_play_deg", has_spring, spring),
+            ("free_play_mm", has_spring, spring),
+            ("spring_rest_deg", has_spring, spring),
+            ("spring_rest_mm", has_spring, spring),
+            ("point_from", has_point, "or give `point_mm`"),
+        ];
+        let unused = unused.into_iter();
+        let unused = unused.filter(|(key, has_effect, _)| is_given(key) && !has_effect);
+        let faults = unused.map(|(key, _, advice)| {
+            let message = format!("`{key}` has no effect on the joint \"{}\"", self.name);
+            (key, Fault::new(message, format!("remove it, {advice}")))
+        });
+        faults.chain(self.fault_of_zero()).collect()
+    }
+
+    fn fault_of_zero(&self) -> Option<(&'static str, Fault)> {
+        let why = self
+            .why_never_zero()
+            .filter(|_| self.zeroed == Some(true))?;
+        let (name, advice) = (&self.name, "remove `zeroed`");
+        let message =
+            format!("the joint \"{name}\" cannot read zero where the machine has settled: {why}");
+        Some(("zeroed", Fault::new(message, advice)))
+    }
+
+    /// Returns why it cannot read zero where the machine has settled.
+    fn why_never_zero(&self) -> Option<&'static str> {
+        let is_free = matches!(self.settling, Settling::Free | Settling::HeldAtZero);
+        match self.kind {
+            JointKind::Rotation => Some("only translations can"),
+            JointKind::Translation if is_free || self.drive == DriveWord::Loaded => None,
+            // Zero would be both its reading there and the value of its drive.
+            JointKind::Translation => Some("its drive holds it; settling = \"free\" releases it"),
         }
-        if self.zeroed == Some(true) {
-            let is_held = matches!(
-                self.settling,
-                Settling::Driven | Settling::DrivenWithoutLoad
-            );
-            let why = match self.kind {
-                JointKind::Rotation => Some("only translations can read zero there"),
-                // Zero would be both its reading there and the value of its drive.
-                _ if is_held && self.drive != DriveWord::Loaded => {
-                    Some("its drive holds it while the machine settles")
-                }
-                JointKind::Translation => None,
-            };
-            if let Some(why) = why {
-                let message = format!(
-                    "the joint \"{name}\" cannot read zero where the machine has settled: {why}"
-                );
-                add(
-                    "zeroed",
-                    message,
-                    "remove `zeroed`, or write settling = \"free\" for a translation",
-                );
-            }
-        }
-        faults
     }
 }
 

@@ -72,7 +72,11 @@ const MAY_USE: &[(&str, &[&str])] = &[
     ("condyle_mesh::repair", &["condyle_mesh::triangle_mesh"]),
     (
         "condyle_mesh::coarse",
-        &["condyle_mesh::curved_mesh", "condyle_mesh::triangle_mesh"],
+        &[
+            "condyle_mesh::curved_mesh",
+            "condyle_mesh::repair",
+            "condyle_mesh::triangle_mesh",
+        ],
     ),
     ("condyle_mesh::roughness", &["condyle_mesh::triangle_mesh"]),
     ("condyle_mesh::files", &[]),

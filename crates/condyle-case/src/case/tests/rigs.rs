@@ -130,14 +130,14 @@ fn machines_that_cannot_work_are_refused_at_their_place() {
             "drive = \"prescribed\"",
             "drive = \"prescribed\"\nzeroed = true",
             "machine.joints.zeroed",
-            "only translations can read zero there",
+            "has settled: only translations can",
         ),
         (
             "kind = \"rotation\"\naxis = [0, 0, 1]",
             "kind = \"translation\"\naxis = [0, 0, 1]\nzeroed = true\nlocked_at_mm = 5\ndrive = \"locked\"\n\
              [[machine.joints]]\nname = \"turn\"\nkind = \"rotation\"\naxis = [0, 0, 1]",
             "machine.joints.zeroed",
-            "its drive holds it while the machine settles",
+            "its drive holds it; settling",
         ),
         (
             "drive = \"prescribed\"",
