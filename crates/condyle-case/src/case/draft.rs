@@ -57,8 +57,8 @@ impl Drafted {
         let femur = Concluded::from(Body::Femur, femur)?;
         let insert = Concluded::from(Body::Insert, insert)?;
         refuse_others(&femur, &insert)?;
-        let (mut femur, insert) = (femur.upright()?, insert.upright()?);
-        femur.share_frame_of(&insert);
+        let (mut femur, mut insert) = (femur.upright()?, insert.upright()?);
+        share_frame(&mut femur, &mut insert);
         let femur_lies = femur.lies(&insert.best());
         let insert_lies = insert.lies(&[femur_lies.rotation()]);
         let (mut femur_shell, whole) = (femur.shell(&femur_lies)?, insert.shell(&insert_lies)?);
@@ -129,6 +129,15 @@ fn refuse_others(femur: &Concluded<'_>, insert: &Concluded<'_>) -> Result<(), Dr
         }
     }
     Ok(())
+}
+
+/// Gives a femur the frame of its insert if it may lie in it, and an insert on the bone that of its femur.
+fn share_frame(femur: &mut Concluded<'_>, insert: &mut Concluded<'_>) {
+    if let (Some(of_femur), Some(of_insert)) = (&femur.upright, &insert.upright) {
+        let of_insert = of_insert.clone().on_bone_of(of_femur, &insert.mesh);
+        femur.upright = Some(of_femur.clone().in_frame_of(&of_insert, &femur.mesh));
+        insert.upright = Some(of_insert);
+    }
 }
 
 /// Moves the origin of a femur to its flexion axis, half-way between its sides; returns the remark.
@@ -217,13 +226,6 @@ impl<'a> Concluded<'a> {
         Ok(Self { upright, ..self })
     }
 
-    /// Takes the frame of the insert, if the femur may lie in it.
-    fn share_frame_of(&mut self, insert: &Self) {
-        if let (Some(own), Some(of_insert)) = (self.upright.take(), &insert.upright) {
-            self.upright = Some(own.in_frame_of(of_insert, &self.mesh));
-        }
-    }
-
     /// Returns the rotations from the file that agree with its shape, best first.
     fn best(&self) -> Vec<Mat3> {
         let rotations = |upright: &Upright| {
@@ -283,7 +285,19 @@ impl<'a> Concluded<'a> {
         if let Some(angles) = lies.rotation_deg {
             remarks.push(rotated(angles));
         }
+        if let Some(upright) = &self.upright {
+            remarks.extend(upright.slope.map(|up| sloped(&(lies.rotation() * up))));
+        }
         if self.body == Body::Femur {
+            if self
+                .upright
+                .as_ref()
+                .is_some_and(|upright| upright.is_flexion_open)
+            {
+                let flexion = "  flexion cannot be determined, since no bone cuts show it and other rotations about the \
+                               medio-lateral axis fit better, but not certainly: check it in the picture.";
+                remarks.push(flexion.to_owned());
+            }
             let start = "  start_mm: the lowest points of the condyles over those of the dishes.";
             remarks.push(start.to_owned());
         } else if !shell.closed {
@@ -340,6 +354,21 @@ fn rotated(angles_deg: [f64; 3]) -> String {
         axis.x,
         axis.y,
         axis.z
+    )
+}
+
+/// Describes the slope of an insert whose superior direction is `up`.
+fn sloped(up: &Vec3) -> String {
+    let slope_deg = (-up.x).atan2(up.y).to_degrees();
+    let side = if slope_deg > 0.0 {
+        "posterior"
+    } else {
+        "anterior"
+    };
+    format!(
+        "  It has {:.1} degrees of {side} slope, which are kept, since the femur lies along the axes: check it in the \
+         picture.",
+        slope_deg.abs()
     )
 }
 

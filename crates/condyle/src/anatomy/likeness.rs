@@ -13,8 +13,8 @@ use crate::geometry::TriangleMesh;
 const MIN_COVERED: f64 = 0.3;
 /// Share of a ball that a head fills: it is cut flat or bored for a stem.
 const MIN_FULL: f64 = 0.7;
-/// Share of the area seen from above, and of that seen from below, that is flat in a tray. The dishes of an insert are
-/// flat over at most a quarter.
+/// Share of the area seen from above, and of that seen from below, that lies in one plane in a tray. The dishes of an insert
+/// are flat over at most a quarter; one flat compartment of an insert, and each wall of a femur's box, is less than half.
 const MIN_FLAT: f64 = 0.6;
 /// Thickness of a whole insert, as a share of its longest extent, below which a body that resembles both is one; femora
 /// are over half as thick as long.
@@ -49,7 +49,7 @@ impl Likeness {
         let (flat, extents) = (sampled.flattest(), extents(mesh));
         if [flat.normal, -flat.normal]
             .iter()
-            .all(|side| sampled.parallel_share(side) > MIN_FLAT)
+            .all(|side| sampled.plane_share(side) > MIN_FLAT)
         {
             // Bearings of one compartment are nearly flat.
             return one_compartment(&extents).or(Some(Self::Tray));

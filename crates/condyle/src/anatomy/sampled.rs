@@ -13,8 +13,9 @@ const FEW: usize = 3;
 const PARALLEL: f64 = 0.994_52;
 /// Angle within which flat parts count as square, degrees: the cuts of femora lean by up to 2 degrees.
 const SQUARE_DEG: f64 = 3.0;
-/// Share of the area that must be square for a turn to be known: 11 to 47 % of five femora are, and 1 to 2 % at other turns.
-const MIN_SQUARE: f64 = 0.08;
+/// Share of the area that must be square for a turn to be known: 11 to 47 % of five femora are, and 1 to 2 % at other turns; up
+/// to 8 % of femora without cuts.
+const MIN_SQUARE: f64 = 0.1;
 /// Distance beyond which a mirrored point has no partner, as a share of the longest extent.
 const FAR: f64 = 0.06;
 
@@ -119,12 +120,29 @@ impl Sampled {
         is_known.then(|| within_quarter_deg(turn_deg + sum / count as f64))
     }
 
-    /// Returns the share of the area that faces a half space and is parallel to its plane.
-    pub(super) fn parallel_share(&self, direction: &Vec3) -> f64 {
-        let cosines = || self.points.iter().map(|(_, normal)| normal.dot(direction));
-        let facing: f64 = cosines().filter(|cosine| *cosine > 0.0).sum();
-        let parallel: f64 = cosines().filter(|cosine| *cosine > PARALLEL).sum();
-        parallel / facing.max(f64::MIN_POSITIVE)
+    /// Returns the largest share of the area that faces a half space and lies in one plane parallel to its own.
+    pub(super) fn plane_share(&self, direction: &Vec3) -> f64 {
+        /// Distance within which points lie in one plane, as a share of the longest extent: that of a scanned one, or of the
+        /// pockets in a tray.
+        const WITHIN: f64 = 0.02;
+        let cosine = |normal: &Vec3| normal.dot(direction);
+        let cosines = self.points.iter().map(|(_, normal)| cosine(normal));
+        let facing: f64 = cosines.filter(|cosine| *cosine > 0.0).sum();
+        let parallel = || {
+            self.points
+                .iter()
+                .filter(|(_, normal)| cosine(normal) > PARALLEL)
+        };
+        let heights: Vec<f64> = parallel().map(|(at, _)| at.dot(direction)).collect();
+        let in_plane = |low: &f64| {
+            let plane = *low..=low + WITHIN * self.size;
+            heights
+                .iter()
+                .filter(|height| plane.contains(height))
+                .count()
+        };
+        let most = heights.iter().map(in_plane).max().unwrap_or(0);
+        most as f64 / facing.max(f64::MIN_POSITIVE)
     }
 
     /// Returns the plane that mirrors the surface best; one along `along` if that is given.

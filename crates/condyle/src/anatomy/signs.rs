@@ -133,9 +133,9 @@ pub(super) fn fit_insert(views: &Views, of: &Orientation) -> (f64, bool) {
     let thin = (length.min(width) / height).ln();
     let wide = (width / length).ln();
     let eminence = eminence(&above);
-    // Height of the dishes' ends over their middles.
+    // Height of the line between the dishes' ends over their middles, which a slope does not change.
     let (front, back, middle) = dish_heights(&above, None);
-    let hollow = front.min(back) - middle;
+    let hollow = f64::midpoint(front, back) - middle;
     // Depth of the cut-out in the middle of the back over that of the front.
     let notch = cut_out(&above, false) - cut_out(&above, true);
     // Thickness of the front ends of the dishes over that of the back ends: 0 for an open surface, whose tilt is unknown.

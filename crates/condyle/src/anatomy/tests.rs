@@ -140,8 +140,9 @@ fn a_pair_turned_about_any_axis_is_turned_back() {
         let shift = Vec3::new(1000.0, -700.0, 300.0);
         let [femur, insert] =
             [&femur, &insert].map(|mesh| mesh.clone().mapped(|v| turn * v + shift));
-        let of_insert = Upright::of_insert(&insert).unwrap();
         let of_femur = Upright::of_femur(&femur).unwrap();
+        let of_insert = Upright::of_insert(&insert).unwrap();
+        let of_insert = of_insert.on_bone_of(&of_femur, &insert);
         let of_femur = of_femur.in_frame_of(&of_insert, &femur);
         for upright in [of_insert, of_femur] {
             assert!(
@@ -221,6 +222,48 @@ fn a_head_a_cup_a_tray_and_one_compartment_are_distinguished_from_a_knee() {
     let flat_bearing = block([-26.0, 0.0, -12.0], [26.0, 9.0, 12.0]);
     assert_eq!(of(&flat_bearing), Some(Likeness::OneCompartment));
     assert_eq!(of(&TriangleMesh::default()), None);
+}
+
+/// Returns the generic insert with another articulating surface, of height `y` over x and z.
+fn insert_below(y: impl Fn(f64, f64) -> f64) -> TriangleMesh {
+    let backside = generic_insert().bounds().0.y;
+    generic_insert().mapped(|v| {
+        let is_above = v.y > backside + 1e-9;
+        Vec3::new(v.x, if is_above { y(v.x, v.z) } else { v.y }, v.z)
+    })
+}
+
+/// A medial pivot: a spherical dish on the medial side, and a plane lower than its rim on the lateral one.
+#[test]
+fn an_insert_with_one_flat_compartment_is_no_tray() {
+    let pivot = insert_below(|x, z| {
+        let across = (x + 2.0).hypot(z + 22.0);
+        let dish = 24.8 - (24.8f64.powi(2) - across.min(24.8).powi(2)).sqrt();
+        if z > 3.0 { 0.0 } else { dish.min(6.0) }
+    });
+    assert_eq!(Likeness::of(&pivot), Some(Likeness::Insert));
+}
+
+/// Each side of each wall is flat, and faces along the longest extent.
+#[test]
+fn a_femur_with_flat_walls_is_no_tray() {
+    assert_eq!(Likeness::of(&round_femur()), Some(Likeness::Femur));
+}
+
+#[test]
+fn dishes_that_slope_over_a_flat_backside_are_recognised() {
+    let toroid = |x: f64, z: f64| {
+        let dish = |radius: f64, away: f64| radius - (radius * radius - away * away).sqrt();
+        dish(50.0, x + 2.0) + dish(26.0, (z.abs() - 23.0).clamp(-12.0, 12.0))
+    };
+    for slope_deg in [0.0, 7.0, 9.0] {
+        let slope = f64::to_radians(slope_deg).tan();
+        let insert = insert_below(|x, z| toroid(x, z) + slope * x);
+        let upright = Upright::of_insert(&insert).unwrap();
+        assert_eq!(upright.turn, None, "{slope_deg}");
+        let nearest = upright.recognition.nearest();
+        assert_eq!(nearest.rotation()[(1, 1)], 1.0, "{slope_deg}");
+    }
 }
 
 /// A femoral component whose condyles are parts of one cylinder, which does not show its flexion, cut square to fit the bone.

@@ -12,6 +12,11 @@ use crate::{Mat3, Vec3, geometry::TriangleMesh};
 const SQUARE_DEG: f64 = 4.0;
 /// Smallest share of an insert's area that is a flat backside; it is a third of the area in most designs.
 pub(super) const MIN_BACKSIDE: f64 = 0.15;
+/// Largest slope at which an insert lies on the bone in the files of an assembly, degrees.
+const MAX_SLOPE_DEG: f64 = 10.0;
+/// Lead in score at which the signs of a shape alone show that it is flexed: square femora without cuts, of eight designs,
+/// lose up to 3.0.
+const FLEXED_MARGIN: f64 = 4.0;
 
 /// A body turned so that it lies along the axes of a frame.
 #[derive(Clone, Debug)]
@@ -20,6 +25,10 @@ pub struct Upright {
     pub turn: Option<Mat3>,
     /// The orientations along the axes of that frame.
     pub recognition: Recognition,
+    /// The superior direction of an insert that keeps its slope, in the given frame.
+    pub slope: Option<Vec3>,
+    /// True if other flexions fit better than that of the frame, but not certainly.
+    pub is_flexion_open: bool,
     /// The normal of its mirror plane, in the given frame.
     right: Vec3,
 }
@@ -47,6 +56,8 @@ impl Upright {
         Some(Self {
             turn,
             recognition,
+            slope: None,
+            is_flexion_open: false,
             right,
         })
     }
@@ -57,8 +68,43 @@ impl Upright {
         Self {
             turn: None,
             recognition,
+            slope: None,
+            is_flexion_open: false,
             right,
         }
+    }
+
+    /// Returns an insert as it lies, if it only slopes and its femur lies along the same axes: on the bone, its backside has the
+    /// slope of the tibial cut.
+    pub fn on_bone_of(self, femur: &Self, insert: &TriangleMesh) -> Self {
+        let share_axis = femur.medio_lateral().dot(&self.medio_lateral()).abs() > 0.5;
+        let keeps_slope =
+            self.turn.is_some() && self.only_slopes() && share_axis && femur.turn.is_none();
+        match Recognition::of_insert(insert).filter(|_| keeps_slope) {
+            Some(recognition) => Self {
+                turn: None,
+                recognition,
+                slope: Some(self.anatomical().row(1).transpose()),
+                ..self
+            },
+            None => self,
+        }
+    }
+
+    /// Returns true if it is only inclined from front to back, by no more than an insert on the bone.
+    pub fn only_slopes(&self) -> bool {
+        lean_deg(&self.medio_lateral()) < SQUARE_DEG && self.off_square_deg() < MAX_SLOPE_DEG
+    }
+
+    /// Returns its medio-lateral axis in the given frame: an insert may be more alike from front to back, across its mirror plane.
+    fn medio_lateral(&self) -> Vec3 {
+        self.anatomical().row(2).transpose()
+    }
+
+    /// Returns the rotation from the given frame to x anterior, y superior, z right.
+    fn anatomical(&self) -> Mat3 {
+        let turn = self.rotation();
+        self.recognition.nearest_after(&turn).rotation() * turn
     }
 
     /// Returns a femur in the frame of its insert, if it lies in it as its own shape shows: the files of one implant mostly
@@ -68,8 +114,8 @@ impl Upright {
             return self;
         }
         let turn = insert.turn;
-        // A femur shows its flexion only roughly: square ones of four designs lose up to 1.5.
-        let least = self.recognition.score() - LIKELY_MARGIN;
+        // A femur shows its flexion only roughly.
+        let least = self.recognition.score() - FLEXED_MARGIN;
         let recognition = Recognition::of_femur(&turned(femur, turn.as_ref()));
         match recognition.filter(|recognition| recognition.score() > least) {
             Some(recognition) => Self {
@@ -117,7 +163,10 @@ fn by_mirror(
     };
     let score = |degrees: f64| Some(recognise(&turned(mesh, Some(&frame_at(degrees))))?.score());
     let known_deg = sampled.square_turn_deg(&ahead, &up);
-    let degrees = known_deg.or_else(|| turn_by_signs_deg(score))?;
+    let (degrees, is_flexion_open) = match known_deg {
+        Some(degrees) => (degrees, false),
+        None => turn_by_signs_deg(score)?,
+    };
     let turn = frame_at(degrees);
     let is_square = off_square_deg(&turn) < SQUARE_DEG;
     let turn = (!is_square).then_some(turn);
@@ -125,12 +174,15 @@ fn by_mirror(
     Some(Upright {
         turn,
         recognition,
+        slope: None,
+        is_flexion_open,
         right,
     })
 }
 
-/// Returns the turn whose score is best, -45 to 45 degrees; 0 where the given frame fits about as well.
-fn turn_by_signs_deg(score: impl Fn(f64) -> Option<f64>) -> Option<f64> {
+/// Returns the turn whose score is best, -45 to 45 degrees; 0 unless the given frame fits certainly worse, and true if it fits
+/// likely worse.
+fn turn_by_signs_deg(score: impl Fn(f64) -> Option<f64>) -> Option<(f64, bool)> {
     const STEP_DEG: f64 = 5.0;
     /// A quarter turn; after it the orientations repeat.
     const STEPS: usize = 18;
@@ -141,17 +193,16 @@ fn turn_by_signs_deg(score: impl Fn(f64) -> Option<f64>) -> Option<f64> {
         .filter_map(|degrees| Some((degrees, score(degrees)?)))
         .collect();
     let best = *scores.iter().max_by(|a, b| a.1.total_cmp(&b.1))?;
-    let is_enough = scores
-        .first()
-        .is_some_and(|(degrees, score)| *degrees == 0.0 && best.1 - score < LIKELY_MARGIN);
-    if is_enough {
-        return Some(0.0);
+    let given = scores.first().filter(|(degrees, _)| *degrees == 0.0);
+    let lead = given.map(|(_, score)| best.1 - score);
+    if let Some(lead) = lead.filter(|lead| *lead < FLEXED_MARGIN) {
+        return Some((0.0, lead >= LIKELY_MARGIN));
     }
     // The middle of the turns that fit about as well, counted from the best.
     let from_best = |degrees: f64| within_quarter_deg(degrees - best.0);
     let good = || scores.iter().filter(|one| best.1 - one.1 < EQUAL);
     let mean = good().map(|one| from_best(one.0)).sum::<f64>() / good().count() as f64;
-    Some(within_quarter_deg(best.0 + mean))
+    Some((within_quarter_deg(best.0 + mean), false))
 }
 
 /// Returns the angle of a direction to the nearest axis, degrees.
@@ -179,4 +230,27 @@ fn off_square_deg(rotation: &Mat3) -> f64 {
     let nearest = Orientation::nearest_to(rotation).rotation();
     let cosine = ((nearest.transpose() * rotation).trace() - 1.0) / 2.0;
     cosine.clamp(-1.0, 1.0).acos().to_degrees()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The scores of a femur with a box and a cam, without cuts, every 5 degrees from its own flexion.
+    const OF_CAM: [f64; 18] = [
+        7.3, 7.9, 8.5, 8.9, 9.5, 10.3, 10.1, 9.5, 8.8, 7.7, 5.7, 6.1, 8.1, 8.5, 8.6, 8.1, 7.8, 7.6,
+    ];
+
+    #[test]
+    fn signs_turn_a_body_only_where_its_own_frame_fits_certainly_worse() {
+        let at = |first: f64| {
+            move |degrees: f64| match (degrees / 5.0).round() as usize {
+                0 => Some(first),
+                step => Some(OF_CAM[step]),
+            }
+        };
+        assert_eq!(turn_by_signs_deg(at(9.0)), Some((0.0, false)));
+        assert_eq!(turn_by_signs_deg(at(OF_CAM[0])), Some((0.0, true)));
+        assert_eq!(turn_by_signs_deg(at(5.0)), Some((27.5, false)));
+    }
 }

@@ -95,12 +95,12 @@ impl<'a> Placed<'a> {
                 text: format!("{name}: this {body} is {likeness}; {advice}"),
             });
         }
-        // The shape of a femur shows its flexion to about 10 degrees only.
+        // The shape of a femur shows its flexion to about 10 degrees only; an insert on the bone has a slope.
         let (upright, off_deg) = match body {
             Body::Femur => Upright::of_femur(&self.mesh).map(|one| (one.clone(), one.lean_deg())),
-            Body::Insert => {
-                Upright::of_insert(&self.mesh).map(|one| (one.clone(), one.off_square_deg()))
-            }
+            Body::Insert => Upright::of_insert(&self.mesh)
+                .filter(|one| !one.only_slopes())
+                .map(|one| (one.clone(), one.off_square_deg())),
         }?;
         if off_deg < MAX_OFF_DEG {
             return None;

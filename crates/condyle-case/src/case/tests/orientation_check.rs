@@ -348,6 +348,57 @@ fn a_pair_that_lies_turned_and_far_away_comes_together_as_the_square_one() {
 }
 
 #[test]
+fn an_insert_that_slopes_on_the_bone_keeps_its_slope_and_its_femur_is_not_turned() {
+    let mut pairs = real("insert_that_slopes");
+    pairs.push(generic());
+    for pair in pairs {
+        for slope_deg in [5.0, 8.0] {
+            let (sine, cosine) = f64::to_radians(slope_deg).sin_cos();
+            let slope =
+                |v: &Vec3| Vec3::new(cosine * v.x - sine * v.y, sine * v.x + cosine * v.y, v.z);
+            let sloped = Pair {
+                femur: pair.femur.clone(),
+                insert: pair.insert.clone().mapped(slope),
+            };
+            let (folder, femur, insert) = written(&sloped, &Orientation::ISB, 1.0);
+            let meshes = [femur.as_path(), insert.as_path()];
+            let drafted = Drafted::new(Preset::StanmoreForce, None, meshes, folder.path());
+            let text = drafted.unwrap().text;
+            assert!(!text.contains("\nrotation_deg = ["), "{text}");
+            assert!(
+                text.contains("degrees of posterior slope, which are kept"),
+                "{text}"
+            );
+            let case = Case::parse(&text, "case.toml", folder.path()).unwrap();
+            assert_eq!(case.misfit_remarks(), [""; 0], "{text}");
+        }
+    }
+}
+
+/// A peg of a rotating platform hides the shape of its insert.
+#[test]
+fn a_femur_keeps_its_axes_where_its_insert_is_not_recognised_and_the_insert_takes_them() {
+    let pair = generic();
+    let low = pair.insert.bounds().0.y;
+    let peg = TriangleMesh::block(
+        Vec3::new(-6.0, low - 20.0, -6.0),
+        Vec3::new(6.0, low + 1.0, 6.0),
+    );
+    let with_peg = Pair {
+        femur: pair.femur,
+        insert: pair.insert.joined(&peg),
+    };
+    let right_anterior_superior =
+        Orientation::nearest_to(&Mat3::new(0.0, 1.0, 0.0, 0.0, 0.0, 1.0, 1.0, 0.0, 0.0));
+    let (folder, femur, insert) = written(&with_peg, &right_anterior_superior, 1.0);
+    let meshes = [femur.as_path(), insert.as_path()];
+    let drafted = Drafted::new(Preset::StanmoreForce, None, meshes, folder.path());
+    let text = drafted.unwrap().text;
+    let axes = r#"axes = ["right", "anterior", "superior"]"#;
+    assert_eq!(text.matches(axes).count(), 2, "{text}");
+}
+
+#[test]
 fn bodies_that_are_others_are_refused_by_a_draft() {
     let pair = generic();
     let refused = |femur: &TriangleMesh, insert: &TriangleMesh| {
