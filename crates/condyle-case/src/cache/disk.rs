@@ -118,10 +118,7 @@ fn program_stamp() -> Vec<u8> {
 fn read(file: &Path, key: &blake3::Hash) -> Option<Vec<u8>> {
     let bytes = fs::read(file).ok()?;
     let (hash, content) = bytes.split_at_checked(HASH_LENGTH)?;
-    let is_whole = blake3::keyed_hash(key.as_bytes(), content)
-        .as_bytes()
-        .as_slice()
-        == hash;
+    let is_whole = blake3::keyed_hash(key.as_bytes(), content) == *hash;
     is_whole.then(|| content.to_vec())
 }
 

@@ -95,24 +95,18 @@ variants! {
 impl Femur {
     /// Returns the mesh file, if there is one.
     pub fn file(&self) -> Option<&DataFile> {
-        match &self.shape {
-            FemurShape::Mesh(mesh) => Some(&mesh.file),
-            FemurShape::Generic(_)
-            | FemurShape::Sphere(_)
-            | FemurShape::Cylinder(_)
-            | FemurShape::Plane => None,
-        }
+        let FemurShape::Mesh(mesh) = &self.shape else {
+            return None;
+        };
+        Some(&mesh.file)
     }
 
     #[cfg(feature = "file-system")]
     pub(super) fn file_mut(&mut self) -> Option<&mut DataFile> {
-        match &mut self.shape {
-            FemurShape::Mesh(mesh) => Some(&mut mesh.file),
-            FemurShape::Generic(_)
-            | FemurShape::Sphere(_)
-            | FemurShape::Cylinder(_)
-            | FemurShape::Plane => None,
-        }
+        let FemurShape::Mesh(mesh) = &mut self.shape else {
+            return None;
+        };
+        Some(&mut mesh.file)
     }
 
     fn check(&self, section: &Section<'_>, log: &mut Log<'_>) {

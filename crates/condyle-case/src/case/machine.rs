@@ -374,9 +374,7 @@ impl Waveforms {
     pub(super) fn write(&self, out: &mut Writer) {
         for channel in KNEE.channels {
             if let Some(waveform) = self.get(channel) {
-                out.table(channel.name, |out| {
-                    waveform::write(channel, waveform, out);
-                });
+                out.table(channel.name, |out| waveform::write(channel, waveform, out));
             }
         }
     }

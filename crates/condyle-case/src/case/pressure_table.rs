@@ -89,11 +89,8 @@ impl StrainTable {
     pub fn to_csv(&self) -> String {
         let rows = self.points.points().iter();
         let rows = rows.map(|(strain, pressure_mpa)| format!("{strain:?},{pressure_mpa:?}\n"));
-        format!(
-            "{}\n{}",
-            BY_STRAIN.header.join(","),
-            rows.collect::<String>()
-        )
+        let header = BY_STRAIN.header.join(",");
+        format!("{header}\n{}", rows.collect::<String>())
     }
 }
 

@@ -126,12 +126,8 @@ impl BuildError {
 
     /// Returns the table at fault; that of the body with the file if none is named.
     pub(in crate::case) fn table(&self, femur: Option<&Path>) -> &'static str {
-        let is_of_femur = self.file.is_some() && self.file() == femur;
-        let of_file = if is_of_femur {
-            Body::Femur
-        } else {
-            Body::Insert
-        };
+        let is_femur = self.file.is_some() && self.file() == femur;
+        let of_file = if is_femur { Body::Femur } else { Body::Insert };
         self.table.unwrap_or(of_file.table())
     }
 }
