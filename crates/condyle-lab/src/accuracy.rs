@@ -25,7 +25,7 @@ use condyle::{
     geometry::Insert,
     machine::{
         MachineState,
-        knee::{AP, IE},
+        knee::{AP, IE, KNEE},
     },
 };
 use condyle_case::case::Case;
@@ -480,7 +480,7 @@ fn first_peaks(state: &MarchState) -> Peaks {
 fn first_cycle(state: &MarchState) -> FirstCycle {
     let cycles = state.activities.first().map(|own| &own.first_and_last);
     let first = cycles.and_then(|cycles| cycles.as_ref());
-    let range = |joint| first.map_or(0.0, |(first, _)| joint_range(&first.rows, joint));
+    let range = |joint| first.map_or(0.0, |(first, _)| joint_range(&first.rows, &KNEE, joint));
     FirstCycle {
         peaks: first_peaks(state),
         ranges: [range(AP), range(IE)],

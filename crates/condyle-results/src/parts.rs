@@ -72,8 +72,8 @@ impl ActivitySummary {
                 peak_contact_area_mm2: wear.peak_contact_area_mm2,
                 peak_axial_force_n: rows.iter().map(|row| row.axial_force_n).fold(0.0, f64::max),
                 knee: (*activity.machine.mechanism == KNEE).then(|| KneeActivity {
-                    ap_range_mm: joint_range(rows, AP),
-                    ie_range_deg: joint_range(rows, IE),
+                    ap_range_mm: joint_range(rows, &KNEE, AP),
+                    ie_range_deg: joint_range(rows, &KNEE, IE),
                     medial_load_share: medial_load_share(rows),
                 }),
             })
@@ -91,14 +91,14 @@ pub fn kinematics_file(number: usize, name: &str) -> String {
     format!("kinematics_{name}.csv")
 }
 
-/// Returns the largest less smallest position of a joint, in the unit of files.
-pub fn joint_range(rows: &[CycleRow], joint: JointIndex) -> f64 {
+/// Returns the largest less smallest position of a joint of a machine, in the unit of files.
+pub fn joint_range(rows: &[CycleRow], mechanism: &Mechanism, joint: JointIndex) -> f64 {
     let values = || rows.iter().map(|row| joint.of(&row.positions));
     let (low, high) = (
         values().fold(f64::INFINITY, f64::min),
         values().fold(f64::NEG_INFINITY, f64::max),
     );
-    KNEE.joint(joint).kind().in_files(high - low)
+    mechanism.joint(joint).kind().in_files(high - low)
 }
 
 pub(super) fn medial_load_share(rows: &[CycleRow]) -> f64 {

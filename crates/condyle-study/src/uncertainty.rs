@@ -193,7 +193,7 @@ pub fn uncertainty(
     let failed = found.iter().find_map(|found| found.as_ref().err());
     if let Some(reason) = failed.filter(|_| done < 2) {
         let problem = format!(
-            "{done} of {size} runs with scattered inputs could be solved, too few for a scatter; the first other one ended with: {reason}"
+            "{done} of {size} runs with scattered inputs could be solved, too few for a scatter; the first failure: {reason}"
         );
         return Err(StudyError::Plan(problem));
     }

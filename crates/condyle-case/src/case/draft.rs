@@ -294,8 +294,8 @@ impl<'a> Concluded<'a> {
                 .as_ref()
                 .is_some_and(|upright| upright.is_flexion_open)
             {
-                let flexion = "  flexion cannot be determined, since no bone cuts show it and other rotations about the \
-                               medio-lateral axis fit better, but not certainly: check it in the picture.";
+                let flexion = "  flexion cannot be determined, since other rotations about the medio-lateral axis fit better, but \
+                               not certainly: check it in the picture.";
                 remarks.push(flexion.to_owned());
             }
             let start = "  start_mm: the lowest points of the condyles over those of the dishes.";

@@ -197,7 +197,10 @@ impl RigJointKeys {
             ("point_from", has_point, "or give `point_mm`"),
         ];
         let unused = unused.into_iter();
-        let unused = unused.filter(|(key, has_effect, _)| is_given(key) && !has_effect);
+        let of_other_kind = self.keys_of_other_kind();
+        let unused = unused.filter(|(key, has_effect, _)| {
+            is_given(key) && !has_effect && !of_other_kind.contains(key)
+        });
         let faults = unused.map(|(key, _, advice)| {
             let message = format!("`{key}` has no effect on the joint \"{}\"", self.name);
             (key, Fault::new(message, format!("remove it, {advice}")))
@@ -366,7 +369,7 @@ impl RigJoint {
             && own.point_from == others.point_from
             && own.settling == others.settling
             // The first activity sets the zero of all, whatever drives a joint in the others.
-            && own.zeroed == others.zeroed
+            && own.zeroed.is_none_or(|zeroed| zeroed == other.is_zeroed())
     }
 
     pub(super) fn is_zeroed(&self) -> bool {

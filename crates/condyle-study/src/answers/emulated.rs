@@ -262,8 +262,8 @@ impl Emulated {
     }
 }
 
-/// Returns the indices and the main effects of the emulator's mean. The intervals of the indices are 1.96 standard errors by the jackknife over groups of
-/// tests (Efron 1982) and the part of the variance that the emulator does not explain, to either side.
+/// Returns the indices and the main effects of the emulator's mean. The intervals of the indices are 1.96 standard errors by the
+/// jackknife over groups of tests (Efron 1982) and the part of the variance that the emulator does not explain, to either side.
 fn of_output(
     axes: &[Axis<'_>],
     emulator: &Emulator,

@@ -80,7 +80,10 @@ impl Upright {
         let share_axis = femur.medio_lateral().dot(&self.medio_lateral()).abs() > 0.5;
         let keeps_slope =
             self.turn.is_some() && self.only_slopes() && share_axis && femur.turn.is_none();
-        match Recognition::of_insert(insert).filter(|_| keeps_slope) {
+        match keeps_slope
+            .then(|| Recognition::of_insert(insert))
+            .flatten()
+        {
             Some(recognition) => Self {
                 turn: None,
                 recognition,
@@ -114,12 +117,13 @@ impl Upright {
             return self;
         }
         let turn = insert.turn;
+        let own = self.recognition.score();
         // A femur shows its flexion only roughly.
-        let least = self.recognition.score() - FLEXED_MARGIN;
         let recognition = Recognition::of_femur(&turned(femur, turn.as_ref()));
-        match recognition.filter(|recognition| recognition.score() > least) {
+        match recognition.filter(|recognition| own - recognition.score() < FLEXED_MARGIN) {
             Some(recognition) => Self {
                 turn,
+                is_flexion_open: self.is_flexion_open || own - recognition.score() >= LIKELY_MARGIN,
                 recognition,
                 ..self
             },

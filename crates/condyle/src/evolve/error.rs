@@ -176,7 +176,8 @@ impl PlacementError {
         let is_pulled = |spring: &&Spring| {
             let joint = machine.joint(spring.along);
             let is_driven = joint.description.settling == Settling::Driven;
-            is_driven && machine.loads_at(0.0)[spring.along.place()] != 0.0
+            let presses = machine.pressing_joint() == Some(spring.along);
+            is_driven && !presses && machine.loads_at(0.0)[spring.along.place()] != 0.0
         };
         if let Some(spring) = machine.springs.iter().find(is_pulled) {
             let joint = mechanism.joint(spring.along).name;

@@ -52,7 +52,8 @@ impl Chain {
         let (mut zero_mm, mut readings) = (self.zero_mm, *positions);
         for (joint, reading) in machine.joints.iter().zip(&mut readings) {
             if joint.description.is_zeroed {
-                // Translations commute with one another, and fixed axes stand before them in the chain.
+                // Translations commute with one another, and fixed axes stand before them in the chain: exact unless rotations of
+                // the counterface do too.
                 zero_mm += screw(joint, Vec3::zeros()).linear * *reading;
                 *reading = 0.0;
             }
