@@ -10,6 +10,7 @@ use toml::de::{DeTable, DeValue};
 
 use super::build::BuildWarning;
 use super::contents::Case;
+use super::machine::Preset;
 use super::renamed::current_path;
 use super::run_options::Update;
 use crate::config::*;
@@ -177,24 +178,22 @@ impl<'c> Lines<'c> {
     /// of the machine is set: a case that writes all keys would keep those of the preset before.
     pub fn leave_out_drives(&self, document: &mut DeTable<'_>) -> Vec<BuildWarning> {
         let own = value_at(document, "machine.preset").and_then(|own| own.get_ref().as_str());
-        let own = own.unwrap_or("stanmore-force");
-        let own = quoted(own);
+        let own = quoted(own.unwrap_or(Preset::StanmoreForce.word()));
         let is_other =
             |change: &&Assignment| change.key == "machine.preset" && change.value() != own;
         let Some(change) = self.changes.iter().find(is_other) else {
             return Vec::new();
         };
-        let mut paths = Vec::new();
+        let mut notes = Vec::new();
         for joint in &KNEE.joints {
             if let (Some(load), Some(motion)) = (joint.load_channel(), joint.motion) {
-                paths.push(format!("machine.freedoms.{}.drive", joint.name));
-                paths.extend([load, motion].map(|channel| format!("machine.{}", channel.name)));
+                let drive = format!("freedoms.{}.drive", joint.name);
+                for key in [&drive, load.name, motion.name] {
+                    notes.extend(self.left_out(document, &format!("machine.{key}"), change));
+                }
             }
         }
-        let paths = paths.iter();
-        paths
-            .filter_map(|path| self.left_out(document, path, change))
-            .collect()
+        notes
     }
 
     /// Removes a key or table that does not apply to `change`, unless it was set too.

@@ -133,17 +133,24 @@ pub(super) fn chords_mm(
     height_mm: impl Fn(TriangleSide) -> f64,
 ) -> Vec<f64> {
     let chord = |one: usize| {
-        // Creases and slivers are no part of a smooth surface.
-        let sides = across[one].iter().zip(is_crease[one]).enumerate();
-        let smooth = sides.filter(|(_, (_, is_crease))| !is_crease);
-        let smooth = smooth.filter_map(|(side, (other, _))| Some((side, (*other)?)));
         let chord = |(side, other): (usize, TriangleSide)| {
             let angle = facets[one].cross(&facets[other.0]).norm();
             angle * height_mm((one, side)).min(height_mm(other)) / 6.0
         };
+        let smooth = smooth_sides(&across[one], &is_crease[one]);
         smooth.map(chord).fold(0.0, f64::max)
     };
     (0..facets.len()).map(chord).collect()
+}
+
+/// Returns the sides of a triangle at which its smooth surface continues, each with the side across: creases and slivers are no part
+/// of it.
+fn smooth_sides(
+    across: &[Option<TriangleSide>; 3],
+    is_crease: &[bool; 3],
+) -> impl Iterator<Item = (usize, TriangleSide)> {
+    let sides = across.iter().zip(is_crease).enumerate();
+    sides.filter_map(|(side, (other, is_crease))| Some((side, other.filter(|_| !is_crease)?)))
 }
 
 /// Returns for each triangle the largest distance from the curved surface by the heights over sides, mm: that of all triangles of its
@@ -175,9 +182,8 @@ fn chords_of_faces_mm(
     let faces = (0..own.len()).map(|triangle| of_faces[first_of(&mut linked, triangle)]);
     let faces: Vec<f64> = faces.collect();
     let with_neighbours = |triangle: usize| {
-        let sides = across[triangle].iter().zip(is_crease[triangle]);
-        let smooth = sides.filter_map(|(other, is_crease)| other.filter(|_| !is_crease));
-        let chords_mm = smooth.map(|(other, _)| faces[other]);
+        let smooth = smooth_sides(&across[triangle], &is_crease[triangle]);
+        let chords_mm = smooth.map(|(_, (other, _))| faces[other]);
         chords_mm.fold(faces[triangle], f64::max)
     };
     (0..own.len()).map(with_neighbours).collect()
