@@ -32,11 +32,9 @@ pub fn add_prediction(prediction: &Prediction, summary: &Summary, lines: &mut Li
         let depth_words = words(depth.median, depth, "mm");
         lines.line(format_args!("max depth    {own_depth} mm by the law of this case; by the calibrated law {depth_words}"));
     }
-    let sources = prediction.sources.iter();
-    let sources = sources.map(|source| format!("{} x {:.2}", source.source, source.factor));
     lines.line(format_args!(
         "interval from {}",
-        sources.collect::<Vec<_>>().join(", ")
+        prediction.sources_in_words('x')
     ));
 }
 

@@ -32,6 +32,8 @@ const REFERENCE_PRESSURE_MPA: f64 = 1.1;
 pub const MAX_FACTOR_OF_RUN: f64 = 2.5;
 /// The [`Source`] that is the same for every run.
 const LABORATORY: &str = "laboratory";
+/// The [`Source`] that only runs with an estimate of their error have.
+const DISCRETISATION: &str = "discretisation";
 
 /// Comparisons take every fifth draw: a probability to 1 %, in a fifth of the lines of `summary.json`.
 const COMPARED: usize = 5;
@@ -139,7 +141,7 @@ impl Prediction {
         ];
         if error.is_some() {
             let error_log = (0.01 * error_percent(&MASS_LOSS_MG)).ln_1p();
-            sources.push(Source::new("discretisation", error_log));
+            sources.push(Source::new(DISCRETISATION, error_log));
         }
         sources.sort_by(|a, b| b.factor.total_cmp(&a.factor));
         let interval = |values: &[f64], scalar| {
@@ -195,6 +197,19 @@ impl Prediction {
         let count = self.mass_loss_mg_by_draw.len();
         (count == other.mass_loss_mg_by_draw.len() && count > 0)
             .then(|| below.sum::<f64>() / count as f64)
+    }
+
+    /// Returns the sources of the interval and their factors in words, after the sign `times`. A run without an estimate of its
+    /// error lacks that source, which may be the largest: with 30 increments, half of the mass of the default knee.
+    pub fn sources_in_words(&self, times: char) -> String {
+        let sources = self.sources.iter();
+        let mut words: Vec<String> = sources
+            .map(|source| format!("{} {times} {:.2}", source.source, source.factor))
+            .collect();
+        if !self.sources.iter().any(|own| own.source == DISCRETISATION) {
+            words.push(format!("without {DISCRETISATION}, whose error is not estimated"));
+        }
+        words.join(", ")
     }
 
     /// Returns the factor within which the mass is known without the laboratory's part, which is the same for every run.
@@ -323,6 +338,23 @@ mod tests {
         let part = prediction(&[1.0]).part_below(&prediction(&[INPUTS_LOG_SD.exp()]));
         assert!((part.unwrap() - 0.841).abs() < 0.01);
         assert_eq!(one.part_below(&prediction(&[1.0])), None);
+    }
+
+    #[test]
+    fn sources_state_that_the_discretisation_is_missing() {
+        let mut prediction = Prediction {
+            is_of_run: true,
+            mass_loss_mg: Interval::of(&[1.0], 0.0),
+            max_depth_mm: Interval::of(&[1.0], 0.0),
+            measured: None,
+            sources: vec![Source::new(LABORATORY, 1.0)],
+            mass_loss_mg_by_draw: Vec::new(),
+        };
+        let words = "laboratory x 2.72, without discretisation, whose error is not estimated";
+        assert_eq!(prediction.sources_in_words('x'), words);
+        prediction.sources.push(Source::new(DISCRETISATION, 0.0));
+        let words = "laboratory x 2.72, discretisation x 1.00";
+        assert_eq!(prediction.sources_in_words('x'), words);
     }
 
     #[test]

@@ -133,10 +133,7 @@ pub(super) fn notes(results: &Results) -> Vec<Finding> {
 /// Returns the origin of the interval of the mass, in two sentences.
 pub(super) fn interval(results: &Results) -> Option<String> {
     let prediction = results.summary.as_ref()?.prediction.as_ref()?;
-    let sources = prediction.sources.iter();
-    let sources =
-        sources.map(|source| format!("{} × {}", source.source, significant(source.factor, 3)));
-    let sources = sources.collect::<Vec<_>>().join(", ");
+    let sources = prediction.sources_in_words('×');
     let measured = prediction.measured.iter();
     let measured: String = measured
         .map(|measured| format!(" {}.", first_letter_large(measured)))
