@@ -207,7 +207,9 @@ impl Prediction {
             .map(|source| format!("{} {times} {:.2}", source.source, source.factor))
             .collect();
         if !self.sources.iter().any(|own| own.source == DISCRETISATION) {
-            words.push(format!("without {DISCRETISATION}, whose error is not estimated"));
+            words.push(format!(
+                "without {DISCRETISATION}, whose error is not estimated"
+            ));
         }
         words.join(", ")
     }

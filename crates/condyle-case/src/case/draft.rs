@@ -83,8 +83,10 @@ impl Drafted {
             (x, z) = start(&femur_shell);
         }
         of_femur.push(of_side);
+        // Adding 0 makes -0 positive.
+        let [x, z] = [x, z].map(|value| (10.0 * value).round() / 10.0 + 0.0);
         let keys = format!(
-            "title = \"Untitled\"\nside = \"{}\"\n{femur_keys}start_mm = [{x:.1}, {z:.1}]\n{insert_keys}{machine}",
+            "title = \"Untitled\"\nside = \"{}\"\n{femur_keys}start_mm = [{x:?}, {z:?}]\n{insert_keys}{machine}",
             side.word()
         );
         let text = Case::parse(&keys, "draft", folder)?.as_draft_in(folder);

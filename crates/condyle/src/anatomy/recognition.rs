@@ -124,6 +124,8 @@ impl Recognition {
 /// Height above the lowest row of a dish or a condyle within which rows are averaged, as a share of the
 /// body's longest extent: on a flat one the middle of the flat part counts.
 const FLAT: f64 = 0.003;
+/// Part of a side's rows within that height above which the side is a plateau, which no start is over.
+const PLATEAU: f64 = 0.8;
 
 /// Returns the start position of the femoral frame in the insert frame, (x, z), mm, at which the lowest points of the
 /// condyles are over the lowest points of the dishes, and the middle of the femur is over the middle of the insert.
@@ -151,18 +153,26 @@ pub fn start_over_the_dishes_mm(
 /// Returns the row at which both sides are highest towards the viewer, or lowest (`sign` -1); the ends do not count,
 /// where an insert may be bevelled.
 fn farthest_row(picture: &Picture, sign: f64) -> f64 {
+    let rows = || part(picture.rows, 0.2, 0.8);
     let side = |from, to| {
         let height = |row: usize| median(picture.across(row, from, to)).map(|height| sign * height);
-        let rows = || part(picture.rows, 0.2, 0.8);
         let farthest = rows().filter_map(height).reduce(f64::max);
         let is_far = |row: &usize| {
             height(*row)
                 .zip(farthest)
                 .is_some_and(|(one, far)| one > far - FLAT)
         };
-        mean(rows().filter(is_far).map(|row| row as f64 + 0.5))
+        let is_plateau = rows().filter(is_far).count() as f64 > PLATEAU * rows().len() as f64;
+        (
+            mean(rows().filter(is_far).map(|row| row as f64 + 0.5)),
+            is_plateau,
+        )
     };
-    (side(0.2, 0.35) + side(0.65, 0.8)) / 2.0
+    match [side(0.2, 0.35), side(0.65, 0.8)] {
+        // The femur starts over the only dish.
+        [(_, true), (dish, false)] | [(dish, false), (_, true)] => dish,
+        [(left, _), (right, _)] => (left + right) / 2.0,
+    }
 }
 
 fn middle_z(mesh: &TriangleMesh) -> f64 {

@@ -21,6 +21,10 @@ const ACROSS: (f64, f64) = (0.1, 0.425);
 /// Height above the lowest place within which places are averaged, mm: their middle does not jump with the mesh, as
 /// the lowest place does.
 const LOW_MM: f64 = 0.3;
+/// A dish has at least one in this many of its side's points within that height: those of sound knees have ten.
+const MIN_POINTS_OF_DISH: usize = 200;
+/// Part of a side's points within that height above which the side is a plateau, whose lowest place is anywhere on it.
+const PLATEAU: f64 = 0.8;
 
 /// Half-width of the eminence, relative to the distance of the dishes from the middle; the contact of knees begins at about 0.6.
 const EMINENCE: f64 = 0.4;
@@ -30,7 +34,7 @@ impl Dishes {
     /// none.
     ///
     /// The lowest place of a side is the middle of its points less than 0.3 mm above the lowest one, without rim and
-    /// eminence.
+    /// eminence. That of a plateau opposite to a dish mirrors the lowest place of the dish.
     pub fn find(points: &[Vec3]) -> Option<Self> {
         let (low, high) = bounds(points);
         let size = high - low;
@@ -44,9 +48,17 @@ impl Dishes {
         let lateral = points
             .iter()
             .filter(|point| in_dish(point, high.z - point.z));
+        let (mut medial_mm, is_medial_flat) = lowest(&medial.collect::<Vec<_>>())?;
+        let (mut lateral_mm, is_lateral_flat) = lowest(&lateral.collect::<Vec<_>>())?;
+        let mirrored = |own: Vec3, other: Vec3| Vec3::new(other.x, own.y, low.z + high.z - other.z);
+        match (is_medial_flat, is_lateral_flat) {
+            (true, false) => medial_mm = mirrored(medial_mm, lateral_mm),
+            (false, true) => lateral_mm = mirrored(lateral_mm, medial_mm),
+            _ => {}
+        }
         Some(Self {
-            medial_mm: lowest(&medial.collect::<Vec<_>>())?,
-            lateral_mm: lowest(&lateral.collect::<Vec<_>>())?,
+            medial_mm,
+            lateral_mm,
         })
     }
 
@@ -67,14 +79,24 @@ impl Dishes {
     }
 }
 
-fn lowest(points: &[&Vec3]) -> Option<Vec3> {
-    let heights = points.iter().map(|point| point.y);
-    let lowest = heights.fold(f64::INFINITY, f64::min);
-    let low = points.iter().filter(|point| point.y < lowest + LOW_MM);
+/// Returns the lowest place of a side, and whether the side is a plateau.
+fn lowest(points: &[&Vec3]) -> Option<(Vec3, bool)> {
+    let mut heights: Vec<f64> = points.iter().map(|point| point.y).collect();
+    heights.sort_unstable_by(f64::total_cmp);
+    // The middle of enough points: the fillet of a rounded corner may reach lower.
+    let enough = heights.len() / MIN_POINTS_OF_DISH;
+    let at_bottom = heights
+        .windows(enough + 1)
+        .find(|few| few[enough] < few[0] + LOW_MM)?;
+    let lowest = at_bottom[0];
+    let low = points
+        .iter()
+        .filter(|point| (lowest..lowest + LOW_MM).contains(&point.y));
     let (count, sum) = low.fold((0.0, Vec3::zeros()), |(count, sum), point| {
         (count + 1.0, sum + **point)
     });
-    (count > 0.0).then(|| Vec3::new(sum.x / count, lowest, sum.z / count))
+    let place = Vec3::new(sum.x / count, lowest, sum.z / count);
+    Some((place, count > PLATEAU * points.len() as f64))
 }
 
 /// Returns the centre (x, y) of the circle that fits the posterior condyles in the sagittal plane, mm.
@@ -130,6 +152,36 @@ mod tests {
             Dishes::find(&moved).unwrap(),
         );
         assert!((there.middle_mm() - here.middle_mm() - shift).norm() < 1e-9);
+    }
+
+    /// A medial pivot: the lateral side is a plane, whose lowest place says nothing.
+    #[test]
+    fn verify_a_plateau_mirrors_the_dish_on_the_other_side() {
+        // The corner of the plateau is rounded.
+        let pivot = |point: &Vec3| {
+            let x = point.x - 5.0;
+            let height = if point.z < 0.0 {
+                point.y - 0.01 * point.x.powi(2) + 0.01 * x * x
+            } else {
+                0.001 * x
+            };
+            Vec3::new(point.x, height, point.z)
+        };
+        let corner = Vec3::new(15.0, -0.9, 28.0);
+        let points = generic()
+            .iter()
+            .map(pivot)
+            .chain([corner])
+            .collect::<Vec<_>>();
+        let Dishes {
+            medial_mm,
+            lateral_mm,
+        } = Dishes::find(&points).unwrap();
+        assert!(
+            (medial_mm.z + 23.0).abs() < 0.5 && medial_mm.x > 1.0,
+            "{medial_mm}"
+        );
+        assert_eq!((lateral_mm.x, lateral_mm.z), (medial_mm.x, -medial_mm.z));
     }
 
     #[test]
