@@ -194,7 +194,7 @@ fn doubts_travel_with_the_tests() {
     let said = bench.say(&["study", "study.toml", "--out", "out"]);
     assert!(
         said.out
-            .contains("2 of 2 tests are doubtful, most often by wear_at_rim"),
+            .contains("2 of 2 tests are doubtful (wear_at_rim in 2"),
         "{}",
         said.out
     );

@@ -59,6 +59,12 @@ impl Curve {
     pub(crate) fn named(self, name: String) -> Self {
         Self { name, ..self }
     }
+
+    /// Returns whether two of its points are joined.
+    fn has_line(&self) -> bool {
+        let joined = |pair: &[(f64, f64)]| pair.iter().all(|point| point.1.is_finite());
+        self.points.windows(2).any(joined)
+    }
 }
 
 #[derive(Clone, Debug, Default)]
@@ -168,14 +174,8 @@ impl Panel {
         path.open(points());
         let mut out = format!(r#"<path class="{}" d="{}"/>"#, curve.class, path.data());
         if curve.has_dots {
-            let class = match curve.class {
-                "first" | "last" => "dot".to_owned(),
-                own => format!("dot {own}"),
-            };
             let seen = points().filter(|point| point.1.is_finite());
-            out.extend(seen.map(|(x, y)| {
-                format!(r#"<circle class="{class}" cx="{x:.1}" cy="{y:.1}" r="2.6"/>"#)
-            }));
+            out.extend(seen.map(|(x, y)| dot(curve.class, x, y)));
         }
         if let (Some(label), Some((x, y))) = (&curve.end, points().next_back()) {
             let (x, y) = (x + 4.0, y - 9.0);
@@ -204,6 +204,14 @@ impl Panel {
     }
 }
 
+fn dot(class: &str, x: f64, y: f64) -> String {
+    let class = match class {
+        "first" | "last" => "dot".to_owned(),
+        own => format!("dot {own}"),
+    };
+    format!(r#"<circle class="{class}" cx="{x:.1}" cy="{y:.1}" r="2.6"/>"#)
+}
+
 /// Returns an SVG file of panels in rows of `columns`, with a key of (class, meaning) below.
 pub(crate) fn sheet(
     title: &str,
@@ -229,9 +237,15 @@ pub(crate) fn sheet(
     for (class, meaning) in key {
         let (end, text, base) = (x + 24.0, x + 32.0, y + 3.8);
         let words = escape(meaning);
-        body += &format!(
-            r#"<path class="{class}" d="M{x} {y}H{end}"/><text x="{text}" y="{base}">{words}</text>"#
-        );
+        let own = || panels.iter().flat_map(|panel| &panel.curves);
+        let own = || own().filter(|curve| curve.class == *class);
+        if own().any(Curve::has_line) {
+            body += &format!(r#"<path class="{class}" d="M{x} {y}H{end}"/>"#);
+        }
+        if own().any(|curve| curve.has_dots) {
+            body += &dot(class, x + 12.0, y);
+        }
+        body += &format!(r#"<text x="{text}" y="{base}">{words}</text>"#);
         x += PITCH.max(56.0 + LETTER * meaning.chars().count() as f64);
     }
     svg_file(title, desc, size, &body)

@@ -27,14 +27,15 @@ pub(crate) fn colour_variables() -> (String, String) {
 /// Returns an SVG file of a drawing of `size` (width, height) px, on white.
 pub(crate) fn svg_file(title: &str, desc: &str, size: (f64, f64), body: &str) -> String {
     let (width, height) = (size.0 + 2.0 * MARGIN, size.1 + 2.0 * MARGIN);
-    let (title, desc) = (escape(title), escape(desc));
+    // On a page, texts of all pictures have about the same size.
+    let (title, desc, widest) = (escape(title), escape(desc), 1.25 * width);
     // The colours of white paper are filled in: readers of SVG files have no CSS variables.
     let fill = |css: String, (name, light, _): (&str, &str, &str)| {
         css.replace(&format!("var(--{name})"), light)
     };
     let style = COLOURS.into_iter().fold(STYLE.to_owned(), fill);
     format!(
-        r##"<svg xmlns="http://www.w3.org/2000/svg" class="fig" role="img" aria-labelledby="t d" viewBox="0 0 {width} {height}" width="{width}" height="{height}"><title id="t">{title}</title><desc id="d">{desc}</desc><style>{style}</style><rect width="{width}" height="{height}" fill="#fff"/><g transform="translate({MARGIN} {MARGIN})">{body}</g></svg>
+        r##"<svg xmlns="http://www.w3.org/2000/svg" class="fig" role="img" aria-labelledby="t d" viewBox="0 0 {width} {height}" width="{width}" height="{height}" style="max-width:{widest:.0}px"><title id="t">{title}</title><desc id="d">{desc}</desc><style>{style}</style><rect width="{width}" height="{height}" fill="#fff"/><g transform="translate({MARGIN} {MARGIN})">{body}</g></svg>
 "##
     )
 }

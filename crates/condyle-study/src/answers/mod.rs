@@ -8,6 +8,8 @@ pub(crate) mod ranking;
 pub(crate) mod robust;
 pub(crate) mod words;
 
+use std::{cmp::Reverse, collections::BTreeMap};
+
 use condyle_lab::aligned;
 use condyle_report::study::title_of_path;
 use condyle_results::split_unit;
@@ -68,7 +70,7 @@ fn by_kind(reasons: Vec<(String, u64)>) -> Vec<TestsByReason> {
             None => kinds.push(TestsByReason { reason, tests }),
         }
     }
-    kinds.sort_by_key(|kind| std::cmp::Reverse(kind.tests));
+    kinds.sort_by_key(|kind| Reverse(kind.tests));
     kinds
 }
 
@@ -162,14 +164,25 @@ impl Answers {
         })
     }
 
-    /// Returns the number of doubtful tests and their most frequent doubts in a sentence; none if all are sound.
+    /// Returns the number of doubtful tests and that of each doubt, the most frequent first, in a sentence; none if all are sound.
     pub(crate) fn doubts(&self) -> Option<String> {
-        let most = &self.doubtful.first()?.reason;
+        let mut tests_by_check = BTreeMap::new();
+        for TestsByReason { reason, tests } in &self.doubtful {
+            for check in reason.split_whitespace() {
+                *tests_by_check.entry(check).or_insert(0) += tests;
+            }
+        }
+        let mut by_check: Vec<_> = tests_by_check.into_iter().collect();
+        by_check.sort_by_key(|(_, tests)| Reverse(*tests));
+        let by_check = by_check
+            .into_iter()
+            .map(|(check, tests)| format!("{check} in {tests}"));
+        let by_check = by_check.collect::<Vec<_>>().join(", ");
         let tests: u64 = self.doubtful.iter().map(|one| one.tests).sum();
         let kept = self.kept;
-        Some(format!(
-            "{tests} of {kept} tests are doubtful, most often by {most}: see the column reason of table.csv.\n"
-        ))
+        (tests > 0).then(|| {
+            format!("{tests} of {kept} tests are doubtful ({by_check}): see the column reason of table.csv.\n")
+        })
     }
 
     pub(crate) fn failed_tests(&self) -> u64 {
@@ -589,7 +602,7 @@ fn end_of_search(standing: &Standing, minimised: &str, unit: &str) -> String {
         "The optimum may be local; allow more tests"
     };
     format!(
-        "{end}: another test is expected to lower {minimised} by {improvement} {unit} at most. Its emulator (Q2 {:.4}) predicts the \
+        "{end}: another test is expected to lower the {minimised} by {improvement} {unit} at most. Its emulator (Q2 {:.4}) predicts the \
          best test from the others within {error} {unit}.\n",
         standing.q2
     )

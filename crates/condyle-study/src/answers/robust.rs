@@ -89,8 +89,8 @@ impl Robust {
             ""
         };
         format!(
-            "The robust optimum, row {row}, has less {label} than the first design under {beats} of the disturbances, and keeps \
-             every limit under {all}; its {statistic} is {own} {unit}, that of the first design {other} {unit}.{end}"
+            "The {label} of the robust optimum, row {row}, is less than that of the first design under {beats} of the disturbances, \
+             and every limit is kept under {all}; its {statistic} is {own} {unit}, that of the first design {other} {unit}.{end}"
         )
     }
 
