@@ -126,6 +126,9 @@ fn table(calibration: &Calibration) -> Lines {
             test.fitted_mg_per_million_cycles,
             test.fitted_above_measured_percent
         ));
+        for remark in &test.remarks {
+            lines.line(format!("  note: {remark}"));
+        }
     }
     if let Some(times) = &calibration.times_as_much {
         let interval = ends(times.interval, |end| format!("{end:.4}"));

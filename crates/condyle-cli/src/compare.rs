@@ -41,6 +41,9 @@ pub fn compare(arguments: &Compare) -> Done {
     if let Some(surface) = &comparison.surface {
         add_surface(surface, &mut lines);
     }
+    for remark in &comparison.remarks {
+        lines.line(format!("note: {remark}"));
+    }
     let files = written.iter().map(|path| path.display().to_string());
     lines.line(format!("wrote {}", files.collect::<Vec<_>>().join(", ")));
     output::print_with_folder(lines.text(), out)
@@ -134,14 +137,6 @@ fn add_gravimetric(gravimetric: &GravimetricComparison, lines: &mut Lines) {
         lines.line(format!(
             "  {} the interval of the mean of the specimens",
             inside(is_inside)
-        ));
-    }
-    let missed = gravimetric.weighings.iter();
-    let missed = missed.filter(|weighing| weighing.in_line && weighing.predicted_loss_mg.is_none());
-    let count = missed.count();
-    if count > 0 {
-        lines.line(format!(
-            "note: the run ends before {count} of the weighings, which the predicted line omits"
         ));
     }
     lines.line("");

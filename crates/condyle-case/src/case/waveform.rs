@@ -216,7 +216,19 @@ pub(super) fn read(
     }
     // Drift is that of the scaled values, so that the seam closes in the unit of the machine.
     if keys.remove_drift {
-        knots = without_drift(&knots);
+        let Some(levelled) = without_drift(&knots) else {
+            let message = format!(
+                "{} cannot lose its drift: its points end before the cycle",
+                section.name()
+            );
+            let fault = Fault::new(
+                message,
+                "give points up to 100 %, or to the last sample before it",
+            );
+            log.problem(section.value_span("remove_drift"), fault);
+            return None;
+        };
+        knots = levelled;
     }
     let interpolation = keys.interpolation.unwrap_or(samples.interpolation);
     let mut waveform = Waveform::new(knots.clone(), interpolation);
@@ -226,7 +238,11 @@ pub(super) fn read(
     let (index, fault) = match waveform {
         Ok(waveform) => match first_outside(channel, &knots) {
             Some(found) => found,
-            None => return Some(waveform),
+            None => match beyond_points(channel, &waveform) {
+                // It is between the points.
+                Some(fault) => (knots.len(), fault),
+                None => return Some(waveform),
+            },
         },
         Err(error) => {
             let advice = match error {
@@ -335,9 +351,14 @@ fn from_file(
     let split = Columns::split(source.inner(), &file.name(), &example);
     let columns = log.noted(&source, split)?;
     let names = columns.names();
-    let index = match column {
-        Some(column) => (1..names.len()).find(|&index| names[index] == column),
-        None => (names.len() == 2).then_some(1),
+    let mut named = (1..names.len()).filter(|&index| Some(names[index]) == column);
+    let index = match (named.next(), named.next()) {
+        (Some(_), Some(again)) => {
+            let fault = repeated_column(names[again]);
+            return log.noted(&source, Err(vec![(columns.name_span(again), fault)]));
+        }
+        (found, _) if column.is_some() => found,
+        _ => (names.len() == 2).then_some(1),
     };
     let Some(index) = index else {
         let (columns, file) = (&names[1..], file.name());
@@ -367,15 +388,13 @@ fn from_file(
         );
         problems.push((columns.name_span(0), fault));
     }
-    // The unit ends what precedes a bracket, as in `ant_mm(xtrans)`.
-    let name = names[index].split('(').next().unwrap_or_default();
     let unit = unit_of(key);
-    if unit_of(&name.to_lowercase()) != unit {
+    if columns.unit(index) != unit {
         let fault = other_unit(names[index], unit.unwrap_or_default(), suffix);
         problems.push((columns.name_span(index), fault));
     }
     let read = if problems.is_empty() {
-        column_points(&columns, index)
+        column_points(&columns, index).and_then(within_a_cycle)
     } else {
         Err(problems)
     };
@@ -402,6 +421,21 @@ impl Samples {
     }
 }
 
+/// Rejects points whose cycle runs from 0 to 1.
+fn within_a_cycle((knots, spans): PlacedKnots) -> Result<PlacedKnots, Vec<Placed>> {
+    match knots.last() {
+        Some(last) if last.percent <= 1.0 && knots.len() > 2 => {
+            let message = format!("the points end at {} % of the cycle", last.percent);
+            let fault = Fault::new(
+                message,
+                "give percent from 0 to 100, not parts of the cycle from 0 to 1",
+            );
+            Err(vec![(spans[knots.len() - 1].clone(), fault)])
+        }
+        _ => Ok((knots, spans)),
+    }
+}
+
 /// Reads percent from the first column and values from column `index`.
 fn column_points(columns: &Columns<'_>, index: usize) -> Result<PlacedKnots, Vec<Placed>> {
     let (percents, values) = match (columns.numbers(0), columns.numbers(index)) {
@@ -421,9 +455,16 @@ fn column_points(columns: &Columns<'_>, index: usize) -> Result<PlacedKnots, Vec
     Ok(rows.unzip())
 }
 
+/// Part of the largest value by which others may be outside the range: a load cell reads a few newtons below zero without a load,
+/// and so does a low pass.
+const ROUGHLY: f64 = 0.01;
+
 fn first_outside(channel: &Channel, knots: &[Knot]) -> Option<(usize, Fault)> {
     let limits = limits(channel);
-    let index = knots.iter().position(|knot| !limits.allow(knot.value))?;
+    let sizes = knots.iter().map(|knot| knot.value.abs());
+    let rough = ROUGHLY * sizes.fold(0.0, f64::max).min(channel.most);
+    let allowed = within(channel.least - rough, channel.most + rough);
+    let index = knots.iter().position(|knot| !allowed.allow(knot.value))?;
     let (knot, unit) = (
         &knots[index],
         unit_of(knots_key(channel).name).unwrap_or_default(),
@@ -431,6 +472,21 @@ fn first_outside(channel: &Channel, knots: &[Knot]) -> Option<(usize, Fault)> {
     let value = format!("{} {unit} at {} %", plain(knot.value), knot.percent);
     let fault = out_of_range(channel.name, &value, &format!("{limits} {unit}"));
     Some((index, fault))
+}
+
+/// Returns the fault of values outside the range between the points, which a spline or a low pass makes.
+fn beyond_points(channel: &Channel, waveform: &Waveform) -> Option<Fault> {
+    let percents = (0..1000).map(|place| 0.1 * f64::from(place));
+    let values: Vec<Knot> = percents
+        .map(|percent| Knot {
+            percent,
+            value: waveform.at(percent / 100.0).0,
+        })
+        .collect();
+    let (_, fault) = first_outside(channel, &values)?;
+    let advice = "the spline between the points, or the low pass, leaves the range: give more points, keep more harmonics, or write \
+                  `interpolation = \"half-cosine\"`";
+    Some(Fault::new(fault.message, advice))
 }
 
 /// Returns the index of the point at fault.

@@ -5,6 +5,7 @@ use std::ops::Range;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
+use condyle::parameter::unit_of;
 use condyle_mesh::files::Files;
 #[cfg(feature = "file-system")]
 use condyle_mesh::files::path_from;
@@ -127,10 +128,18 @@ pub(crate) struct Columns<'a> {
     rows: Vec<Vec<Range<usize>>>,
 }
 
-/// Returns whether a line has a number, perhaps with a decimal comma, before a semicolon.
-fn has_semicolons(line: &str) -> bool {
-    let first = line.split_once(';').map(|(first, _)| first.trim());
-    first.is_some_and(|first| first.replacen(',', ".", 1).parse::<f64>().is_ok())
+/// Returns whether a line has a number, perhaps with a decimal comma, before a separator other than the comma.
+fn is_separated_by(separator: char, line: &str) -> bool {
+    let first = line.split_once(separator);
+    let first = first.map(|(first, _)| first.trim_matches(is_around_cell));
+    first.is_some_and(|first| {
+        !first.ends_with(',') && first.replacen(',', ".", 1).parse::<f64>().is_ok()
+    })
+}
+
+/// Returns whether a character may stand around the content of a cell: spreadsheets put quote marks there.
+fn is_around_cell(letter: char) -> bool {
+    letter.is_whitespace() || letter == '"'
 }
 
 /// A number and its place.
@@ -144,18 +153,20 @@ impl<'a> Columns<'a> {
     /// Splits `text` into a header and rows; `example` shows a header where there is none.
     ///
     /// The header is the last line above the numbers with as many names as they have columns, and
-    /// may be a comment; a name ends at a blank, so that a remark may follow the last.
+    /// may be a comment; the last name ends at a blank, so that a remark may follow it.
     pub(crate) fn split(text: &'a str, file: &str, example: &str) -> Result<Self, Vec<Placed>> {
+        let written = text;
+        let is_separator = |one: &char| text.lines().any(|line| is_separated_by(*one, line));
+        let separator = [';', '\t'].into_iter().find(is_separator);
         // As many bytes, so that places stay: spreadsheets of some languages write semicolons and decimal commas.
-        let shown = if text.lines().any(has_semicolons) {
-            Cow::Owned(text.replace(',', ".").replace(';', ","))
-        } else {
-            Cow::Borrowed(text)
+        let shown = match separator {
+            Some(separator) => Cow::Owned(text.replace(',', ".").replace(separator, ",")),
+            None => Cow::Borrowed(text),
         };
         let text = shown.as_ref();
         let is_data = |line: &Range<usize>| {
-            let first = text[line.clone()].split(',').next().unwrap_or_default();
-            first.trim().parse::<f64>().is_ok()
+            let first = cells(text, line).first().cloned().unwrap_or_default();
+            text[first].parse::<f64>().is_ok()
         };
         let lines: Vec<Range<usize>> = lines(text).collect();
         let start = lines.iter().position(is_data).unwrap_or(lines.len());
@@ -179,20 +190,18 @@ impl<'a> Columns<'a> {
             );
             return Err(vec![(first, fault)]);
         };
-        // Cells of a header lose the `#` of a comment, and end at a blank.
-        let name = |span: Range<usize>| {
-            let name = text[span.clone()].trim_start_matches(['#', ' ', '\t']);
-            let start = span.end - name.len();
-            let length = name.find(char::is_whitespace).unwrap_or(name.len());
-            start..start + length
-        };
         let is_row = |line: &&Range<usize>| !text[(*line).clone()].trim_start().starts_with('#');
         let rows = lines[start..].iter().filter(is_row);
-        let header = cells(text, header).into_iter().map(name).collect();
-        let rows = rows.map(|line| cells(text, line)).collect();
+        let rows: Vec<_> = rows.map(|line| cells(text, line)).collect();
+        too_many_cells(&rows, columns)?;
+        if separator.is_some() {
+            no_thousands(written, &rows)?;
+        }
+        let header = cells(text, header).into_iter().enumerate();
+        let header = header.map(|(index, span)| name_in(text, span, index + 1 == columns));
         Ok(Self {
+            header: header.collect(),
             text: shown,
-            header,
             rows,
         })
     }
@@ -200,6 +209,13 @@ impl<'a> Columns<'a> {
     pub(crate) fn names(&self) -> Vec<&str> {
         let name = |span: &Range<usize>| &self.text[span.clone()];
         self.header.iter().map(name).collect()
+    }
+
+    /// Returns the unit of a column: it ends the name, or what precedes a bracket as in `ant_mm(xtrans)`, or stands in brackets.
+    pub(crate) fn unit(&self, column: usize) -> Option<&'static str> {
+        let name = self.names()[column].to_lowercase();
+        let (stem, bracket) = name.split_once(['(', '[']).unwrap_or((&name, ""));
+        unit_of(stem.trim_end()).or_else(|| unit_in_brackets(bracket))
     }
 
     pub(crate) fn name_span(&self, column: usize) -> Range<usize> {
@@ -240,6 +256,89 @@ impl<'a> Columns<'a> {
     }
 }
 
+/// Returns the place of a name within a cell of a header: without the `#` of a comment, and the last without a remark.
+fn name_in(text: &str, span: Range<usize>, is_last: bool) -> Range<usize> {
+    let name = text[span.clone()].trim_start_matches(|one: char| one == '#' || is_around_cell(one));
+    let start = span.end - name.len();
+    let remark = name.find(char::is_whitespace).filter(|_| is_last);
+    let is_unit = |at: &usize| {
+        unit_in_brackets(name[*at..].trim_start().trim_start_matches(['(', '['])).is_some()
+    };
+    let end = remark.filter(|at| !is_unit(at)).unwrap_or(name.len());
+    start..start + end
+}
+
+fn unit_in_brackets(text: &str) -> Option<&'static str> {
+    let unit = text.strip_suffix([')', ']'])?;
+    unit_of(&format!("_{}", unit.trim().to_lowercase()))
+}
+
+/// Reports rows with more cells than the header has names: of a decimal comma, a comma for thousands, or another table.
+fn too_many_cells(rows: &[Vec<Range<usize>>], columns: usize) -> Result<(), Vec<Placed>> {
+    let longer = rows.iter().filter_map(|row| {
+        let own = row.iter().skip(columns).find(|cell| !cell.is_empty())?;
+        Some((own.clone(), row.len()))
+    });
+    let problem = |(span, count): (Range<usize>, usize)| {
+        let message = format!("the row has {count} cells where the header has {columns}");
+        let advice = "separate the columns by semicolons if the numbers have decimal commas, and write no thousands separators";
+        (span, Fault::new(message, advice))
+    };
+    let problems: Vec<Placed> = longer.map(problem).collect();
+    if problems.is_empty() {
+        Ok(())
+    } else {
+        Err(problems)
+    }
+}
+
+/// Reports numbers of a file without comma-separated columns that may have thousands separators.
+fn no_thousands(text: &str, rows: &[Vec<Range<usize>>]) -> Result<(), Vec<Placed>> {
+    let of = |mark: char| {
+        rows.iter()
+            .flatten()
+            .find(|cell| text[(*cell).clone()].contains(mark))
+    };
+    let problem = |span: &Range<usize>| {
+        let number = &text[span.clone()];
+        let message = format!("`{number}` may have a decimal separator or one of thousands");
+        let fault = Fault::new(
+            message,
+            "write the numbers of the file without thousands separators",
+        );
+        Err(vec![(span.clone(), fault)])
+    };
+    if let (Some(_), Some(with_comma)) = (of('.'), of(',')) {
+        return problem(with_comma);
+    }
+    // A column like 964, 1,018 has groups of three digits after the mark, and none in its numbers below a thousand.
+    let columns = rows.iter().map(Vec::len).max().unwrap_or(0);
+    for column in 0..columns {
+        let own = rows.iter().filter_map(|row| row.get(column));
+        let (marked, plain): (Vec<_>, Vec<_>) =
+            own.partition(|cell| text[(*cell).clone()].contains(['.', ',']));
+        let is_grouped = |cell: &&Range<usize>| {
+            let (whole, group) = text[(*cell).clone()]
+                .split_once(['.', ','])
+                .unwrap_or_default();
+            let whole = whole.trim_start_matches('-');
+            group.len() == 3 && (1..=3).contains(&whole.len()) && !whole.starts_with('0')
+        };
+        let is_hundreds = |cell: &Range<usize>| {
+            text[cell.clone()]
+                .parse()
+                .is_ok_and(|value: f64| (100.0..1000.0).contains(&value.abs()))
+        };
+        if let Some(first) = marked.first()
+            && marked.iter().all(is_grouped)
+            && plain.into_iter().any(is_hundreds)
+        {
+            return problem(first);
+        }
+    }
+    Ok(())
+}
+
 /// Returns the lines that are not blank.
 pub(crate) fn lines(text: &str) -> impl Iterator<Item = Range<usize>> + '_ {
     let mut start = 0;
@@ -253,12 +352,12 @@ pub(crate) fn lines(text: &str) -> impl Iterator<Item = Range<usize>> + '_ {
         .filter(|line| !line.is_empty())
 }
 
-/// Returns the cells of a line, without blanks around them.
+/// Returns the cells of a line, without blanks and quote marks around them.
 pub(crate) fn cells(text: &str, line: &Range<usize>) -> Vec<Range<usize>> {
     let mut start = line.start;
     let cell = |cell: &str| {
-        let before = cell.len() - cell.trim_start().len();
-        let span = start + before..start + before + cell.trim().len();
+        let before = cell.len() - cell.trim_start_matches(is_around_cell).len();
+        let span = start + before..start + before + cell.trim_matches(is_around_cell).len();
         start += cell.len() + 1;
         span
     };
@@ -273,6 +372,11 @@ pub(crate) fn no_column(column: &str, file: &str, columns: &[&str]) -> Fault {
     )
 }
 
+pub(crate) fn repeated_column(column: &str) -> Fault {
+    let message = format!("the column `{column}` is in its file twice");
+    Fault::new(message, "give each column its own name")
+}
+
 pub(crate) fn other_unit(column: &str, unit: &str, suffix: &str) -> Fault {
     Fault::new(
         format!("column `{column}` has another unit than {unit}, which is needed here"),
@@ -283,6 +387,60 @@ pub(crate) fn other_unit(column: &str, unit: &str, suffix: &str) -> Fault {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    fn numbers(text: &str) -> Result<Vec<f64>, String> {
+        let columns = Columns::split(text, "x.csv", "percent,y_mm");
+        let cells = columns.and_then(|columns| columns.numbers(1));
+        let values = cells.map(|cells| cells.iter().map(|cell| cell.value).collect());
+        values.map_err(|faults| format!("{} {}", &text[faults[0].0.clone()], faults[0].1.message))
+    }
+
+    #[test]
+    fn verify_columns_that_spreadsheets_write() {
+        for text in [
+            "percent;y_mm\n0;1,5\n50;2\n",
+            "percent\ty_mm\r\n0\t1,5\r\n50\t2\r\n",
+            "\"percent\",\"y_mm\"\n\"0\",\"1.5\"\n\"50\",\"2\"\n",
+            "percent,y_mm,,\n0,1.5,,\n50,2,,\n",
+        ] {
+            assert_eq!(numbers(text), Ok(vec![1.5, 2.0]), "{text}");
+        }
+    }
+
+    #[test]
+    fn cells_beyond_the_header_and_separators_of_thousands_are_refused() {
+        for (text, shown) in [
+            ("percent,y_mm\n0,5\n1,6,29\n", "29 the row has 3 cells"),
+            ("percent;y_n\n0;964\n1;1,018\n", "1,018 `1,018` may have"),
+            ("percent;y_n\n0;964\n1;1.018\n", "1.018 `1.018` may have"),
+            (
+                "percent;y_n\n0.0;964\n1.0;1,018\n",
+                "1,018 `1,018` may have",
+            ),
+        ] {
+            let fault = numbers(text).unwrap_err();
+            assert!(fault.starts_with(shown), "{text}: {fault}");
+        }
+        // Three decimals below a hundred are no thousands.
+        assert_eq!(
+            numbers("percent;y_mm\n0;64\n1;1,018\n"),
+            Ok(vec![64.0, 1.018])
+        );
+    }
+
+    #[test]
+    fn names_keep_their_words_and_units_may_stand_in_brackets() {
+        let text = "percent,force_N left,flexion [deg],x (mm)\n0,1,2,3\n";
+        let columns = Columns::split(text, "x.csv", "").unwrap();
+        assert_eq!(
+            columns.names(),
+            ["percent", "force_N left", "flexion [deg]", "x (mm)"]
+        );
+        assert_eq!(
+            (columns.unit(1), columns.unit(2), columns.unit(3)),
+            (None, Some("degrees"), Some("mm"))
+        );
+    }
 
     #[test]
     fn header_may_be_a_comment_with_a_remark() {

@@ -10,7 +10,7 @@ use super::key::{number, plain, quoted_list};
 /// A fault and its remedy in words; the remedy may be empty.
 #[derive(Clone, Debug)]
 pub(crate) struct Fault {
-    pub(super) message: String,
+    pub(crate) message: String,
     pub(super) advice: String,
 }
 

@@ -26,7 +26,7 @@ pub(crate) fn read_source(files: &dyn Files, path: &Path) -> Result<Source, Faul
         .map_err(|error| unreadable(&error.to_string()))?;
     match String::from_utf8(bytes) {
         Ok(text) => Ok(Arc::new(NamedSource::new(name, text))),
-        Err(_) => Err(unreadable("stream did not contain valid UTF-8")),
+        Err(_) => Err(unreadable("it is not UTF-8 text; save it in UTF-8")),
     }
 }
 

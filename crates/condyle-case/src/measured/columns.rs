@@ -13,11 +13,7 @@ pub(super) fn unless<T>(problems: Vec<Placed>, value: T) -> Result<T, Vec<Placed
 pub(super) fn repeated(columns: &Columns<'_>) -> Vec<Placed> {
     let names = columns.names();
     let again = |index: &usize| names[..*index].contains(&names[*index]);
-    let problem = |index: usize| {
-        let message = format!("the column `{}` is in its file twice", names[index]);
-        let fault = Fault::new(message, "give each column its own name");
-        (columns.name_span(index), fault)
-    };
+    let problem = |index: usize| (columns.name_span(index), repeated_column(names[index]));
     (0..names.len()).filter(again).map(problem).collect()
 }
 
@@ -29,7 +25,7 @@ pub(super) fn misnamed_first(columns: &Columns<'_>, wanted: &'static str) -> Opt
             format!("put `{wanted}` first, and name it so"),
         )
     };
-    (found != wanted).then(|| (columns.name_span(0), fault()))
+    (!found.eq_ignore_ascii_case(wanted)).then(|| (columns.name_span(0), fault()))
 }
 
 /// Reads the first column, whose numbers grow within `limits`, `range` in words.

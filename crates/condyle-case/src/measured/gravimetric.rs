@@ -32,6 +32,9 @@ settings! {
 const EXAMPLE: &str = "cycles,specimen_1_mg,soak_1_mg";
 /// Beginning of the names of soak controls, unless the file gives them.
 const SOAK: &str = "soak";
+/// Smallest plausible mass of a specimen, mg: a smaller one is in g, or its comma separates thousands. Our choice: a small pin weighs
+/// 100 mg.
+const MIN_MASS_MG: f64 = 50.0;
 /// A line with an interval needs one weighing more than it has parameters.
 const MIN_WEIGHINGS: usize = 3;
 
@@ -162,11 +165,11 @@ fn specimen(columns: &Columns<'_>, index: usize) -> Result<Specimen, Vec<Placed>
         return Err(vec![(columns.name_span(index), fault)]);
     };
     let cells = columns.numbers(index)?;
-    let limits = within(1.0, f64::INFINITY);
+    let limits = within(MIN_MASS_MG, f64::INFINITY);
     let specimen = Specimen {
         name: name.to_owned(),
         masses_mg: cells.iter().map(|cell| cell.value).collect(),
     };
-    let problems = outside(column, &cells, limits, "a mass of 1 mg or more");
+    let problems = outside(column, &cells, limits, "a mass of 50 mg or more");
     unless(problems, specimen)
 }

@@ -55,7 +55,7 @@ pub struct Weighing {
     pub loss_mg: Vec<f64>,
     /// Predicted loss, mg; none after the run's end.
     pub predicted_loss_mg: Option<f64>,
-    /// True if the weighing is used for the lines.
+    /// True if the weighing is used for the lines: the run reaches it, and it is not excluded as running-in.
     pub in_line: bool,
 }
 
@@ -82,6 +82,11 @@ pub(crate) fn compare(
     let weighings = weighings(measured, run)?;
     let keys = &measured.keys;
     let confidence = keys.confidence_percent / 100.0;
+    let predicted =
+        counted(&weighings).filter_map(|one| Some((one.cycles, one.predicted_loss_mg?)));
+    let predicted: Vec<(f64, f64)> = predicted.collect();
+    let too_short = CompareError::run_too_short(predicted.len());
+    let predicted = Rate::of_line("predicted", &predicted, confidence).ok_or(too_short)?;
     let specimens = measured.specimens.iter().enumerate();
     let specimens = specimens.filter_map(|(index, specimen)| {
         let losses = counted(&weighings).map(|one| (one.cycles, one.loss_mg[index]));
@@ -90,11 +95,6 @@ pub(crate) fn compare(
     let specimens: Vec<Rate> = specimens.collect();
     let all = Rate::of_line("all weighings", &all_losses(&weighings), confidence);
     let all = all.ok_or_else(|| CompareError::no_column("cycles"))?;
-    let predicted =
-        counted(&weighings).filter_map(|one| Some((one.cycles, one.predicted_loss_mg?)));
-    let predicted: Vec<(f64, f64)> = predicted.collect();
-    let too_short = CompareError::run_too_short(predicted.len());
-    let predicted = Rate::of_line("predicted", &predicted, confidence).ok_or(too_short)?;
     let rates: Vec<f64> = specimens
         .iter()
         .map(|one| one.mg_per_million_cycles)
@@ -132,6 +132,27 @@ pub(crate) fn compare(
 }
 
 impl GravimetricComparison {
+    /// Returns remarks on weighings that the run does not reach, and on specimens that gain mass.
+    pub(crate) fn remarks(&self) -> impl Iterator<Item = String> {
+        let missed = self.weighings.iter();
+        let missed = missed.filter(|weighing| weighing.predicted_loss_mg.is_none());
+        let missed = Some(missed.count())
+            .filter(|count| *count > 0)
+            .map(|count| {
+                format!("the run ends before {count} of the weighings, which the lines omit")
+            });
+        let gaining = self
+            .specimens
+            .iter()
+            .filter(|one| one.mg_per_million_cycles < 0.0);
+        let gaining = gaining.map(|Rate { name, .. }| {
+            format!(
+                "{name} gains mass: if it is a soak control, list its column in `soak_controls`"
+            )
+        });
+        missed.into_iter().chain(gaining)
+    }
+
     /// Returns the measured rate that calibration fits, with its interval.
     pub(crate) fn aim(&self) -> &Rate {
         match self.aim {
@@ -210,13 +231,16 @@ fn weighings(measured: &Gravimetric, run: &Table) -> Result<Vec<Weighing>, Compa
         let soak_gain_mg = if gains.is_empty() { 0.0 } else { mean(&gains) };
         // Polyethylene absorbs fluid: a worn specimen gains as much as an unloaded control.
         let loss = |specimen: &Specimen| soak_gain_mg - gain(specimen, row);
+        let predicted_loss_mg =
+            at(&predicted, cycles).and_then(|loss| Some(loss - at(&predicted, start)?));
+        let is_counted = row > 0 && cycles >= measured.keys.fit_from_cycles;
         Weighing {
             cycles,
             soak_gain_mg,
             loss_mg: measured.specimens.iter().map(loss).collect(),
-            predicted_loss_mg: at(&predicted, cycles)
-                .and_then(|loss| Some(loss - at(&predicted, start)?)),
-            in_line: row > 0 && cycles >= measured.keys.fit_from_cycles,
+            // Rates over different cycles would compare running-in with steady wear.
+            in_line: is_counted && predicted_loss_mg.is_some(),
+            predicted_loss_mg,
         }
     };
     Ok(measured.cycles.iter().enumerate().map(weighing).collect())

@@ -37,6 +37,8 @@ pub struct Comparison {
     pub gravimetric: Option<GravimetricComparison>,
     /// Wear by scanning.
     pub surface: Option<SurfaceComparison>,
+    /// Doubts about the run, and remarks on the measured data.
+    pub remarks: Vec<String>,
     /// The joint and its side.
     #[serde(skip)]
     pub directions: Directions,
@@ -67,9 +69,14 @@ pub fn compare(results: &Path, measured: &Path) -> Result<Comparison, CompareErr
         .scan
         .as_ref()
         .map(|scan| surface::compare(scan, results));
+    let gravimetric = gravimetric.transpose()?;
+    let doubts = run.summary.iter().flat_map(|summary| &summary.plausibility);
+    let doubts = doubts.map(|doubt| format!("the run is doubtful: {}", doubt.message));
+    let remarks = gravimetric.iter().flat_map(GravimetricComparison::remarks);
     Ok(Comparison {
         kinematics: kinematics.transpose()?,
-        gravimetric: gravimetric.transpose()?,
+        remarks: doubts.chain(remarks).collect(),
+        gravimetric,
         surface: surface.transpose()?,
         directions: run.directions(),
     })

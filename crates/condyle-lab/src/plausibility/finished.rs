@@ -107,6 +107,14 @@ impl<'a> Finished<'a> {
         })
     }
 
+    /// Returns the name of the activity of a cycle as it follows its cycle in a sentence; empty if there is only one.
+    pub fn activity_in_words(&self, cycle: &SolvedCycle<'_>) -> String {
+        match self.march.test().activities.as_slice() {
+            [_] => String::new(),
+            all => format!(" of {}", all[cycle.activity].name),
+        }
+    }
+
     /// Returns the machine of a cycle.
     pub fn machine(&self, cycle: &SolvedCycle<'_>) -> &'a Machine {
         &self.march.test().activities[cycle.activity].machine

@@ -51,6 +51,13 @@ const MIN_PEAK_LOAD_N: f64 = 10.0;
 /// radians and m, those of a hip and a knee are 0.75 and 0.005.
 const MIN_TURN_DEG: f64 = 2.0;
 const MIN_STROKE_MM: f64 = 0.1;
+/// The same of a prescribed AP motion of a joint, which in cm is 0.5.
+const MIN_AP_STROKE_MM: f64 = 1.0;
+/// Largest excess of the path of a prescribed motion over that of the smoothed motion, %; our choice: noise of 6 % changed the mass of
+/// a knee by 12 %.
+const MAX_NOISE_PERCENT: f64 = 3.0;
+/// Increments of a cycle from which smoothing keeps every motion of a joint.
+const MIN_ROWS_OF_NOISE: usize = 100;
 /// Smallest plausible peak of the axial force on specimens, N; our choice: pins are pressed by tens to hundreds of newtons.
 const MIN_PEAK_LOAD_OF_SPECIMENS_N: f64 = 1.0;
 
@@ -63,49 +70,56 @@ struct Missed {
     cycle: &'static str,
 }
 
-/// Warns of an axial load so small that its unit is probably not N.
+/// Warns of an axial load so small in an activity that its unit is probably not N.
 pub(crate) fn load_small(finished: &Finished<'_>) -> Option<PlausibilityWarning> {
     let tests = finished.march.test().machine().mechanism.tests;
-    let forces_n = finished.cycles().flat_map(|cycle| {
+    let peak_n = |cycle: SolvedCycle<'_>| {
         let machine = finished.machine(&cycle);
         let pressing = machine
             .pressing_joint()
             .map(|joint| &machine.joint(joint).drive);
-        let force_n = move |row: &CycleRow| match pressing {
+        let force_n = |row: &CycleRow| match pressing {
             // Inertia can multiply a small load.
             Some(Drive::Loaded(waveform)) => load(waveform, row).abs(),
             _ => row.axial_force_n,
         };
-        cycle.rows.iter().map(force_n)
-    });
-    let peak_n = forces_n.fold(0.0, f64::max);
+        let peak_n = cycle.rows.iter().map(force_n).fold(0.0, f64::max);
+        (peak_n, finished.activity_in_words(&cycle))
+    };
+    let peaks_n = finished.cycles().map(peak_n);
+    let (peak_n, of_activity) = peaks_n.min_by(|a, b| a.0.total_cmp(&b.0))?;
     let (tested, least_n) = match tests {
         TestedJoint::Specimen => ("specimen", MIN_PEAK_LOAD_OF_SPECIMENS_N),
         _ => ("joint", MIN_PEAK_LOAD_N),
     };
     let message = format!(
-        "the largest axial load is {peak_n:.1} N; that of a {tested} is at least {least_n:.0} N"
+        "the largest axial load{of_activity} is {peak_n:.1} N; that of a {tested} is at least {least_n:.0} N"
     );
     let advice = "Write loads in N: a waveform in kN needs scale = 1000.";
     let value = (peak_n, least_n, "N");
     (peak_n < least_n).then(|| warning("load_small", value, message, advice))
 }
 
-/// Warns of a prescribed motion so small that its unit is probably not degrees or mm.
-pub(crate) fn motion_small(finished: &Finished<'_>) -> Option<PlausibilityWarning> {
-    let mut warned = finished.cycles().flat_map(|cycle| {
-        let machine = finished.machine(&cycle);
-        let own = JointIndex::ALL.into_iter();
-        own.filter_map(move |index| small_motion(machine, &cycle, index))
-    });
-    warned.next()
+/// Warns of prescribed motions so small that their unit is probably not degrees or mm, or so noisy that the noise wears: each once.
+pub(crate) fn motions(finished: &Finished<'_>) -> Vec<PlausibilityWarning> {
+    let mut warnings: Vec<PlausibilityWarning> = Vec::new();
+    for index in JointIndex::ALL {
+        for check in [small_motion, noisy_motion] {
+            let mut own = finished
+                .cycles()
+                .filter_map(|cycle| check(finished, &cycle, index));
+            warnings.extend(own.next());
+        }
+    }
+    warnings
 }
 
 fn small_motion(
-    machine: &Machine,
+    finished: &Finished<'_>,
     cycle: &SolvedCycle<'_>,
     index: JointIndex,
 ) -> Option<PlausibilityWarning> {
+    let machine = finished.machine(cycle);
     let description = machine.mechanism.joint(index);
     let is_prescribed = matches!(machine.joint(index).drive, Drive::Prescribed(_));
     // Heights and varus are small in any unit.
@@ -114,6 +128,8 @@ fn small_motion(
     if !is_prescribed || is_along_y || is_varus {
         return None;
     }
+    let is_ap_of_joint = matches!(description.axis, Axis::Along([_, 0.0, 0.0]))
+        && machine.mechanism.tests != TestedJoint::Specimen;
     let (least, unit, advice) = match description.kind() {
         JointKind::Rotation => (
             MIN_TURN_DEG,
@@ -121,19 +137,63 @@ fn small_motion(
             "Write rotations in degrees: a waveform in radians needs scale = 57.2958.",
         ),
         JointKind::Translation => (
-            MIN_STROKE_MM,
+            if is_ap_of_joint {
+                MIN_AP_STROKE_MM
+            } else {
+                MIN_STROKE_MM
+            },
             "mm",
-            "Write translations in mm: a waveform in m needs scale = 1000.",
+            "Write translations in mm: a waveform in m needs scale = 1000, and one in cm scale = 10.",
         ),
     };
     let range = joint_range(cycle.rows, machine.mechanism, index);
+    let of_activity = finished.activity_in_words(cycle);
     let message = format!(
-        "the prescribed motion {} is {range:.2} {unit} in the {} cycle; that of a machine is at least {least} {unit}",
+        "the prescribed motion {} is {range:.2} {unit} in the {} cycle{of_activity}; that of a machine is at least {least} {unit}",
         description.symbol, cycle.name
     );
     let value = (range, least, unit);
     // A constant curve varies by round-off.
     (range > 1e-6 && range < least).then(|| warning("motion_small", value, message, advice))
+}
+
+/// Compares the path of a prescribed motion with that of the motion smoothed over seven increments.
+fn noisy_motion(
+    finished: &Finished<'_>,
+    cycle: &SolvedCycle<'_>,
+    index: JointIndex,
+) -> Option<PlausibilityWarning> {
+    // The smoothing polynomial of second degree by Savitzky and Golay: it keeps curves, and removes most of the noise.
+    const WEIGHTS: [f64; 7] = [-2.0, 3.0, 6.0, 7.0, 6.0, 3.0, -2.0];
+    const SUM: f64 = 21.0;
+    let machine = finished.machine(cycle);
+    let count = cycle.rows.len();
+    if !matches!(machine.joint(index).drive, Drive::Prescribed(_)) || count < MIN_ROWS_OF_NOISE {
+        return None;
+    }
+    let at = |row: usize| index.of(&cycle.rows[row % count].positions);
+    let smooth = |row: usize| {
+        let weighted = WEIGHTS.iter().enumerate();
+        weighted
+            .map(|(place, weight)| weight * at(row + place))
+            .sum::<f64>()
+            / SUM
+    };
+    let path = |value: &dyn Fn(usize) -> f64| -> f64 {
+        (0..count)
+            .map(|row| (value(row + 1) - value(row)).abs())
+            .sum()
+    };
+    let percent = 100.0 * (path(&at) / path(&smooth).max(f64::MIN_POSITIVE) - 1.0);
+    let message = format!(
+        "the prescribed motion {}{} is noisy: its path is {percent:.0} % longer than that of the smoothed motion, and noise wears",
+        machine.mechanism.joint(index).symbol,
+        finished.activity_in_words(cycle)
+    );
+    let advice = "Filter it: low_pass_harmonics = 15 in the table of its waveform.";
+    let value = (percent, MAX_NOISE_PERCENT, "%");
+    let moves = joint_range(cycle.rows, machine.mechanism, index) > 1e-6;
+    (moves && percent > MAX_NOISE_PERCENT).then(|| warning("motion_noisy", value, message, advice))
 }
 
 pub(crate) fn not_reached(finished: &Finished<'_>) -> Vec<PlausibilityWarning> {

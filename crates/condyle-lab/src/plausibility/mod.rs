@@ -23,10 +23,9 @@ use finished::{Finished, percent_of, warning};
 /// A check of one number; none if the run is plausible.
 type Check = fn(&Finished<'_>) -> Option<PlausibilityWarning>;
 
-/// The units of loads and motions, the place of the femur on the insert, their meshes, and impossible pressure.
-const PLACE: [Check; 8] = [
+/// The unit of the load, the place of the femur on the insert, their meshes, and impossible pressure.
+const PLACE: [Check; 7] = [
     loads::load_small,
-    loads::motion_small,
     bodies::femur_on_eminence,
     bodies::pressure_at_rim,
     bodies::femur_mesh,
@@ -74,6 +73,7 @@ pub(crate) fn warnings(
             .flatten(),
     );
     warnings.extend(PLACE.iter().filter_map(one));
+    warnings.extend(loads::motions(&finished));
     warnings.extend(loads::not_reached(&finished));
     warnings.extend(loads::springs_far(&finished));
     warnings.extend(loads::ranges(&finished));

@@ -5,7 +5,7 @@ use std::path::Path;
 
 use condyle_results::{
     SettingDifference, Summary,
-    catalogue::{self, MASS_LOSS_MG, Scalar},
+    catalogue::{self, CYCLES, MASS_LOSS_MG, Scalar},
     setting_differences,
 };
 use serde::Serialize;
@@ -164,12 +164,22 @@ impl Differences {
     }
 }
 
-/// Returns the fraction of laboratories in which the second run wears less, by the calibrated law;
-/// `None` unless both runs predict it.
+/// Returns the fraction of laboratories in which the second run wears less, by the calibrated law, or why it cannot be stated;
+/// none unless the calibrated law is that of both runs.
 fn ranking(first: &Run, second: &Run) -> Option<String> {
-    let prediction = |run: &Run| run.results.summary.clone()?.prediction;
-    let percent = 100.0 * prediction(second)?.part_below(&prediction(first)?)?;
     let (one, two) = (&first.name, &second.name);
+    let own = first.results.summary.as_ref()?;
+    let other = second.results.summary.as_ref()?;
+    if own[&CYCLES] != other[&CYCLES] {
+        return Some(format!(
+            "{one} and {two} have different numbers of cycles: compare their wear per cycle."
+        ));
+    }
+    let (by, of) = (other.prediction.as_ref()?, own.prediction.as_ref()?);
+    if own.joint != other.joint || !(by.is_of_run && of.is_of_run) {
+        return None;
+    }
+    let percent = 100.0 * by.part_below(of)?;
     Some(format!(
         "{two} wears less than {one} in {percent:.0} % of laboratories, by the calibrated law."
     ))

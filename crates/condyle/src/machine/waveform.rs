@@ -60,6 +60,13 @@ pub struct Waveform {
     turn: f64,
 }
 
+/// Number of samples from which their slopes show whether the seam is a jump; our choice.
+const MIN_SAMPLES: usize = 20;
+/// Largest slope from the last sample to the first, relative to the steepest between others; our choice.
+const MAX_SEAM_SLOPE: f64 = 3.0;
+/// Longest gap between the last sample and the end of the cycle across which drift is known, relative to the gap before.
+const MAX_END_GAP: f64 = 2.0;
+
 /// Difference of values that is round-off, relative to the largest one.
 const ROUNDING: f64 = 1e-12;
 
@@ -118,10 +125,11 @@ impl Waveform {
             let sizes = knots.iter().map(|knot| knot.value.abs());
             // A sum or a sine ends at its first value but for round-off.
             if (last.value - first.value).abs() > ROUNDING * sizes.fold(0.0, f64::max) {
-                let (first, last) = (first.value, last.value);
-                return Err(WaveformError::Seam { first, last });
+                return Err(WaveformError::seam(first, last));
             }
             knots.pop();
+        } else if interpolation == Interpolation::Spline {
+            steady_at_seam(&knots)?;
         }
         let bends = match interpolation {
             Interpolation::HalfCosine => Vec::new(),
@@ -201,6 +209,21 @@ impl Waveform {
     }
 }
 
+/// Rejects samples that end before 100 % and jump from there to the first one: steeper than anywhere else.
+fn steady_at_seam(knots: &[Knot]) -> Result<(), WaveformError> {
+    let slopes = knots.windows(2).map(|pair| {
+        let [from, to] = [pair[0], pair[1]];
+        ((to.value - from.value) / (to.percent - from.percent)).abs()
+    });
+    let steepest = slopes.fold(0.0, f64::max);
+    let (first, last) = (knots[0], knots[knots.len() - 1]);
+    let slope = ((first.value - last.value) / span_percent(knots, knots.len() - 1)).abs();
+    if knots.len() >= MIN_SAMPLES && slope > MAX_SEAM_SLOPE * steepest {
+        return Err(WaveformError::seam(first, last));
+    }
+    Ok(())
+}
+
 /// Second derivatives at the knots of the periodic cubic spline.
 ///
 /// The system is cyclic, diagonally dominant and small; each Gauss-Seidel sweep at least halves the error, so it is
@@ -227,30 +250,35 @@ fn spline_bends(knots: &[Knot]) -> Vec<f64> {
     bends
 }
 
-/// Spreads the difference of samples between 0 and 100 % evenly over the cycle, so that they
-/// repeat without a step; the mean is unchanged.
+/// Spreads the difference of samples between the start and the end of the cycle evenly over it, so that they
+/// repeat without a step; the mean is unchanged. None if the samples end earlier.
 ///
-/// Measured cycles seldom end exactly where they began.
-pub fn without_drift(samples: &[Knot]) -> Vec<Knot> {
-    let (Some(first), Some(last)) = (samples.first(), samples.last()) else {
-        return Vec::new();
+/// Measured cycles seldom end exactly where they began. One of samples that end a sample before 100 % is continued with the mean
+/// slope of its two ends.
+pub fn without_drift(samples: &[Knot]) -> Option<Vec<Knot>> {
+    let (first, last) = (samples.first()?, samples.last()?);
+    let gap = first.percent + 100.0 - last.percent;
+    let slope = |from: &Knot, to: &Knot| (to.value - from.value) / (to.percent - from.percent);
+    let end = match samples {
+        _ if gap == 0.0 => last.value,
+        [_, second, .., before, _] if gap <= MAX_END_GAP * (last.percent - before.percent) => {
+            last.value + gap * f64::midpoint(slope(first, second), slope(before, last))
+        }
+        _ => return None,
     };
-    if last.percent - first.percent < 100.0 {
-        return samples.to_vec();
-    }
-    let drift = last.value - first.value;
+    let drift = end - first.value;
     let level = |knot: &Knot| Knot {
         percent: knot.percent,
         // About the middle of the cycle, so that the mean stays.
-        value: knot.value - drift * (knot.percent / 100.0 - 0.5),
+        value: knot.value - drift * ((knot.percent - first.percent) / 100.0 - 0.5),
     };
     let mut levelled: Vec<Knot> = samples.iter().map(level).collect();
-    // By rounding both ends may differ, which a waveform rejects as a step at the seam.
-    let seam = levelled[0].value;
-    if let Some(end) = levelled.last_mut() {
-        end.value = seam;
+    if gap == 0.0 {
+        // By rounding both ends may differ, which a waveform rejects as a step at the seam.
+        let seam = levelled[0].value;
+        levelled.last_mut()?.value = seam;
     }
-    levelled
+    Some(levelled)
 }
 
 /// Samples the mean and the first `harmonics` Fourier terms of a waveform at every percent of the cycle.
@@ -310,11 +338,27 @@ pub enum WaveformError {
         "the waveform has a gap from {from} % to {to} % of the cycle; add points, at most {limit} % apart"
     )]
     Gap { from: f64, to: f64, limit: f64 },
-    /// Different values at the two ends.
+    /// A jump from the last value to the first.
     #[error(
-        "the waveform jumps at the end of the cycle: {first} at 0 % but {last} at 100 %; make them equal"
+        "the waveform jumps at the end of the cycle: {first} at {from} % but {last} at {to} %; let the end lead to the start"
     )]
-    Seam { first: f64, last: f64 },
+    Seam {
+        first: f64,
+        from: f64,
+        last: f64,
+        to: f64,
+    },
+}
+
+impl WaveformError {
+    fn seam(first: Knot, last: Knot) -> Self {
+        Self::Seam {
+            first: first.value,
+            from: first.percent,
+            last: last.value,
+            to: last.percent,
+        }
+    }
 }
 
 #[cfg(test)]
@@ -429,10 +473,33 @@ mod tests {
 
     #[test]
     fn drift_is_spread_over_the_cycle() {
-        let level = without_drift(&knots(&[(0.0, 1.0), (50.0, 4.0), (100.0, 3.0)]));
+        let level = without_drift(&knots(&[(0.0, 1.0), (50.0, 4.0), (100.0, 3.0)])).unwrap();
         assert_eq!(
             level.iter().map(|k| k.value).collect::<Vec<_>>(),
             [2.0, 4.0, 2.0]
         );
+    }
+
+    #[test]
+    fn verify_samples_that_end_before_the_cycle_lose_the_same_drift() {
+        let sample = |i: u32| Knot {
+            percent: 0.1 * f64::from(i),
+            value: (TAU * f64::from(i) / 1000.0).sin() + 0.001 * f64::from(i),
+        };
+        let all: Vec<Knot> = (0..=1000).map(sample).collect();
+        let (whole, open) = (
+            without_drift(&all).unwrap(),
+            without_drift(&all[..1000]).unwrap(),
+        );
+        for (whole, open) in whole.iter().zip(&open) {
+            assert!(
+                (whole.value - open.value).abs() < 1e-9,
+                "{whole:?} {open:?}"
+            );
+        }
+        assert_eq!(without_drift(&all[..900]), None);
+        let jump = Waveform::new(all[..1000].to_vec(), Interpolation::Spline).unwrap_err();
+        assert!(matches!(jump, WaveformError::Seam { .. }), "{jump}");
+        assert!(Waveform::new(open, Interpolation::Spline).is_ok());
     }
 }

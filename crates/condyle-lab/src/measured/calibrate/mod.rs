@@ -89,6 +89,8 @@ pub struct CalibratedTest {
     pub fitted_mg_per_million_cycles: f64,
     /// Fitted over measured, less one, percent.
     pub fitted_above_measured_percent: f64,
+    /// Doubts about the run, and remarks on the measured data.
+    pub remarks: Vec<String>,
 }
 
 /// A case predicted with the constants found.
@@ -254,6 +256,7 @@ fn results(
             interval_mg_per_million_cycles: aim.interval_mg_per_million_cycles,
             fitted_mg_per_million_cycles: rate,
             fitted_above_measured_percent: 100.0 * (rate / aim.mg_per_million_cycles - 1.0),
+            remarks: test.remarks.clone(),
         }
     };
     let calibrated: Vec<CalibratedTest> = tests.iter().zip(&fit.rates).map(of_test).collect();
@@ -343,6 +346,7 @@ pub(crate) struct Test {
     pub(crate) measured: PathBuf,
     pub(crate) case: Case,
     pub(crate) weighed: GravimetricComparison,
+    remarks: Vec<String>,
 }
 
 /// Constants, and the rates of the tests with them.
@@ -363,6 +367,7 @@ impl Test {
                     "the measured data have no [gravimetric] table, which the calibration of a wear law needs";
                 CalibrateError::Unsuitable(problem.to_owned())
             })?,
+            remarks: comparison.remarks,
             case: Case::read(&results.join("case.toml"))?,
             results: results.to_owned(),
             measured: measured.to_owned(),
