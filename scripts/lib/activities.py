@@ -79,7 +79,7 @@ def creep(runs):
     row(
         "creep dominates the first half million cycles",
         "`creep`",
-        f"after {first['cycles']:.0f} cycles the deepest place has receded by {crept:.3f} mm down by creep and {worn:.3f} mm by wear",
+        f"after {first['cycles']:.0f} cycles the deepest place has receded by {crept:.3f} mm by creep and by {worn:.3f} mm by wear",
         crept > worn,
     )
     last, found = wear(runs / "creep")[-1], summary(runs / "creep")["creep"]

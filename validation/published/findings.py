@@ -102,7 +102,7 @@ def of_activities(runs, words):
     by_law = {word: runs.alone("daily-life", [f"wear.law={word}"]) for word in words}
     yield (
         "A cycle of stairs wears less than one of walking, and rising and sitting less still [reinders2015]",
-        "so here; in brackets stairs and chair over walking, each on its own",
+        "the same here; in brackets stairs and chair over walking, each on its own",
         [
             f"{yes(1.0 > own['stairs'] / own['walking'] > own['chair'] / own['walking'])} "
             f"({own['stairs'] / own['walking']:.2f}, {own['chair'] / own['walking']:.2f})"
@@ -118,7 +118,7 @@ def of_cross_linking(runs, rates, words):
     low, high = 0.125, 0.2
     yield (
         "Highly cross-linked inserts wear a fifth to an eighth [tsukamoto2006]",
-        "inside that, each law moving the surface itself; in brackets how much",
+        "within this range, if each law changes the surface itself; in brackets the ratio",
         [f"{yes(low <= ratio[word] <= high)} ({ratio[word]:.3f})" for word in words],
     )
 

@@ -99,7 +99,7 @@ impl Ledger {
     }
 
     fn open_row(&self, how: &str) -> Row {
-        let quantity = format!("most work open at any instant, {how}");
+        let quantity = format!("largest imbalance of work at any instant, {how}");
         Row::absolute(
             quantity,
             "N mm",

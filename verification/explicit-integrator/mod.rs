@@ -54,14 +54,14 @@ fn rows() -> Vec<Row> {
 fn held(apart: Apart, how: &str, tolerance: f64) -> [Row; 2] {
     [
         Row::absolute(
-            format!("AP, ML and IS apart, {how}"),
+            format!("largest difference of AP, ML and IS, {how}"),
             "mm",
             0.0,
             apart.mm,
             tolerance,
         ),
         Row::absolute(
-            format!("IE and VV apart, {how}"),
+            format!("largest difference of IE and VV, {how}"),
             "degrees",
             0.0,
             apart.deg,

@@ -65,7 +65,7 @@ pub(super) fn rows() -> [Row; 3] {
     };
     let row = |what: &str, apart: f64, size: f64| {
         Row::absolute(
-            format!("contact turned: {what}, part"),
+            format!("contact turned: {what}, relative difference"),
             "",
             0.0,
             apart / size,

@@ -74,7 +74,7 @@ fn rows() -> Vec<Row> {
         .zip(&facets)
         .map(|(ours, theirs)| approach_mm(ours, theirs));
     let most = approach.fold(0.0, f64::max);
-    let what = "approach that makes up for OpenSim's facets, most";
+    let what = "largest approach that compensates for OpenSim's facets";
     rows.push(Row::absolute(what, "mm", 0.0, most, SAGITTA_MM));
     rows
 }

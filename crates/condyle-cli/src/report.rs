@@ -65,8 +65,8 @@ pub fn note_unfinished(folder: &Path) {
 pub fn plot(arguments: &Plot) -> Done {
     if !cfg!(feature = "png") && arguments.format.contains(&PictureFormat::Png) {
         return Err(Failure::bad_input(
-            "this condyle was built without PNG; build it with: cargo install --path crates/condyle-cli --features \
-             png, or choose SVG",
+            "this condyle was built without support for PNG; build it with: cargo install --path crates/condyle-cli \
+             --features png, or choose SVG",
         ));
     }
     let results = Results::read_readable(&arguments.results)?;

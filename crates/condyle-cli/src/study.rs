@@ -219,7 +219,8 @@ fn merged(arguments: &StudyMerge) -> Done {
     let (kept, tests) = (merge(&plan, &arguments.shards, &out)?, plan.tests());
     if kept < tests {
         note(format_args!(
-            "{kept} of {tests} tests are there; finish the shards and merge again, or continue here with: condyle study {} --out {}",
+            "{kept} of {tests} tests are stored; finish the shards and merge again, or continue here with: condyle study {} \
+             --out {}",
             arguments.study.display(),
             out.display()
         ));

@@ -19,7 +19,7 @@ pub struct Checkpoint {
     pub state: MarchState,
 }
 
-/// A reason why bytes are no checkpoint.
+/// A reason why bytes are not a checkpoint.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Error)]
 pub enum CheckpointError {
     /// Not a checkpoint, or one of another version.

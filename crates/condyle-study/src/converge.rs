@@ -164,7 +164,8 @@ fn run_points(
 /// Returns the plan with one test for each value, and the values from coarse to fine.
 fn plan(case_path: &Path, over: &str) -> Result<(Plan, Vec<f64>), StudyError> {
     let no_key = || {
-        let problem = format!("`{over}` is no key with values; write them as `updates=1,2,5,10`");
+        let problem =
+            format!("`{over}` is not a key with values; write them as `updates=1,2,5,10`");
         StudyError::Plan(problem)
     };
     let (key, written) = over.split_once('=').ok_or_else(no_key)?;

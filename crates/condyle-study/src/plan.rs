@@ -273,7 +273,7 @@ impl FromStr for Shard {
         match numbers {
             Some((number, of)) if 1 <= number && number <= of => Ok(Self { number, of }),
             _ => Err(format!(
-                "`{written}` is no shard; write the second of four as 2/4"
+                "`{written}` is not a shard; write the second of four as 2/4"
             )),
         }
     }

@@ -119,8 +119,8 @@ fn oscillation(found: &Findings) -> PaperFigure {
         ),
         verdict: Verdict::of(oscillates(held)),
         why: "The rule: 5 x 1M is more than 1 % below the fine run at one time and more than 1 % above it at \
-              another. A first-order march wears too deep in every interval; that it is also too shallow at times, \
-              the paper attributes to motion and pressure changing with the shape.",
+              another. A first-order march wears too deep in every interval; the paper attributes depths that are \
+              at times too small to motion and pressure, which change with the shape.",
     }
 }
 

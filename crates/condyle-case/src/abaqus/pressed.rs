@@ -100,14 +100,14 @@ impl Pressed<'_> {
         let Some(slide) = &self.slide else {
             return Ok(());
         };
-        inp.comment("\nSTEP SLIDING: it slides,")?;
+        inp.comment("\nSTEP SLIDING: it slides almost to the end of its path.")?;
         inp.keyword(&begin_step("SLIDING"))?;
         inp.keyword("*CHANGE FRICTION, INTERACTION=BEARING")?;
         friction(slide.friction, inp)?;
         let way_mm = slide.by_mm.norm();
         let nearly = (way_mm - LAST_MM).max(0.0) / way_mm;
         self.finish_step(SLIDING_SHARE, &(down + slide.by_mm * nearly), inp)?;
-        inp.comment("\nSTEP SLID: and arrives in short increments.")?;
+        inp.comment("\nSTEP SLID: it completes its path in short increments.")?;
         inp.keyword(&begin_step("SLID"))?;
         self.finish_step(LAST_SHARE, &(down + slide.by_mm), inp)
     }

@@ -130,7 +130,7 @@ fn note(case: &Case, row: &CycleRow) -> String {
     format!(
         "Written by condyle {} for CalculiX (and Abaqus): the femur pressed on the unworn insert, without friction,\n\
          to where it is at {} % of the first cycle of {:?}. condyle's contact carries {:.3} N down there, touches\n\
-         on {:.2} mm2 and presses with {:.3} MPa at most, friction and what has yielded before included.{mirrored}",
+         on {:.2} mm2 and presses with {:.3} MPa at most, including friction and earlier yield.{mirrored}",
         env!("CARGO_PKG_VERSION"),
         row.percent,
         case.heading.title,

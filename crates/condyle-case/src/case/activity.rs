@@ -25,9 +25,9 @@ settings! {
         frequency_hz: Option<f64> = None, in within(0.001, 100.0);
         /// Added to the flexion waveform; that of `[machine]` if not given.
         flexion_offset_deg: Option<f64> = None, in within(-45.0, 45.0);
-        /// 1 or -1 times the AP force; that of `[machine]` if not given.
+        /// Factor on the AP force, 1 or -1; that of `[machine]` if not given.
         ap_force_sign: Option<Sign> = None;
-        /// 1 or -1 times the IE torque; that of `[machine]` if not given.
+        /// Factor on the IE torque, 1 or -1; that of `[machine]` if not given.
         ie_torque_sign: Option<Sign> = None;
     }
 }

@@ -166,7 +166,7 @@ fn with_reason(given: Option<Side>, femur: &TriangleMesh) -> (Side, String) {
     let side = given.or(shown.map(|(side, _)| side)).unwrap_or(Side::Right);
     let of_shape = match shown {
         Some((shown, lead_mm)) => format!(
-            "likely a {} knee, since one flange of the trochlea extends {lead_mm:.1} mm further there",
+            "likely a {} knee, since the flange of the trochlea on that side extends {lead_mm:.1} mm further",
             shown.word()
         ),
         None => "not visible from the shape, since both sides are alike".to_owned(),

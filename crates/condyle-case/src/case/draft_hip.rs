@@ -51,7 +51,11 @@ impl Drafted {
         let mut of_head = ball.remarks("head", "a ball");
         let mut of_cup = socket.remarks("cup", "a socket");
         let [x, y, z]: [f64; 3] = socket.sphere.opens_along.into();
-        of_head.push("  The case has the ball by its radius. To test the head of the file, write shape = \"mesh\", file and axes in [femur].".to_owned());
+        of_head.push(
+            "  The case describes the head as a ball of this radius. To test the head of the file itself, write \
+             shape = \"mesh\", file and axes in [femur]."
+                .to_owned(),
+        );
         of_cup.push(format!(
             "  It opens along ({x:.3}, {y:.3}, {z:.3}) of the file. inclination_deg is that of the preset: check it."
         ));
@@ -115,14 +119,14 @@ impl<'a> Round<'a> {
     fn remarks(&self, body: &str, part: &str) -> Vec<String> {
         let rms_mm = self.sphere.rms_mm * self.unit.in_mm();
         let doubt = if rms_mm > MAX_RMS_MM {
-            ", so that it is not round, or a scan: check it"
+            ": it is not round, or a scan; check it"
         } else {
             ""
         };
         vec![
             format!("{body}, derived from the shape of {}:", self.file.display()),
             format!(
-                "  {part} of {:.3} mm radius with length_unit \"{}\"; its vertices are {rms_mm:.4} mm from it in the mean{doubt}.",
+                "  {part} of {:.3} mm radius with length_unit \"{}\"; its vertices are {rms_mm:.4} mm from it (rms){doubt}.",
                 self.radius_mm(),
                 self.unit.word()
             ),

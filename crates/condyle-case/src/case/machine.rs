@@ -58,9 +58,9 @@ settings! {
         frequency_hz: f64 = 1.1, in within(0.001, 100.0);
         /// Added to the flexion waveform: -7 sets the femur 7 degrees towards hyperextension.
         flexion_offset_deg: f64 = -7.0, in within(-45.0, 45.0);
-        /// 1 or -1 times the AP force: laboratories disagree on its direction.
+        /// Factor on the AP force, 1 or -1: laboratories disagree on its direction.
         ap_force_sign: Sign = Sign(1.0);
-        /// 1 or -1 times the IE torque: laboratories disagree on its direction.
+        /// Factor on the IE torque, 1 or -1: laboratories disagree on its direction.
         ie_torque_sign: Sign = Sign(1.0);
         /// Distance of the varus-valgus axis medial of the load axis.
         vv_axis_medial_mm: f64 = 5.0, in within(-50.0, 50.0);
@@ -76,9 +76,9 @@ settings! {
         posterior_n_per_mm: f64 = 33.8, in within(0.0, 10_000.0);
         /// Stiffness against anterior motion of the insert.
         anterior_n_per_mm: f64 = 7.24, in within(0.0, 10_000.0);
-        /// Meaning of the stiffnesses: of the pair or of each spring, which the paper does not state.
+        /// Whether the stiffnesses are those of the pair or of each spring, which Knight 2007 does not state.
         stiffness_of: StiffnessOf = StiffnessOf::Pair;
-        /// Motion each way before they engage.
+        /// Motion each way before the springs engage.
         free_play_mm: f64 = 2.5, in within(0.0, 50.0);
         /// Distance of each spring to the side of the IE axis.
         lateral_offset_mm: f64 = 28.0, in within(0.0, 100.0);

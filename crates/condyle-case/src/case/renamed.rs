@@ -72,8 +72,8 @@ fn name_archard(document: &mut DeTable<'_>) -> Option<BuildWarning> {
     let archard = Spanned::new(factor.clone(), DeValue::String("archard".into()));
     set_value(document, "wear.law", factor, archard);
     Some(BuildWarning::new(
-        "`wear.law` is not given and taken to be \"archard\", since `wear_factor_mm3_per_nm` is; write law = \"archard\": the \
-         next version does not"
+        "`wear.law` is not given, but `wear_factor_mm3_per_nm` is, so the law is taken to be \"archard\"; write \
+         law = \"archard\", since the next version does not assume it"
             .to_owned(),
     ))
 }

@@ -81,7 +81,7 @@ settings! {
 settings! {
     /// Limits on the use of the computer.
     Limits {
-        /// Memory that a run may use; a case that needs more is an error before the start.
+        /// Memory that a run may use; a case that needs more is rejected before the start.
         memory_gb: f64 = Limits::DEFAULT_GB, in within(0.1, 10_000.0);
     }
 }

@@ -185,7 +185,7 @@ fn page() -> String {
         "\n## Waveforms: {}\n\n\
         One of `waveform`, `file` or the points themselves. A freedom takes the waveform that its drive \
         needs; one for another drive is an error.\n\n{keys}\n\
-        | table | points | unit | values may be | named | what |\n\
+        | table | points | unit | values may be | shipped waveforms | meaning |\n\
         | --- | --- | --- | --- | --- | --- |\n{channels}",
         tables.join(", ")
     )

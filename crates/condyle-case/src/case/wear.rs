@@ -225,7 +225,7 @@ fn law_line(law: &WearLawKind) -> String {
     let constants = if sources.is_empty() {
         String::new()
     } else {
-        format!(" Its constants are from: {sources}.")
+        format!(" Sources of the constants, in the order of the table: {sources}.")
     };
     format!("- `{word}`: {about}{constants}{formula}\n")
 }

@@ -97,8 +97,8 @@ pub(crate) fn missing_key(section: &str, key: &str, wanted: &str) -> Fault {
 }
 
 pub(crate) fn syntax(message: &str) -> Fault {
-    let advice = "a line is `key = value`: text in quotes, a number without its unit, a list in square brackets; a key \
-        is in its table once";
+    let advice = "a line is `key = value`: text in quotes, a number without its unit, a list in square brackets; a table \
+        has each key only once";
     Fault::new(format!("this is not TOML: {message}"), advice)
 }
 

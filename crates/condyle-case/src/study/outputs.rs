@@ -137,7 +137,7 @@ impl Outputs {
             let message = if is_taken {
                 format!("every test has a column `{name}` already")
             } else {
-                format!("`{name}` is no name of an output")
+                format!("`{name}` is not a valid name of an output")
             };
             let advice = "use letters, digits and `_`, with the unit at the end, such as `mass_per_million_mg`";
             log.problem(section.value_span("name"), Fault::new(message, advice));

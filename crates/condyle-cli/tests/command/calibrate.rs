@@ -284,7 +284,7 @@ fn what_several_tests_cannot_tell_is_said() {
     let bench = two_tests();
     let refuses =
         |arguments: &[&str], expected: &[&str]| bench.say(arguments).assert_refused(2, expected);
-    refuses(&BOTH[..4], &["3 paths are no pairs"]);
+    refuses(&BOTH[..4], &["3 paths do not form pairs"]);
     refuses(
         &[&BOTH[..], &["--constant", "wear_factor"]].concat(),
         &["the wear law \"kang\" has no constant `wear_factor`; it has `log_wear_factor`, "],

@@ -239,7 +239,7 @@ fn fewer_than_two_values_are_refused() {
         &["has the value 2 twice", "write each once"],
     );
     for written in ["updates", "=1,2"] {
-        assert_refused(written, &["is no key with values", "`updates=1,2,5,10`"]);
+        assert_refused(written, &["is not a key with values", "`updates=1,2,5,10`"]);
     }
 }
 

@@ -203,6 +203,6 @@ fn the_pictures_of_a_report_are_files_without_a_browser() {
     }
     if !cfg!(feature = "png") {
         let said = bench.say(&["plot", "out", "--format", "png"]);
-        said.assert_refused(2, &["built without PNG", "--features png"]);
+        said.assert_refused(2, &["built without support for PNG", "--features png"]);
     }
 }

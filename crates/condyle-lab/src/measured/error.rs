@@ -36,7 +36,7 @@ impl CompareError {
     pub(crate) fn missing_file(path: &Path, table: &str) -> Self {
         let path = path.display();
         Self::NotComparable(format!(
-            "{path}: there is no such file, which [{table}] is compared with; run the case again"
+            "{path}: there is no such file; [{table}] is compared with it, so run the case again"
         ))
     }
 

@@ -141,10 +141,10 @@ pub(crate) fn pressure_beyond_flow(finished: &Finished<'_>) -> Option<Plausibili
     (peak > limit).then(|| warning("pressure_beyond_flow", value, message, &advice))
 }
 
-/// The effect of local yield in the default knee, and the error of the pressure of a foundation by the linear law
+/// The effect of local yield in three knees, and the error of the pressure of a foundation by the linear law
 /// (`docs/src/three-models.md`).
 const IN_KNEES: [&str; 2] = [
-    "which occurs in ordinary knees and lowers the mass of the default knee by 0.1 % and its depth by 2 %",
+    "which occurs in ordinary knees and changes the mass of three of them by less than 0.1 % and their depth by at most 2 %",
     " A linear foundation also overestimates it, by 18 to 40 % in three unworn knees; --set contact.model=deformable avoids this.",
 ];
 /// The same where neither was computed.

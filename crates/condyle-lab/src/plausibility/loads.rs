@@ -279,8 +279,8 @@ fn missing(
     joint.inertia * acceleration + joint.damping * rate
 }
 
-/// Returns whether the force of the contact along y alone balances the load of the pressing joint: no ligament or spring pulls,
-/// and no rotation before it tilts its line, those of a knee by a few degrees.
+/// Returns whether the force of the contact along y alone balances the load of the pressing joint: no ligament or spring
+/// acts on it, and no rotation before the joint tilts the line of the load. Those of a knee tilt it by a few degrees only.
 fn is_balanced_by_contact(machine: &Machine, pressing: JointIndex) -> bool {
     let before = &machine.mechanism.joints[..pressing.place()];
     let is_tilted = before

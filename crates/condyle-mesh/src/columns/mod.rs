@@ -44,8 +44,8 @@ const MIN_PIECE: f64 = 4.0;
 /// chord of the outline may lie outside.
 const HAIRS: [f64; 9] = [0.0, 1e-4, 1e-3, 3e-3, 1e-2, 3e-2, 0.1, 0.25, 0.5];
 
-/// Parts of the edge that are tried where hexahedra are inverted: next to the outline that depends on the place of the
-/// grid, and a slightly finer one lies elsewhere.
+/// Factors on the edge length that are tried where hexahedra are inverted: next to the outline, inversion depends on the
+/// place of the grid, and a slightly finer grid lies elsewhere.
 const FINER: [f64; 4] = [0.97, 0.94, 0.91, 0.88];
 
 /// Reason why a surface cannot be meshed as an insert.

@@ -119,7 +119,7 @@ impl<'a> VerticalLines<'a> {
 
 /// Maximum number of rounds in which heights settle at the mean of their neighbours.
 const MAX_ROUNDS: usize = 1000;
-/// Approximate number of heights that are settled in all: over a hole as large as an insert, rounds are fewer.
+/// Approximate limit on heights times rounds: a hole as large as an insert gets fewer rounds.
 const MAX_SETTLED: usize = 2_000_000;
 /// Over-relaxation factor on the motion of a height towards the mean in a round; it reduces the number of rounds.
 const OVER_RELAXED: f64 = 1.8;

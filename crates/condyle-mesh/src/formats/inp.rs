@@ -60,14 +60,14 @@ pub(crate) fn parse(path: &Path, bytes: &[u8]) -> Result<HexFile, MeshFileError>
             "INSTANCE" => {
                 for &(at, row) in &keyword.data {
                     if at.numbers(fields(row))?.iter().any(|&by: &f64| by != 0.0) {
-                        let problem = "an instance that is moved or turned is not followed; \
+                        let problem = "an instance that is moved or turned is not supported; \
                                        move the part itself instead";
                         return Err(at.error(problem));
                     }
                 }
             }
             name if NOT_FOLLOWED.contains(&name) => {
-                let problem = format!("*{name} is not followed; write the mesh out in full");
+                let problem = format!("*{name} is not supported; write the mesh out in full");
                 return Err(keyword.at.error(problem));
             }
             _ => {}
@@ -181,7 +181,7 @@ impl Model<'_> {
         }
         Err(at.error(format!(
             "with the {more} members of this row, the sets of the file have more than {}, \
-             which a file of its length does not need; name only elements that there are",
+             which a file of its length does not need; name only existing elements",
             self.max_members
         )))
     }
@@ -456,7 +456,7 @@ mod tests {
     fn a_range_without_a_bound_is_refused() {
         let expected = "a.inp:23: with the 18446744073709551615 members of this row, the sets of \
             the file have more than 1004704, which a file of its length does not need; name only \
-            elements that there are";
+            existing elements";
         assert_eq!(
             reported(" 7, 8, 1", " 1, 18446744073709551615, 1"),
             expected
@@ -522,7 +522,7 @@ mod tests {
     #[test]
     fn what_is_not_followed_is_refused() {
         let include = reported("*STEP", "*INCLUDE, INPUT=more.inp\n*STEP");
-        assert!(include.ends_with("*INCLUDE is not followed; write the mesh out in full"));
+        assert!(include.ends_with("*INCLUDE is not supported; write the mesh out in full"));
         assert!(reported("NSET=Everything", "SYSTEM=C").contains("rectangular coordinates"));
         assert!(message(read("*NODE\n1, 0, 0, 0\n")).contains("holds no hexahedra"));
         assert!(message(read("1, 2, 3\n*NODE\n")).starts_with("a.inp:1: a data line"));

@@ -130,7 +130,7 @@ pub fn parse_vtu_triangles(path: &Path, bytes: &[u8]) -> Result<TriangleMesh, Me
         };
         let numbers: Option<Vec<u32>> = corners.iter().map(number).collect();
         let triangle = numbers.and_then(|numbers| <[u32; 3]>::try_from(numbers).ok());
-        let problem = "a cell is no triangle of points of the file";
+        let problem = "a cell is not a triangle of points of the file";
         triangle.ok_or_else(|| At::line(path, cells.line).error(problem))
     };
     let triangles = cells.iter().map(triangle).collect::<Result<_, _>>()?;

@@ -87,9 +87,9 @@ impl BoxTree {
         number as u32
     }
 
-    /// Limits on the compared pairs and boxes, per triangle and in all cases: the surface of a scanned implant needs
-    /// about fifty per triangle, a flat bottom of long triangles between its 1500 vertices needs 15 million, and a
-    /// file of 1 MB takes less than a second.
+    /// Limit on the compared pairs and boxes: so many per triangle, but at least the second number. The surface of a
+    /// scanned implant needs about fifty per triangle, a flat bottom of long triangles between its 1500 vertices needs
+    /// 15 million, and a file of 1 MB takes less than a second.
     const MAX_LOOKS: (usize, usize) = (400, 20_000_000);
 
     /// Calls `visit` with each pair of different triangles whose boxes meet, once, until it breaks.

@@ -253,8 +253,8 @@ pub(super) fn volume_check(results: &Results) -> Option<String> {
     let percent = 100.0 * (mesh - depth).abs() / depth.abs().max(mesh.abs()).max(f64::MIN_POSITIVE);
     Some(format!(
         "The two values of the worn volume differ by {}\u{a0}%: depth times area takes each node's share of the surface at the \
-         start of its interval, while the volume of the mesh includes its bending and growth during the interval. Mass is \
-         from the former.",
+         start of its interval, while the volume of the mesh includes the curvature and the growth of the surface during \
+         the interval. Mass is from the former.",
         fixed(percent, 2)
     ))
 }

@@ -91,7 +91,7 @@ pub(super) fn regions(results: &Results) -> Option<Regions> {
             (found.value > 0.0).then(|| format!("{x}, {z}"))
         }),
         compare(
-            "Volume loss, from depth, shared out by depth and area",
+            "Volume loss from depth, divided between the regions by depth and area",
             "mm\u{b3}",
             &|region| Some(significant(volume_mm3(results, surface, depth, region), 3)),
         ),

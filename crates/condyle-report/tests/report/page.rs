@@ -99,7 +99,7 @@ fn sides(html: &str, name: &str) -> [f64; 3] {
 #[test]
 fn the_volume_of_both_sides_is_the_one_stated() {
     let html = report_html(&fixture::results());
-    let [medial, lateral, both] = sides(&html, "Volume loss, from depth, shared out");
+    let [medial, lateral, both] = sides(&html, "Volume loss from depth, divided");
     assert_eq!(both, 27.1);
     assert!((medial + lateral - both).abs() < 0.11, "{medial} {lateral}");
 }

@@ -1,4 +1,4 @@
-//! Entries of `summary.json` that are no numbers.
+//! Entries of `summary.json` that are not numbers.
 
 use super::{CYCLES, PEAK_PRESSURE_MPA, Scalar, UPDATES, WALL_S, WEAR_OVER_CONVENTIONAL};
 
@@ -17,7 +17,7 @@ pub enum PartKind {
     Objects,
 }
 
-/// An entry of `summary.json` that is no number.
+/// An entry of `summary.json` that is not a number.
 #[derive(Clone, Copy, Debug)]
 pub struct Part {
     /// Its key.

@@ -252,7 +252,7 @@ impl Emulated {
     /// Returns why no answers are computed from it; none if they are.
     pub fn why_not_used(&self) -> Option<String> {
         if !self.is_sample {
-            return Some("the tests are no sample".to_owned());
+            return Some("the tests are not a random sample".to_owned());
         }
         if self.q2 < MIN_Q2 {
             return Some(format!("Q2 is below {MIN_Q2}"));

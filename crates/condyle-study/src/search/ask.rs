@@ -26,7 +26,7 @@ impl Store {
     /// that they predict. None at the end of the search.
     ///
     /// # Errors
-    /// A study that is no search, values that are no test of it, and a database that cannot be read.
+    /// A study that is not a search, values that are not a test of it, and a database that cannot be read.
     pub fn ask(
         &self,
         plan: &Plan,

@@ -94,8 +94,9 @@ impl Sampled {
         }
     }
 
-    /// Returns the turn from `ahead` towards `up` after which most flat parts across both are square, -45 to 45 degrees: a femoral
-    /// component is cut square to fit the bone. None without enough of them, or where chamfers are half as large.
+    /// Returns the turn from `ahead` towards `up`, -45 to 45 degrees, after which most of the parts perpendicular to the
+    /// plane of both are square to these two directions: a femoral component is cut square to fit the bone. None without
+    /// enough of them, or if the chamfers between them are at least half as large.
     pub(super) fn square_turn_deg(&self, ahead: &Vec3, up: &Vec3) -> Option<f64> {
         /// Component of a normal out of the plane of both, up to which it counts.
         const IN_PLANE: f64 = 0.1;

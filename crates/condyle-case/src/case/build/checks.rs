@@ -68,7 +68,7 @@ impl Case {
         let lies = lies(&turn);
         let [x, y, z] = placing.axes_turned(&turn).words();
         let advice =
-            format!("write axes = [\"{x}\", \"{y}\", \"{z}\"], which its shape shows ({signs})");
+            format!("write axes = [\"{x}\", \"{y}\", \"{z}\"], as its shape indicates ({signs})");
         if sureness == Sureness::Certain {
             let message = format!("this {body} lies {lies}; {advice}");
             return Err(BuildError::mesh(file.path(), &["axes", "file"], message));
@@ -90,8 +90,8 @@ pub(super) fn check_side(
     if lead_mm > 0.0 {
         let (of_case, other) = (side.word(), side.other().word());
         let remark = format!(
-            "the flange of the trochlea that side = \"{of_case}\" makes the medial one stands out {} mm beyond the lateral \
-             one, as in a {other} knee; write side = \"{other}\", or check that the axes and the files are of one knee",
+            "with side = \"{of_case}\", the medial flange of the trochlea extends {} mm beyond the lateral one, as in a \
+             {other} knee; write side = \"{other}\", or check that the axes and the files are of one knee",
             rounded(lead_mm)
         );
         warnings.push(BuildWarning::mesh(file, remark));
@@ -144,7 +144,7 @@ pub(super) fn off_centre(
         let front = if middle.x < 0.0 { "posterior" } else { "anterior" };
         let side = if middle.z < 0.0 { "medial" } else { "lateral" };
         let remark = format!(
-            "the dishes have their middle {:.1} mm {front} and {:.1} mm {side} of the origin, where the machine's axes are; \
+            "the middle of the dishes is {:.1} mm {front} and {:.1} mm {side} of the origin, where the machine's axes are; \
              up to {MAX_ALONG_MM} mm in front or behind and {MAX_ACROSS_MM} mm to a side are acceptable; write \
              origin = \"centre\" in [insert], or move the file's origin",
             middle.x.abs(),

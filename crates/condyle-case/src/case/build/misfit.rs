@@ -110,7 +110,7 @@ impl<'a> Placed<'a> {
         let total: Mat3 = self.placing.rotation_turned(&(orientation * turn));
         let lines = WrittenRotation::of(&total).lines();
         let text = format!(
-            "{name}: this {body} lies {:.0} degrees off its axes; write {}, which its shape shows",
+            "{name}: this {body} lies {:.0} degrees off its axes; write {}, as its shape indicates",
             off_deg,
             lines.trim_end().replace('\n', " and ")
         );

@@ -489,7 +489,7 @@ fn an_origin_off_the_dishes_is_reported_and_centred() {
     let warnings = built(MESH_INSERT, folder.path()).unwrap().warnings;
     let warning = warnings[0].to_string();
     for words in [
-        "a.stl: the dishes have their middle",
+        "a.stl: the middle of the dishes is",
         "and 5.0 mm lateral of the origin",
         "2.5 mm to a side",
         "write origin = \"centre\" in [insert]",

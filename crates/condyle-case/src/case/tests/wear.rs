@@ -131,7 +131,8 @@ fn its_keys_are_on_the_page() {
             "| `law` |  | \"archard\" or \"threshold\" | `\"archard\"` | Wear law. |",
             "With `law = \"threshold\"`:",
             "| `from_n_per_mm` | N/mm | a number, 0 to 1000 | `20.0` | Work b below which",
-            "- `threshold`: Depth per cycle = a (sum of p |ds| - b). Its constants are from: choice, choice.",
+            "- `threshold`: Depth per cycle = a (sum of p |ds| - b). Sources of the constants, in the order of the table: \
+             choice, choice.",
         ],
     );
 }

@@ -292,8 +292,8 @@ impl<'a> Search<'a> {
 
 /// Returns the error for constants whose effects on the rates cannot be separated.
 fn undetermined() -> CalibrateError {
-    let problem = "these tests do not determine the constants: some change of them changes no rate; give tests that differ more \
-                   in the quantities of the law, or fewer --constant";
+    let problem = "these tests do not determine the constants, which can change together without changing a rate; give \
+                   tests that differ more in the quantities of the law, or fewer --constant";
     CalibrateError::Unsuitable(problem.to_owned())
 }
 

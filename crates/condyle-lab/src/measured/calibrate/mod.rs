@@ -175,7 +175,7 @@ fn read(paths: &[PathBuf]) -> Result<Vec<Test>, CalibrateError> {
     if paths.is_empty() || !pairs.remainder().is_empty() {
         let given = paths.len();
         return Err(CalibrateError::Unsuitable(format!(
-            "give a results folder and a file of measured data for each test: {given} paths are no pairs"
+            "give a results folder and a file of measured data for each test: {given} paths do not form pairs"
         )));
     }
     let tests = pairs.map(|pair| Test::read(&pair[0], &pair[1]));

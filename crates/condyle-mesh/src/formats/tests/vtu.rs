@@ -118,5 +118,5 @@ fn triangles_come_back() {
     );
     let quads = compact_vtu_bytes(&Grid::quads(&nodes, &[[0, 1, 2, 3]]), &[]).unwrap();
     let reported = message(parse_vtu_triangles(Path::new("a.vtu"), &quads));
-    assert!(reported.contains("a cell is no triangle"), "{reported}");
+    assert!(reported.contains("a cell is not a triangle"), "{reported}");
 }

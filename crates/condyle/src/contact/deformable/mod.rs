@@ -113,7 +113,7 @@ impl Deformable {
     /// Creates the law of an elastic insert, with regularised friction, and factors its stiffness.
     ///
     /// # Errors
-    /// A material or a mesh that is no elastic solid: a part of it is not held by the backside, for instance.
+    /// A material or a mesh that does not define an elastic solid: a part of it is not held by the backside, for instance.
     pub fn new(
         elastic: Elastic,
         friction: f64,
@@ -179,7 +179,7 @@ impl Deformable {
     /// support of the backside: it is not computed again, and no result depends on it.
     ///
     /// # Errors
-    /// A mesh that is no elastic solid.
+    /// A mesh that does not define an elastic solid.
     pub fn know(&self, insert: &Insert, known: KnownCompliance) -> Result<(), SolidError> {
         self.surface(insert, insert.unworn_nodes())?.know(known);
         Ok(())
@@ -282,7 +282,7 @@ const WITH_TWIN: f64 = 1.5;
 
 impl ContactLaw for Deformable {
     /// # Panics
-    /// An insert, other than that which the law was made of, that is no elastic solid.
+    /// If an insert other than that from which the law was made does not define an elastic solid.
     fn contact<'a>(
         &'a self,
         bodies: Bodies<'a>,

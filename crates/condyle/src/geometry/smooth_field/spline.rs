@@ -203,8 +203,8 @@ impl<T: Number> Bases<T> {
         }
     }
 
-    /// Returns the spline, where `rows` gives the coefficients around every lane's point: of layer k the row j along
-    /// x, and one more number.
+    /// Returns the spline. `rows(lane)(j, k)` returns coefficients around the point of a lane: row j of layer k, three
+    /// along x and one more number.
     #[inline(always)]
     fn spline<R: Fn(usize, usize) -> F64x4>(&self, rows: impl Fn(usize) -> R) -> Derivatives<T> {
         // The spline is the sum of b_i(x) b_j(y) b_k(z) c_ijk over 27 coefficients, and a derivative
