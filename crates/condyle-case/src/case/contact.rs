@@ -56,7 +56,7 @@ settings! {
         yield_stress_mpa: f64 = 14.0, in within(0.1, 10_000.0);
         /// Modulus of linear kinematic hardening: stress of the centre of the yield surface over plastic strain, in tension.
         kinematic_modulus_mpa: f64 = 0.0, in within(0.0, 10_000.0);
-        /// Points [plastic strain, yield stress in MPa] of isotropic hardening, rising from [0.0, yield_stress_mpa]; by default those of [0.0099, 23.2], [0.0258, 25.1], [0.0434, 26.2], [0.0619, 26.9] above the yield stress, from a model of polyethylene (Bergström and Bischoff 2010). Approximate.
+        /// Points [plastic strain, yield stress in MPa] of isotropic hardening, rising from [0.0, yield_stress_mpa]; by default those of [0.0099, 23.2], [0.0258, 25.1], [0.0434, 26.2], [0.0619, 26.9] whose stress exceeds yield_stress_mpa, which change little with it, from a model of polyethylene (Bergström and Bischoff 2010). Approximate.
         hardening: Option<Points> = None;
     }
 

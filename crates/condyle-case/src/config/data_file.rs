@@ -211,11 +211,15 @@ impl<'a> Columns<'a> {
         self.header.iter().map(name).collect()
     }
 
-    /// Returns the unit of a column: it ends the name, or what precedes a bracket as in `ant_mm(xtrans)`, or stands in brackets.
+    /// Returns the unit of a column: it ends a word of its name, or what precedes a bracket as in `ant_mm(xtrans)`, or stands in
+    /// brackets.
     pub(crate) fn unit(&self, column: usize) -> Option<&'static str> {
         let name = self.names()[column].to_lowercase();
         let (stem, bracket) = name.split_once(['(', '[']).unwrap_or((&name, ""));
-        unit_of(stem.trim_end()).or_else(|| unit_in_brackets(bracket))
+        let mut words = stem.split_whitespace();
+        words
+            .find_map(unit_of)
+            .or_else(|| unit_in_brackets(bracket))
     }
 
     pub(crate) fn name_span(&self, column: usize) -> Range<usize> {
@@ -438,7 +442,7 @@ mod tests {
         );
         assert_eq!(
             (columns.unit(1), columns.unit(2), columns.unit(3)),
-            (None, Some("degrees"), Some("mm"))
+            (Some("N"), Some("degrees"), Some("mm"))
         );
     }
 

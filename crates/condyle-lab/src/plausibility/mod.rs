@@ -35,8 +35,10 @@ const PLACE: [Check; 7] = [
 ];
 
 /// Load on the polyethylene, and quality of the solution.
-const REST: [Check; 12] = [
+const REST: [Check; 14] = [
     bodies::insert_rocks,
+    bodies::contact_coarse,
+    bodies::single_layer,
     interval_too_wide,
     mesh_quality,
     counts_of_volume,
@@ -84,6 +86,8 @@ pub(crate) fn warnings(
 
 /// Largest difference between the two values of the worn volume, %.
 const COUNTS_PERCENT: f64 = 1.0;
+/// Smallest volume that the change of a mesh determines, mm3: a part of 1e-11 of a large insert.
+const MIN_VOLUME_MM3: f64 = 1e-6;
 /// Scaled Jacobian below which an element is nearly inverted.
 const MIN_QUALITY: f64 = 0.1;
 /// Largest added inertia, as a multiple of the machine's own; our choice.
@@ -114,7 +118,8 @@ pub(crate) fn counts_of_volume(finished: &Finished<'_>) -> Option<PlausibilityWa
     let advice =
         "The mesh is too coarse for the scar, or worn at a crease: take a smaller edge_mm.";
     let value = (percent, COUNTS_PERCENT, "%");
-    (percent > COUNTS_PERCENT).then(|| warning("counts_of_volume", value, message, advice))
+    (percent > COUNTS_PERCENT && depth.max(mesh) > MIN_VOLUME_MM3)
+        .then(|| warning("counts_of_volume", value, message, advice))
 }
 
 pub(crate) fn mesh_quality(finished: &Finished<'_>) -> Option<PlausibilityWarning> {

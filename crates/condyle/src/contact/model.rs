@@ -77,8 +77,9 @@ pub enum Settled {
 pub enum NotBorne {
     /// The material yields, and no equilibrium is found.
     #[error(
-        "presses the insert flat: no equilibrium is found, with a plastic strain of {plastic_strain:.2}; check the load, and \
-         [contact.deformable] yield_stress_mpa and its hardening, or take plasticity = \"none\""
+        "presses the insert flat: no equilibrium is found, with a plastic strain of {plastic_strain:.2}; let a load that yields \
+         deeply at the start of the cycle grow over the first increments, check the load, and [contact.deformable] \
+         yield_stress_mpa and its hardening, or take plasticity = \"none\""
     )]
     Flattened { plastic_strain: f64 },
     /// The insert rests on its tray and tips off it.

@@ -492,8 +492,9 @@ mod tests {
             without_drift(&all[..1000]).unwrap(),
         );
         for (whole, open) in whole.iter().zip(&open) {
+            // The end of the open cycle is extrapolated by a third-order formula over a step of 0.1 %.
             assert!(
-                (whole.value - open.value).abs() < 1e-9,
+                (whole.value - open.value).abs() < 1e-6,
                 "{whole:?} {open:?}"
             );
         }
