@@ -107,7 +107,7 @@ fn listed(values: &[f64], text: fn(f64) -> String) -> String {
 
 fn table(calibration: &Calibration) -> Lines {
     let mut lines = Lines::default();
-    let confidence = calibration.confidence_percent;
+    let (law, confidence) = (calibration.law, calibration.confidence_percent);
     let ends = |interval: Option<Interval>, text: fn(f64) -> String| match interval {
         Some(Interval { low, high }) => {
             format!(", {confidence} % interval {} to {}", text(low), text(high))
@@ -115,25 +115,22 @@ fn table(calibration: &Calibration) -> Lines {
         None => ", without an interval".to_owned(),
     };
     for test in &calibration.tests {
+        let interval = ends(test.interval_mg_per_million_cycles, |end| {
+            format!("{end:.3}")
+        });
         lines.line(format!(
-            "{}: measured rate ({}) {:.3} mg per million cycles{}; fitted {:.3}, {:+.1} %",
+            "{}: measured rate ({}) {:.3} mg per million cycles{interval}; fitted {:.3}, {:+.1} %",
             test.results.display(),
             test.measured_by,
             test.measured_mg_per_million_cycles,
-            ends(test.interval_mg_per_million_cycles, |end| format!(
-                "{end:.3}"
-            )),
             test.fitted_mg_per_million_cycles,
             test.fitted_above_measured_percent
         ));
-        for remark in &test.remarks {
-            lines.line(format!("  note: {remark}"));
-        }
+        lines.notes(&test.remarks);
     }
     if let Some(times) = &calibration.times_as_much {
         let interval = ends(times.interval, |end| format!("{end:.4}"));
-        let first = calibration.tests[0].results.display();
-        let (law, value) = (calibration.law, times.value);
+        let (first, value) = (calibration.tests[0].results.display(), times.value);
         lines.line(format!(
             "{law} wears {value:.4} times as much as in {first}{interval}"
         ));

@@ -41,9 +41,7 @@ pub fn compare(arguments: &Compare) -> Done {
     if let Some(surface) = &comparison.surface {
         add_surface(surface, &mut lines);
     }
-    for remark in &comparison.remarks {
-        lines.line(format!("note: {remark}"));
-    }
+    lines.notes(&comparison.remarks);
     let files = written.iter().map(|path| path.display().to_string());
     lines.line(format!("wrote {}", files.collect::<Vec<_>>().join(", ")));
     output::print_with_folder(lines.text(), out)

@@ -230,6 +230,11 @@ impl Lines {
         self.text += &printable(words);
     }
 
+    pub fn notes(&mut self, remarks: &[String]) {
+        let remarks = remarks.iter();
+        remarks.for_each(|remark| self.line(format_args!("note: {remark}")));
+    }
+
     pub fn text(&self) -> &str {
         &self.text
     }

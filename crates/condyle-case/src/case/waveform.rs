@@ -210,26 +210,10 @@ pub(super) fn read(
     let section = machine.table(channel.name, log);
     let keys = WaveformSource::read(&section, log)?;
     let samples = samples(channel, &section, &keys, log)?;
-    let mut knots = samples.knots;
-    for knot in &mut knots {
-        knot.value = knot.value * keys.scale + keys.offset;
-    }
-    // Drift is that of the scaled values, so that the seam closes in the unit of the machine.
-    if keys.remove_drift {
-        let Some(levelled) = without_drift(&knots) else {
-            let message = format!(
-                "{} cannot lose its drift: its points end before the cycle",
-                section.name()
-            );
-            let fault = Fault::new(
-                message,
-                "give points up to 100 %, or to the last sample before it",
-            );
-            log.problem(section.value_span("remove_drift"), fault);
-            return None;
-        };
-        knots = levelled;
-    }
+    let Some(knots) = levelled(samples.knots, &keys) else {
+        log.problem(section.value_span("remove_drift"), unknown_drift(&section));
+        return None;
+    };
     let interpolation = keys.interpolation.unwrap_or(samples.interpolation);
     let mut waveform = Waveform::new(knots.clone(), interpolation);
     if let (Ok(noisy), Some(harmonics)) = (&waveform, keys.low_pass_harmonics) {
@@ -262,6 +246,28 @@ pub(super) fn read(
             None
         }
     }
+}
+
+/// Returns points scaled, shifted and without drift; none where the drift is unknown.
+fn levelled(mut knots: Vec<Knot>, keys: &WaveformSource) -> Option<Vec<Knot>> {
+    for knot in &mut knots {
+        knot.value = knot.value * keys.scale + keys.offset;
+    }
+    // Drift is that of the scaled values, so that the seam closes in the unit of the machine.
+    if keys.remove_drift {
+        without_drift(&knots)
+    } else {
+        Some(knots)
+    }
+}
+
+fn unknown_drift(section: &Section<'_>) -> Fault {
+    let name = section.name();
+    let message = format!("{name} cannot lose its drift: its points end before the cycle");
+    Fault::new(
+        message,
+        "give points up to 100 %, or to the last sample before it",
+    )
 }
 
 /// Writes the table of a waveform, by the default name or by its points.
@@ -351,14 +357,9 @@ fn from_file(
     let split = Columns::split(source.inner(), &file.name(), &example);
     let columns = log.noted(&source, split)?;
     let names = columns.names();
-    let mut named = (1..names.len()).filter(|&index| Some(names[index]) == column);
-    let index = match (named.next(), named.next()) {
-        (Some(_), Some(again)) => {
-            let fault = repeated_column(names[again]);
-            return log.noted(&source, Err(vec![(columns.name_span(again), fault)]));
-        }
-        (found, _) if column.is_some() => found,
-        _ => (names.len() == 2).then_some(1),
+    let index = match column {
+        Some(column) => (1..names.len()).find(|&index| names[index] == column),
+        None => (names.len() == 2).then_some(1),
     };
     let Some(index) = index else {
         let (columns, file) = (&names[1..], file.name());
@@ -375,18 +376,16 @@ fn from_file(
     };
     let mut problems = Vec::new();
     let first = names[0].to_lowercase();
-    if !["percent", "pct", "%"]
-        .iter()
-        .any(|word| first.contains(word))
-    {
-        let fault = Fault::new(
-            format!(
-                "the first column must be the percent of the cycle, this one is `{}`",
-                names[0]
-            ),
-            "name it `percent`, and let it run from 0 to 100",
-        );
+    let mut words = ["percent", "pct", "%"].iter();
+    if !words.any(|word| first.contains(word)) {
+        let name = names[0];
+        let message =
+            format!("the first column must be the percent of the cycle, this one is `{name}`");
+        let fault = Fault::new(message, "name it `percent`, and let it run from 0 to 100");
         problems.push((columns.name_span(0), fault));
+    }
+    if names[index + 1..].contains(&names[index]) {
+        problems.push((columns.name_span(index), repeated_column(names[index])));
     }
     let unit = unit_of(key);
     if columns.unit(index) != unit {

@@ -43,11 +43,10 @@ impl DataFile {
     /// The file does not exist; the error is the path that was searched.
     pub fn find(files: &Arc<dyn Files>, written: &str, folder: &Path) -> Result<Self, PathBuf> {
         let (path, files) = (files.find(written, folder)?, Arc::clone(files));
-        let written = path.clone();
         Ok(Self {
+            written: path.clone(),
             files,
             path,
-            written,
         })
     }
 
@@ -277,23 +276,18 @@ fn unit_in_brackets(text: &str) -> Option<&'static str> {
     unit_of(&format!("_{}", unit.trim().to_lowercase()))
 }
 
-/// Reports rows with more cells than the header has names: of a decimal comma, a comma for thousands, or another table.
+/// Reports a row with more cells than the header has names: of a decimal comma, a comma for thousands, or another table.
 fn too_many_cells(rows: &[Vec<Range<usize>>], columns: usize) -> Result<(), Vec<Placed>> {
-    let longer = rows.iter().filter_map(|row| {
-        let own = row.iter().skip(columns).find(|cell| !cell.is_empty())?;
-        Some((own.clone(), row.len()))
-    });
-    let problem = |(span, count): (Range<usize>, usize)| {
-        let message = format!("the row has {count} cells where the header has {columns}");
-        let advice = "separate the columns by semicolons if the numbers have decimal commas, and write no thousands separators";
-        (span, Fault::new(message, advice))
+    let beyond = |row: &Vec<Range<usize>>| {
+        let cell = row.iter().skip(columns).find(|cell| !cell.is_empty())?;
+        Some((cell.clone(), row.len()))
     };
-    let problems: Vec<Placed> = longer.map(problem).collect();
-    if problems.is_empty() {
-        Ok(())
-    } else {
-        Err(problems)
-    }
+    let Some((span, count)) = rows.iter().find_map(beyond) else {
+        return Ok(());
+    };
+    let message = format!("the row has {count} cells where the header has {columns}");
+    let advice = "separate the columns by semicolons if the numbers have decimal commas, and write no thousands separators";
+    Err(vec![(span, Fault::new(message, advice))])
 }
 
 /// Reports numbers of a file without comma-separated columns that may have thousands separators.

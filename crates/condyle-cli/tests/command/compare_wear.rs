@@ -143,13 +143,18 @@ fn weighings_after_the_end_of_the_run_are_left_out_of_its_line() {
     let bench = measured_bench();
     bench.write(
         "masses.csv",
-        "cycles,k_mg\n0,900\n2e6,880\n4e6,860\n6e6,840\n",
+        "cycles,k_mg,control_mg\n0,900,900\n2e6,880,901\n4e6,860,902\n6e6,780,903\n",
     );
     let json = &compared(&bench, TABLE)["gravimetric"];
     assert!(json["weighings"][3]["predicted_loss_mg"].is_null());
+    // Over the same cycles as the predicted rate, without the faster wear later.
+    close(&json["specimens"][0]["mg_per_million_cycles"], 10.0, 1e-9);
     let said = bench.say(&["compare", "out", "measured.toml"]);
     assert!(
-        said.out.contains("the run ends before 1 of the weighings"),
+        said.out.contains("the run ends before 1 of the weighings")
+            && said
+                .out
+                .contains("control gains mass: if it is a soak control"),
         "{}",
         said.out
     );
@@ -171,7 +176,7 @@ fn bad_masses_are_refused_with_their_place() {
         bench.write("masses.csv", csv);
         assert_refused(&bench, TABLE, expected);
     };
-    let rows = "0,9,9\n1,8,9\n2,7,9\n3,6,9\n";
+    let rows = "0,99,99\n1,98,99\n2,97,99\n3,96,99\n";
     refuses(
         &format!("time,k_mg,soak_mg\n{rows}"),
         &["must be `cycles`, this one is `time`", "masses.csv:1:1"],
@@ -189,23 +194,23 @@ fn bad_masses_are_refused_with_their_place() {
         &["every column of masses.csv is a soak control"],
     );
     refuses(
-        "cycles,k_mg\n0,9\n2,8\n1,7\n3,6\n",
+        "cycles,k_mg\n0,99\n2,98\n1,97\n3,96\n",
         &["`cycles` is 1, after 2", "masses.csv:4:1"],
     );
     refuses(
-        "cycles,k_mg\n-1,9\n2,8\n3,7\n4,6\n",
+        "cycles,k_mg\n-1,99\n2,98\n3,97\n4,96\n",
         &["`cycles` is -1: it must be 0 or more"],
     );
     refuses(
-        "cycles,k_mg\n0,9\n1,-8\n2,7\n3,6\n",
+        "cycles,k_mg\n0,99\n1,-8\n2,97\n3,96\n",
         &["`k_mg` is -8: it must be a mass", "masses.csv:3:3"],
     );
     refuses(
-        "cycles,k_mg\n0,9\n1,\n2,7\n3,6\n",
+        "cycles,k_mg\n0,99\n1,\n2,97\n3,96\n",
         &["`` in column `k_mg` is not a finite number"],
     );
     refuses(
-        "cycles,k_mg\n0,9\n1,8\n2,7\n",
+        "cycles,k_mg\n0,99\n1,98\n2,97\n",
         &["2 weighings remain for the line", "fit_from_cycles"],
     );
     refuses(

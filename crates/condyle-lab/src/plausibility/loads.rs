@@ -409,8 +409,8 @@ pub(crate) fn lift_off(finished: &Finished<'_>) -> Option<PlausibilityWarning> {
 }
 
 fn lifted_percent(cycle: &SolvedCycle<'_>) -> f64 {
-    let largest = cycle.rows.iter().map(|row| row.axial_force_n);
-    let largest = largest.fold(0.0, f64::max);
+    let rows = cycle.rows.iter();
+    let largest = rows.fold(0.0_f64, |most, row| most.max(row.axial_force_n));
     cycle.percent_of_rows(|row| {
         let sides = &row.region_force_n[..KNEE.regions.len()];
         let least = sides.iter().copied().fold(f64::INFINITY, f64::min);

@@ -105,10 +105,11 @@ impl Panel {
     }
 
     fn body(&self) -> String {
-        let values = self.curves.iter().flat_map(|curve| &curve.points);
+        let points = self.curves.iter().flat_map(|curve| &curve.points);
         let base = self.from_zero.then_some([0.0, self.min_span]);
-        let values = values.map(|point| point.1);
-        let all = values.chain(base.into_iter().flatten());
+        let all = points
+            .map(|point| point.1)
+            .chain(base.into_iter().flatten());
         let y = Axis::over(all, self.min_span, MAX_INTERVALS);
         let lines = self.curves.iter().map(|curve| self.line(curve, &y));
         self.heading() + &self.grid(&y) + &lines.collect::<String>()

@@ -147,10 +147,7 @@ mod tests {
     fn dishes_move_with_the_insert() {
         let shift = Vec3::new(4.0, -30.0, 5.0);
         let moved: Vec<Vec3> = generic().iter().map(|point| point + shift).collect();
-        let (here, there) = (
-            Dishes::find(&generic()).unwrap(),
-            Dishes::find(&moved).unwrap(),
-        );
+        let [here, there] = [&generic(), &moved].map(|points| Dishes::find(points).unwrap());
         assert!((there.middle_mm() - here.middle_mm() - shift).norm() < 1e-9);
     }
 

@@ -206,6 +206,35 @@ fn csv_with_a_gap_or_a_step_is_refused_at_its_row() {
         ],
     );
     assert!(with_csv(&drifting, "remove_drift = true\n").is_ok());
+    let open = "percent,a_deg\n0,1\n10,2\n20,2\n30,1\n";
+    let extra = "interpolation = \"half-cosine\"\nremove_drift = true\n";
+    assert_shows(&refused(open, extra), &["its points end before the cycle"]);
+}
+
+#[test]
+fn files_of_other_cycles_columns_and_ranges_are_refused() {
+    let part = "percent,a_deg\n0,1\n0.5,2\n1,1\n";
+    let half_cosine = "interpolation = \"half-cosine\"\n";
+    assert_shows(
+        &refused(part, half_cosine),
+        &["end at 1 % of the cycle", "from 0 to 100"],
+    );
+    let twice = "percent,a_deg,a_deg\n0,1,2\n50,2,3\n";
+    assert_shows(
+        &refused(twice, "column = \"a_deg\"\n"),
+        &["`a_deg` is in its file twice"],
+    );
+    // A few harmonics of a narrow load swing far below zero.
+    let folder = tempfile::tempdir().unwrap();
+    let narrow = |percent: f64| if percent == 50.0 { 2000.0 } else { 0.0 };
+    let csv = format!("percent,load_n\n{}", samples(narrow));
+    std::fs::write(folder.path().join("wave.csv"), csv).unwrap();
+    let text = "[machine.axial_force]\nfile = \"wave.csv\"\nlow_pass_harmonics = 3\n";
+    let error = Case::parse(text, "case.toml", folder.path()).unwrap_err();
+    assert_shows(
+        &error.to_string(),
+        &["outside its range", "the low pass, leaves the range"],
+    );
 }
 
 #[test]

@@ -392,11 +392,9 @@ impl Free {
 
     /// Returns whether the constant at `place` depends on the parameters.
     pub(crate) fn changes(&self, place: usize) -> bool {
+        let own = self.law.constants();
         match &self.free {
-            Parameters::Level => {
-                (self.law.kind().scaled)(self.law.constants(), 2.0)[place]
-                    != self.law.constants()[place]
-            }
+            Parameters::Level => (self.law.kind().scaled)(own, 2.0)[place] != own[place],
             Parameters::Constants(places) => places.contains(&place),
         }
     }
