@@ -141,7 +141,13 @@ fn an_estimate_that_is_not_asked_for_is_not_made() {
     let bench = Bench::with_case(&format!("{SMALL}[accuracy]\nestimate = false\n"));
     let said = bench.say(&["run", "case.toml", "--out", "out"]);
     assert_eq!(said.code, Some(0), "{}", said.err);
-    assert!(!said.out.contains("discretisation"), "{}", said.out);
+    assert!(!said.out.contains("discretisation error"), "{}", said.out);
+    assert!(
+        said.out
+            .contains(", without discretisation, whose error is not estimated"),
+        "{}",
+        said.out
+    );
     assert!(text(&bench, "summary.json").contains("\"error\": null"));
     assert!(text(&bench, "report.html").contains("was not estimated"));
 }
