@@ -48,7 +48,7 @@ class Result(Summary):
         self.summary: dict[str, Any] = json.loads(summary) if summary else {}
         """The content of ``summary.json``."""
         self.tables: dict[str, Table] = {}
-        """All tables of the run, by the names of their files without the ending."""
+        """Wear, femur pose and the kinematics of every activity, by the names of their files without the ending."""
         for name, text in run["tables"].items():
             self.tables[name] = Table.from_csv(text, f"{folder or 'the run'}: {name}.csv")
         arrays: list[NDArray[Any]] = [run["points_mm"], run["hexes"], run["articulating"]]
