@@ -15,7 +15,7 @@ settings! {
         /// Poisson's ratio.
         poissons_ratio: f64 = 0.46, in within(0.0, 0.499);
         /// Density.
-        density_mg_per_mm3: f64 = 0.93, in within(0.01, 30.0);
+        density_mg_per_mm3: f64 = 0.93, in within(0.5, 9.0);
         /// Degree of cross-linking.
         [flat] cross_linking: CrossLinking;
     }
