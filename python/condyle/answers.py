@@ -102,6 +102,8 @@ class Answers(Answer):
         """The best test of a search: ``row``, ``inputs``, ``outputs``, ``margins`` and ``standing``."""
         robust: Answer | None
         """The ``optimum`` of a robust search beside the ``first`` design."""
+        doubtful_optima: tuple[Answer, ...]
+        """``row`` and failed ``checks`` of the optimum, or of each test of a searched front, that is doubtful."""
         aim: Answer | None
         """Of an adaptive study: ``output``, ``limit``, ``part``, ``error``, ``probability``, ``tests``, and whether it ``is_known``."""
 

@@ -80,7 +80,11 @@ fn pictures(answers: &Answers) -> Vec<Picture> {
             .and_then(front)
     };
     let all = [
-        answers.ranking.as_ref().map(ranking),
+        answers
+            .ranking
+            .as_ref()
+            .filter(|ranking| ranking.solved > 0)
+            .map(ranking),
         answers.best.as_ref().and_then(progress),
         answers.robust.as_ref().map(robust),
         of_front(true),
@@ -109,11 +113,20 @@ fn ranking(ranking: &Ranking) -> Picture {
         is_grey: false,
     });
     let title = format!("Designs by {}", ranking.title);
-    let caption = "Mean over the disturbances, with 1.96 standard deviations to either side. Every design met the same \
-                   disturbances: the table states how often one beats another, which these intervals cannot.";
+    let (solved, compared) = (ranking.solved, ranking.disturbances);
+    let over = match solved == compared {
+        true => "the disturbances".to_owned(),
+        false => format!(
+            "the {solved} of {compared} disturbances under which every design could be solved"
+        ),
+    };
+    let caption = format!(
+        "Mean over {over}, with 1.96 standard deviations to either side. Every design met the same disturbances: the table \
+         states how often one beats another, which these intervals cannot."
+    );
     let bars: Vec<Bar> = designs.collect();
     let svg = bars_svg(&title, &superscript(ranking.unit), None, &bars);
-    ("ranking.svg", caption.to_owned(), svg)
+    ("ranking.svg", caption, svg)
 }
 
 fn progress(best: &Best) -> Option<Picture> {
@@ -180,7 +193,9 @@ fn elementary(answers: &Answers) -> Option<Picture> {
     let most = all.into_iter().take(MAX_INPUTS).map(|one| Bar {
         name: answers.name_of(&one.input).to_owned(),
         span: [0.0, one.mu_star],
-        interval: Some([-1.0, 1.0].map(|by| one.mu_star + by * one.mu_star_half_interval)),
+        interval: one
+            .mu_star_half_interval
+            .map(|half| [one.mu_star - half, one.mu_star + half]),
         is_grey: false,
     });
     let caption = "The change of the output as an input goes from its low end to its high end, with 95 % intervals.";

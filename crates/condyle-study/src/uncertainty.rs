@@ -10,7 +10,8 @@ use condyle_case::{
     study::{Design, Input, SampleKeys, ScaledKey, Study, TruncatedKeys, Variation},
 };
 use condyle_lab::{
-    InMemory, Outcome, RunError, RunKeeper, aligned, run_in_memory as run_with_error,
+    InMemory, Outcome, RunError, RunKeeper, aligned, measured::student,
+    run_in_memory as run_with_error,
 };
 use condyle_results::{
     LawWear, Summary,
@@ -110,6 +111,8 @@ pub struct Uncertainty {
     not_run: Vec<String>,
     seed: u64,
     inputs: Vec<Share>,
+    /// The 95th percentile of the part of the variance of an input without influence.
+    variance_percent_by_chance: f64,
     /// Inputs for which the case has no key.
     left_out: Vec<&'static str>,
     numbers: BTreeMap<&'static str, Spread>,
@@ -273,6 +276,7 @@ impl Uncertainty {
                 .collect(),
             seed,
             inputs: scatters.iter().enumerate().map(share).collect(),
+            variance_percent_by_chance: variance_percent_by_chance(done().count()),
             left_out,
             numbers: compared().map(spread).collect(),
         }
@@ -340,6 +344,10 @@ impl Uncertainty {
             "{} runs, seed {}: standard deviations are known to {known:.0} %.\n",
             self.runs, self.seed
         );
+        text += &format!(
+            "An input without effect has up to {:.0} % of a variance by chance (95th percentile).\n",
+            self.variance_percent_by_chance
+        );
         if self.doubtful > 0 {
             text += &format!(
                 "Doubtful runs: {}; `condyle run` states the reasons.\n",
@@ -357,6 +365,15 @@ impl Uncertainty {
         }
         text
     }
+}
+
+/// Returns the 95th percentile of 100 times the squared correlation of two independent normal samples:
+/// r sqrt((n - 2) / (1 - r^2)) has Student's distribution of n - 2 degrees of freedom.
+fn variance_percent_by_chance(runs: usize) -> f64 {
+    let freedom = runs.saturating_sub(2);
+    let square = student(0.95, freedom).map(|quantile| quantile * quantile);
+    // Two points lie on a line.
+    square.map_or(100.0, |square| 100.0 * square / (square + freedom as f64))
 }
 
 impl Spread {
@@ -420,6 +437,16 @@ mod tests {
             panic!("one key");
         };
         assert!(one.contains("0.168"), "{one}");
+    }
+
+    #[test]
+    fn verify_what_an_input_without_effect_explains_by_chance() {
+        // Limits of the correlation at 5 %, two-sided (Fisher and Yates 1938).
+        for (runs, limit) in [(5, 0.8783), (10, 0.6319), (102, 0.1946)] {
+            let part = variance_percent_by_chance(runs) / 100.0;
+            assert!((part.sqrt() - limit).abs() < 1e-4, "{runs}: {part}");
+        }
+        assert_eq!(variance_percent_by_chance(2), 100.0);
     }
 
     #[test]

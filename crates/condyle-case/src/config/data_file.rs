@@ -141,6 +141,17 @@ fn is_around_cell(letter: char) -> bool {
     letter.is_whitespace() || letter == '"'
 }
 
+/// Returns a CSV text without a byte order mark, and one with a separator other than the comma, as spreadsheets of some
+/// languages write it with decimal commas, with commas and decimal points. It has as many bytes, so that places stay.
+pub(crate) fn plain_csv(text: &str, separator: Option<char>) -> Cow<'_, str> {
+    let marked = text.strip_prefix('\u{feff}');
+    let plain = marked.map_or(Cow::Borrowed(text), |rest| Cow::Owned(format!("   {rest}")));
+    match separator {
+        Some(separator) => Cow::Owned(plain.replace(',', ".").replace(separator, ",")),
+        None => plain,
+    }
+}
+
 /// A number and its place.
 pub(crate) struct Cell {
     pub row: usize,
@@ -157,11 +168,7 @@ impl<'a> Columns<'a> {
         let written = text;
         let is_separator = |one: &char| text.lines().any(|line| is_separated_by(*one, line));
         let separator = [';', '\t'].into_iter().find(is_separator);
-        // As many bytes, so that places stay: spreadsheets of some languages write semicolons and decimal commas.
-        let shown = match separator {
-            Some(separator) => Cow::Owned(text.replace(',', ".").replace(separator, ",")),
-            None => Cow::Borrowed(text),
-        };
+        let shown = plain_csv(text, separator);
         let text = shown.as_ref();
         let is_data = |line: &Range<usize>| {
             let first = cells(text, line).first().cloned().unwrap_or_default();

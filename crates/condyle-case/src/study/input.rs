@@ -302,11 +302,18 @@ impl EmpiricalKeys {
         if let Some(file) = self.file.take() {
             span = section.value_span("file");
             let source = file.source(section, "file", log)?;
-            let (names, rows) = log.noted(&source, split(source.inner()))?;
+            let (names, mut rows) = log.noted(&source, split(source.inner()))?;
+            // A file of values alone has no name above them.
+            if let [only] = &names[..]
+                && let first @ Level::Number(_) = level(only.clone())
+            {
+                rows.insert(0, vec![first]);
+            }
             let own = names.iter().position(|name| name == key);
             let Some(column) = own.or((names.len() == 1).then_some(0)) else {
                 let message = format!("the file has several columns, and none is named `{key}`");
-                let advice = format!("name the column of the values `{key}`");
+                let advice =
+                    format!("name the column of the values `{key}`, and write decimal points");
                 log.problem(span, Fault::new(message, advice));
                 return None;
             };
@@ -368,8 +375,27 @@ pub(super) fn read_rows(
     Some((inputs, rows))
 }
 
+/// Returns the separator of columns beside which commas are decimal ones; also for one column without decimal points.
+fn separator(text: &str) -> Option<char> {
+    let mut lines = text
+        .lines()
+        .filter(|line| !line.trim_start().starts_with('#'));
+    let head = lines.next().unwrap_or_default();
+    let written = [';', '\t'].into_iter().find(|one| head.contains(*one));
+    let mut is_column = || !head.contains(',') && !lines.any(|line| line.contains('.'));
+    written.or_else(|| is_column().then_some(';'))
+}
+
+fn level(cell: String) -> Level {
+    match cell.parse::<f64>() {
+        Ok(number) if number.is_finite() => Level::Number(number),
+        Ok(_) | Err(_) => Level::Word(cell),
+    }
+}
+
 /// Reads keys and rows of values from a CSV text, or reports every row that does not fit.
 fn split(text: &str) -> Result<(Vec<String>, Rows), Vec<Placed>> {
+    let text = &plain_csv(text, separator(text));
     let no_rows = || {
         let advice = "write keys of the case in its first line, such as `contact.friction,insert.thickness_mm`, and values below";
         Fault::new("the file has no rows", advice)
@@ -384,10 +410,6 @@ fn split(text: &str) -> Result<(Vec<String>, Rows), Vec<Placed>> {
         cells
             .map(|cell| text[cell].trim_matches('"').to_owned())
             .collect()
-    };
-    let level = |cell: String| match cell.parse::<f64>() {
-        Ok(number) if number.is_finite() => Level::Number(number),
-        Ok(_) | Err(_) => Level::Word(cell),
     };
     let keys = cells(&head);
     let (mut rows, mut wrong) = (Vec::new(), Vec::new());

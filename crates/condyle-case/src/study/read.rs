@@ -260,19 +260,35 @@ impl Study {
                     Level::Number(number) => number.to_string(),
                     Level::Word(word) => format!("{word:?}"),
                 };
-                let advice = if advice.is_empty() {
-                    "choose values that the case accepts; a normal distribution is checked at four standard \
-                     deviations, a truncated-normal one at its ends"
-                        .to_owned()
-                } else {
-                    advice
+                let (value, default) = match self.rejects_any_value(input, &why) {
+                    true => (
+                        String::new(),
+                        "it rejects this key with any value; write in the case what is missing",
+                    ),
+                    false => (
+                        format!(" = {value}"),
+                        "choose values that the case accepts; a normal distribution is checked at four standard \
+                         deviations, a truncated-normal one at its ends",
+                    ),
                 };
-                let message = format!("the case rejects `{key} = {value}`: {why}");
+                let advice = Some(advice).filter(|advice| !advice.is_empty());
+                let advice = advice.unwrap_or_else(|| default.to_owned());
+                let message = format!("the case rejects `{key}{value}`: {why}");
                 let fault = Fault::new(message, advice);
                 log.problem(input.span.clone(), fault);
                 break;
             }
         }
+    }
+
+    /// Returns whether the case rejects its own value of an input, or both ends of one that it leaves out, for this reason.
+    fn rejects_any_value(&self, input: &Input, why: &str) -> bool {
+        let own = self.value_of_case(input).map(|own| vec![own]);
+        let values = own.unwrap_or_else(|| input.ends());
+        values.iter().all(|value| {
+            let refusal = self.refusal(&input.assignments(&self.folder, value));
+            refusal.is_some_and(|(reason, _)| reason == why)
+        })
     }
 
     /// Returns the reason why the case does not accept changes, and the remedy, which may be empty.

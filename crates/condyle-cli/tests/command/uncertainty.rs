@@ -79,6 +79,13 @@ fn the_tables_say_what_the_numbers_hang_on_and_from_where() {
         "{}",
         said.out
     );
+    // The two-sided 5 % limit of the correlation of five pairs is 0.878.
+    assert!(
+        said.out
+            .contains("An input without effect has up to 77 % of a variance by chance"),
+        "{}",
+        said.out
+    );
     assert!(said.out.contains("saikko2005"), "{}", said.out);
     assert!(said.err.contains("5 of 5 tests"), "{}", said.err);
 }

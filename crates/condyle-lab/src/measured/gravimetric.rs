@@ -363,8 +363,8 @@ pub(crate) fn mean(values: &[f64]) -> f64 {
     values.iter().sum::<f64>() / values.len() as f64
 }
 
-/// Returns half the width of a two-sided Student interval, in standard errors.
-pub(crate) fn student(confidence: f64, freedom: usize) -> Option<f64> {
+/// Returns half the width of a two-sided Student interval, in standard errors; none without a degree of freedom.
+pub fn student(confidence: f64, freedom: usize) -> Option<f64> {
     let distribution = StudentsT::new(0.0, 1.0, freedom as f64).ok()?;
     Some(distribution.inverse_cdf(f64::midpoint(1.0, confidence)))
 }

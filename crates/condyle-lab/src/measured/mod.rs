@@ -23,7 +23,7 @@ pub use crate::measured::{
     calibrate::{
         CalibratedConstant, CalibratedTest, Calibration, Estimate, Prediction, Trial, calibrate,
     },
-    gravimetric::{GravimetricComparison, Interval, Rate, Weighing},
+    gravimetric::{GravimetricComparison, Interval, Rate, Weighing, student},
     kinematics::{ColumnComparison, Errors, KinematicsComparison, PhaseErrors},
     surface::{NodeDepths, SurfaceComparison, SurfaceErrors, register::Registration},
 };

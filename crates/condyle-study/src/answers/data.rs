@@ -22,6 +22,16 @@ pub(crate) struct Data<'a> {
     pub within: Vec<bool>,
     /// True for each test that is done or could not be solved.
     pub kept: Vec<bool>,
+    /// The plausibility checks that each test does not pass, as words.
+    pub doubts: Column,
+}
+
+/// A test that does not pass plausibility checks.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub(crate) struct Doubtful {
+    pub row: u64,
+    /// Their names, separated by spaces.
+    pub checks: String,
 }
 
 impl<'a> Data<'a> {
@@ -46,7 +56,26 @@ impl<'a> Data<'a> {
             outputs: outputs.collect::<Result<_, _>>()?,
             within,
             kept: store.kept(plan)?,
+            doubts: store.column(plan, "reason")?,
         })
+    }
+
+    /// Returns the plausibility checks that a test does not pass; none if it is sound.
+    pub fn doubts(&self, test: usize) -> Option<&String> {
+        let place = self.doubts.values[test];
+        self.doubts
+            .words
+            .get(place as usize)
+            .filter(|_| place.is_finite())
+    }
+
+    /// Returns the doubtful ones of some tests.
+    pub fn doubtful(&self, rows: impl Iterator<Item = u64>) -> Vec<Doubtful> {
+        let doubtful = rows.filter_map(|row| {
+            let checks = self.doubts(row as usize)?.clone();
+            Some(Doubtful { row, checks })
+        });
+        doubtful.collect()
     }
 
     /// Returns the tests of a design that belong to the sample, in their order; of a design without a sample, all.

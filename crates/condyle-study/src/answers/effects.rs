@@ -3,6 +3,7 @@
 use std::ops::Range;
 
 use condyle_case::study::Design;
+use condyle_lab::measured::student;
 use serde::Serialize;
 
 use crate::{
@@ -180,8 +181,8 @@ pub(crate) struct Elementary {
     pub mu_star: f64,
     /// Standard deviation: large for nonlinear effects and interactions.
     pub sigma: f64,
-    /// Half of the 95 % interval of `mu_star`.
-    pub mu_star_half_interval: f64,
+    /// Half of the 95 % interval of `mu_star`; none for a single walk.
+    pub mu_star_half_interval: Option<f64>,
     pub walks: usize,
 }
 
@@ -228,8 +229,8 @@ impl Elementary {
             mu: mean(effects),
             mu_star: mean(&magnitudes),
             sigma: standard_deviation(effects),
-            mu_star_half_interval: 1.96 * standard_deviation(&magnitudes)
-                / (count.max(1) as f64).sqrt(),
+            mu_star_half_interval: student(0.95, count.saturating_sub(1))
+                .map(|quantile| quantile * standard_deviation(&magnitudes) / (count as f64).sqrt()),
             walks: count,
         }
     }
@@ -277,6 +278,16 @@ mod tests {
         );
     }
 
+    #[test]
+    fn verify_the_interval_of_few_walks_is_that_of_student() {
+        let found = Elementary::new("mass_loss_mg", "x", &[1.0, -2.0, 3.0, -4.0, 5.0, -6.0]);
+        // The standard deviation of 1 to 6 is root(3.5).
+        let exact = 2.570_58 * (3.5_f64 / 6.0).sqrt();
+        assert!((found.mu_star_half_interval.unwrap() - exact).abs() < 1e-4);
+        let single = Elementary::new("mass_loss_mg", "x", &[1.0]);
+        assert_eq!(single.mu_star_half_interval, None);
+    }
+
     const KEYS: [(&str, f64); 8] = [
         ("contact.friction", 0.05),
         ("femur.distal_radius_mm", 37.0),
@@ -319,6 +330,7 @@ mod tests {
             outputs: vec![(&MASS_LOSS_MG, values.collect())],
             within: vec![true; shares.len()],
             kept: vec![true; shares.len()],
+            doubts: Column::default(),
         }
     }
 

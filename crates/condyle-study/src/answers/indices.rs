@@ -35,18 +35,21 @@ pub(crate) struct Indices {
 impl Indices {
     /// Returns the first index in words. It cannot exceed the total one, except by the scatter of both.
     pub fn first_in_words(&self) -> String {
-        in_words(self.first, self.total)
+        in_words(self.first, self.first_interval, self.total)
     }
 
     /// Returns the total index in words. It cannot exceed 1, except by its scatter.
     pub fn total_in_words(&self) -> String {
-        in_words(self.total, 1.0)
+        in_words(self.total, self.total_interval, 1.0)
     }
 }
 
-fn in_words(index: f64, most: f64) -> String {
-    let noise = if index > most { " (noise)" } else { "" };
-    format!("{index:.3}{noise}")
+fn in_words(index: f64, [low, _]: [f64; 2], most: f64) -> String {
+    let [index, shown_most] = [index, most].map(|index| format!("{index:.3}"));
+    // The interval explains a smaller excess, and rounding one that is not shown.
+    let is_noise = low > most && index != shown_most;
+    let noise = if is_noise { " (noise)" } else { "" };
+    format!("{index}{noise}")
 }
 
 /// Returns the indices of a Saltelli design; empty for other designs.

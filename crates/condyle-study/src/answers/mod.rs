@@ -18,11 +18,11 @@ use serde::Serialize;
 use crate::{
     adaptive::Aim,
     answers::{
-        data::{Data, Spread, of_design},
+        data::{Data, Doubtful, Spread, of_design},
         effects::{Effect, Elementary},
         emulated::{Emulated, emulated},
         indices::Indices,
-        ranking::{Best, Front, Ranking},
+        ranking::{Best, Front, RankedDesign, Ranking},
         robust::Robust,
         words::{chance, label, labelled, percent, percents, shown, with_interval},
     },
@@ -51,6 +51,8 @@ pub struct Answers {
     pub(crate) front: Option<Front>,
     pub(crate) best: Option<Best>,
     pub(crate) robust: Option<Robust>,
+    /// Of the optimum, or of the tests of a front that the study searched for, those that are doubtful.
+    doubtful_optima: Vec<Doubtful>,
     pub(crate) aim: Option<Aim>,
 }
 
@@ -100,6 +102,15 @@ impl Answers {
         };
         let counted_indices = indices::indices(&data);
         let (emulated, emulated_indices) = emulated(&data);
+        let (best, robust) = (Best::read(&data, store)?, Robust::read(&data, store)?);
+        let front = Front::read(&data, store)?;
+        let of_front = front.iter().filter(|front| front.is_searched);
+        let of_front = of_front.flat_map(|front| front.tests.iter().map(|test| test.0));
+        let of_robust = robust
+            .iter()
+            .map(|robust| robust.comparison.optimum.row as u64);
+        let optima = best.iter().filter_map(|best| best.row).chain(of_robust);
+        let doubtful_optima = data.doubtful(optima.chain(of_front));
         Ok(Self {
             title: study.title.clone(),
             design: study.design.word(),
@@ -118,9 +129,10 @@ impl Answers {
             },
             emulated,
             ranking: Ranking::read(&data, store)?,
-            front: Front::read(&data, store)?,
-            best: Best::read(&data, store)?,
-            robust: Robust::read(&data, store)?,
+            front,
+            best,
+            robust,
+            doubtful_optima,
             aim: Aim::read(plan, store)?,
         })
     }
@@ -194,17 +206,44 @@ impl Answers {
         let of_search = || self.best.as_ref().and_then(sentence_of_search);
         let of_designs = || self.ranking.as_ref().and_then(sentence_of_designs);
         let of_front = || self.front.as_ref().and_then(sentence_of_front);
+        let of_optimum = || {
+            let of_robust = || self.robust.as_ref().map(Robust::sentence);
+            let optimum = of_search().or_else(of_robust).or_else(of_front)?;
+            Some(
+                format!("{optimum} {}", self.doubts_of_optimum())
+                    .trim()
+                    .to_owned(),
+            )
+        };
         let of_aim = || {
             let aim = self.aim.as_ref()?.sentence();
             let indices = self.sentence_of_indices().unwrap_or_default();
             Some(format!("{aim} {indices}").trim().to_owned())
         };
         of_aim()
-            .or_else(of_search)
-            .or_else(|| self.robust.as_ref().map(Robust::sentence))
-            .or_else(of_front)
+            .or_else(of_optimum)
             .or_else(of_designs)
             .or_else(|| self.sentence_of_indices())
+    }
+
+    /// Returns the doubts about the optimum, or about a front and its knee, in sentences; empty if they are sound.
+    fn doubts_of_optimum(&self) -> String {
+        let doubtful = &self.doubtful_optima;
+        let front = self.front.as_ref().filter(|front| front.is_searched);
+        let mut named = doubtful.iter();
+        let named = named.find(|one| front.is_none_or(|front| front.knee == Some(one.row)));
+        let named = named.map(|Doubtful { row, checks }| {
+            format!("Row {row} is doubtful: {}.", checks.replace(' ', ", "))
+        });
+        let of_front = front.filter(|_| !doubtful.is_empty()).map(|front| {
+            let (count, tests) = (doubtful.len(), front.tests.len());
+            format!("Doubtful tests on the front: {count} of {tests}.")
+        });
+        named
+            .into_iter()
+            .chain(of_front)
+            .collect::<Vec<_>>()
+            .join(" ")
     }
 
     fn sentence_of_indices(&self) -> Option<String> {
@@ -257,6 +296,7 @@ impl Answers {
             parts.insert(1, failed);
         }
         parts.extend(self.doubts());
+        parts.extend(Some(self.doubts_of_optimum() + "\n").filter(|one| one != "\n"));
         parts.extend(self.end_of_search());
         parts.extend(self.aim.as_ref().map(|aim| aim.sentence() + "\n"));
         parts.join("\n")
@@ -287,8 +327,11 @@ impl Answers {
         if self.aim.is_some() && self.emulated.iter().any(|one| one.distribution.is_some()) {
             return Vec::new();
         }
-        let head = [
-            "output",
+        // The output of a test that could not be solved is unknown: the numbers are those of the others.
+        let has_unsolved = self.spreads.iter().any(|spread| spread.unsolved > 0);
+        let output = ["output", "output, where known"][usize::from(has_unsolved)];
+        let mut head = vec![
+            output,
             "unit",
             "least",
             "5 %",
@@ -299,6 +342,7 @@ impl Answers {
             "SD",
             "beyond its limit",
         ];
+        head.extend(has_unsolved.then_some("known in"));
         table(&head, &self.spreads, |spread| {
             let [_, p5, _, p50, _, p95, _] = spread.percentiles;
             // An emulator knows the probability better than the tests that it was fitted to.
@@ -330,6 +374,8 @@ impl Answers {
             let mut row = vec![spread.name(), spread.unit.to_owned()];
             row.extend(numbers.map(shown));
             row.push(beyond.collect::<Vec<_>>().join(", "));
+            let solved = || format!("{} of {}", spread.tests, spread.tests + spread.unsolved);
+            row.extend(has_unsolved.then(solved));
             row
         })
     }
@@ -338,16 +384,31 @@ impl Answers {
         let Some(ranking) = &self.ranking else {
             return Vec::new();
         };
-        let mean = format!("{}, {}", ranking.title, ranking.unit);
-        let head = ["design", &mean, "SD", "within limits", "best"];
+        let (compared, solved) = (ranking.disturbances, ranking.solved);
+        let design = format!("design, {compared} disturbances");
+        let mut mean = format!("{}, {}", ranking.title, ranking.unit);
+        if solved < compared {
+            mean += &format!(" ({solved} with all solved)");
+        }
+        let mut counts: Vec<(&str, CountOfDesign)> = vec![
+            ("failed", |design| design.failed),
+            ("doubtful", |design| design.doubtful),
+        ];
+        counts.retain(|(_, count)| ranking.designs.iter().any(|design| count(design) > 0));
+        let mut head = vec![design.as_str()];
+        head.extend(counts.iter().map(|(name, _)| *name));
+        head.extend([&mean, "SD", "within limits", "best"]);
         let mut rows = table(&head, &ranking.designs, |design| {
-            vec![
-                design.name.clone(),
+            let counts = counts.iter();
+            let counts = counts.map(|(_, count)| format!("{} of {}", count(design), design.tests));
+            let numbers = [
                 shown(design.mean),
                 shown(design.standard_deviation),
                 with_interval(design.within_limits, design.within_limits_interval),
                 with_interval(design.best, design.best_interval),
-            ]
+            ];
+            let name = [design.name.clone()].into_iter();
+            name.chain(counts).chain(numbers).collect()
         });
         for (place, other) in ranking.designs.iter().enumerate() {
             rows[0].push(format!("beats {}", other.name));
@@ -424,10 +485,11 @@ impl Answers {
                 .map_or_else(String::new, |one| label(one.output))
         );
         table_of_most(&[&input, "mu*", "mu", "sigma"], &all, |effect| {
-            let half = shown(effect.mu_star_half_interval);
+            let half = effect.mu_star_half_interval;
+            let half = half.map_or_else(String::new, |half| format!(" +/- {}", shown(half)));
             vec![
                 self.name_of(&effect.input).to_owned(),
-                format!("{} +/- {half}", shown(effect.mu_star)),
+                format!("{}{half}", shown(effect.mu_star)),
                 shown(effect.mu),
                 shown(effect.sigma),
             ]
@@ -471,14 +533,16 @@ impl Answers {
             .chain(names)
             .collect();
         let row = |(place, (row, one, other)): (usize, &(u64, f64, f64))| {
-            let note = if Some(*row) == front.knee {
-                " knee"
-            } else {
-                ""
-            };
+            let is_doubtful = self.doubtful_optima.iter().any(|one| one.row == *row);
+            let notes = [
+                (Some(*row) == front.knee, " knee"),
+                (is_doubtful, " doubtful"),
+            ];
+            let notes = notes.into_iter().filter(|(is, _)| *is);
+            let notes: String = notes.map(|(_, note)| note).collect();
             let inputs = front.inputs.iter().map(|input| shown(input.values[place]));
             let outputs = [one, other].map(|value| shown(*value));
-            let row = [format!("{row}{note}")].into_iter().chain(outputs);
+            let row = [format!("{row}{notes}")].into_iter().chain(outputs);
             row.chain(inputs).collect::<Vec<_>>()
         };
         let rows = front.tests.iter().enumerate().map(row);
@@ -551,26 +615,38 @@ fn sentence_of_search(best: &Best) -> Option<String> {
     ))
 }
 
+/// Counts tests of a design.
+type CountOfDesign = fn(&RankedDesign) -> usize;
+
 fn sentence_of_designs(ranking: &Ranking) -> Option<String> {
     let first = ranking.designs.first()?;
-    let (solved, tested) = (ranking.disturbances, ranking.tested);
-    if solved == 0 {
+    let compared = ranking.disturbances;
+    if ranking.designs.iter().all(|design| design.best == 0.0) {
         return Some(format!(
-            "The designs cannot be compared: under none of the {tested} disturbances could every design be solved."
+            "The designs cannot be compared: under none of the {compared} disturbances could a design be solved."
         ));
     }
-    let compared = if solved < tested {
-        format!(
-            " Compared are the {solved} of {tested} disturbances under which every design could be solved."
-        )
-    } else {
-        String::new()
+    let listed = |title: &str, count: CountOfDesign| {
+        let designs = ranking.designs.iter();
+        let counts = designs.map(|one| format!("{} of {} of {}", count(one), one.tests, one.name));
+        let counts = counts.collect::<Vec<_>>().join(", ");
+        let has_any = ranking.designs.iter().any(|one| count(one) > 0);
+        match has_any {
+            true => format!(" {title}: {counts}."),
+            false => String::new(),
+        }
     };
+    let failed = listed(
+        "Tests that could not be solved count as worse than solved ones",
+        |one| one.failed,
+    );
+    let doubtful = listed("Doubtful tests", |one| one.doubtful);
     let best = with_interval(first.best, first.best_interval);
     let within = with_interval(first.within_limits, first.within_limits_interval);
     let (name, title) = (&first.name, ranking.title);
     Some(format!(
-        "{name} ranks first: it has the least {title} under {best} of the disturbances, and keeps every limit under {within}.{compared}"
+        "{name} ranks first: it has the least {title} under {best} of the {compared} disturbances, and keeps every limit under \
+         {within}.{failed}{doubtful}"
     ))
 }
 
@@ -678,19 +754,22 @@ mod tests {
     }
 
     #[test]
-    fn a_first_index_above_the_total_one_is_noise() {
-        let index = |first, total| Indices {
+    fn an_index_is_noise_if_its_interval_lies_above_its_most() {
+        let index = |first, total, half: f64| Indices {
             output: "mass_loss_mg",
             design: None,
             input: "contact.friction".to_owned(),
             first,
-            first_interval: [0.0, 1.0],
+            first_interval: [first - half, first + half],
             total,
-            total_interval: [0.0, 1.0],
+            total_interval: [total - half, total + half],
             bases: 10,
         };
-        assert_eq!(index(0.31, 0.3).first_in_words(), "0.310 (noise)");
-        assert_eq!(index(0.3, 0.3).first_in_words(), "0.300");
-        assert_eq!(index(0.3, 1.01).total_in_words(), "1.010 (noise)");
+        assert_eq!(index(0.31, 0.3, 0.005).first_in_words(), "0.310 (noise)");
+        assert_eq!(index(0.31, 0.3, 0.02).first_in_words(), "0.310");
+        assert_eq!(index(0.3, 0.3, 0.0).first_in_words(), "0.300");
+        assert_eq!(index(0.995_01, 0.995, 0.0).first_in_words(), "0.995");
+        assert_eq!(index(0.3, 1.01, 0.005).total_in_words(), "1.010 (noise)");
+        assert_eq!(index(0.3, 1.0 + 1e-9, 0.0).total_in_words(), "1.000");
     }
 }

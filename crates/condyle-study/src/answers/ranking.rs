@@ -19,25 +19,31 @@ pub(crate) struct Ranking {
     pub output: &'static str,
     pub title: &'static str,
     pub unit: &'static str,
-    /// Disturbances under which the tests of all designs are solved, and which are compared.
+    /// Disturbances under which all designs were tested, and which are compared.
     pub disturbances: usize,
-    /// Disturbances under which all designs were tested.
-    pub tested: usize,
+    /// Those under which the tests of all designs are solved.
+    pub solved: usize,
     pub designs: Vec<RankedDesign>,
 }
 
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub(crate) struct RankedDesign {
     pub name: String,
+    /// All tests of the design, those that could not be solved, and the doubtful ones.
+    pub tests: usize,
+    pub failed: usize,
+    pub doubtful: usize,
+    /// Over the disturbances under which the tests of all designs are solved; NaN without one.
     pub mean: f64,
     pub standard_deviation: f64,
     /// Share of the disturbances under which the design is within every limit; one that cannot be solved is not.
     pub within_limits: f64,
     pub within_limits_interval: [f64; 2],
-    /// Share of the disturbances under which no other design is better.
+    /// Share of the disturbances under which the design is solved and no other one is better.
     pub best: f64,
     pub best_interval: [f64; 2],
-    /// The probability of beating each design of the list, ties counted half.
+    /// The probability of beating each design of the list: one that is solved beats one that is not, and ties, also of two
+    /// that are not solved, count half.
     pub beats: Vec<f64>,
     pub beats_intervals: Vec<[f64; 2]>,
 }
@@ -45,9 +51,12 @@ pub(crate) struct RankedDesign {
 /// The output of one design under every disturbance.
 struct Outcomes {
     name: String,
+    /// Infinite where the test could not be solved: such a design is worse than one that could, and not left out, since it
+    /// would otherwise be compared under easy disturbances only.
     values: Vec<f64>,
     /// Of each test of the design; none where the test could not be solved.
     within_limits: Vec<Option<bool>>,
+    doubtful: usize,
 }
 
 impl Ranking {
@@ -60,36 +69,35 @@ impl Ranking {
         let output = study.answers.rank_by;
         let values = store.column(data.plan, output.key)?.values;
         let count = designs(study);
-        // A design that fails under hard disturbances would otherwise be compared under easy ones only.
-        let common: Vec<usize> = (0..values.len() / count)
-            .filter(|row| {
-                let of_designs = &values[row * count..(row + 1) * count];
-                of_designs.iter().all(|value| value.is_finite())
-            })
-            .collect();
+        let tested = data.kept.chunks(count).enumerate();
+        let tested = tested.filter(|(_, designs)| designs.iter().all(|is| *is));
+        let compared: Vec<usize> = tested.map(|(row, _)| row * count).collect();
+        let or_infinite = |value: f64| match value.is_finite() {
+            true => value,
+            false => f64::INFINITY,
+        };
         let alternatives = study.alternatives.iter().enumerate();
         let outcomes = alternatives.map(|(place, design)| {
-            let common = common.iter().map(|row| row * count + place);
+            let compared = compared.iter().map(|first| values[first + place]);
             let kept = (place..values.len()).step_by(count);
-            let kept = kept.filter(|test| data.kept[*test]);
-            let within = kept.map(|test| values[test].is_finite().then_some(data.within[test]));
+            let kept: Vec<usize> = kept.filter(|test| data.kept[*test]).collect();
+            let within = |test: &usize| values[*test].is_finite().then_some(data.within[*test]);
+            let is_doubtful = |test: &&usize| data.doubts(**test).is_some();
             Outcomes {
                 name: design.name.clone(),
-                values: common.map(|test| values[test]).collect(),
-                within_limits: within.collect(),
+                values: compared.map(or_infinite).collect(),
+                within_limits: kept.iter().map(within).collect(),
+                doubtful: kept.iter().filter(is_doubtful).count(),
             }
         });
+        let outcomes: Vec<Outcomes> = outcomes.collect();
         Ok(Some(Self {
             output: output.key,
             title: output.label,
             unit: output.unit(),
-            disturbances: common.len(),
-            tested: data
-                .kept
-                .chunks(count)
-                .filter(|tests| tests.iter().all(|is| *is))
-                .count(),
-            designs: ranked(&outcomes.collect::<Vec<_>>()),
+            disturbances: compared.len(),
+            solved: solved_by_all(&outcomes).len(),
+            designs: ranked(&outcomes),
         }))
     }
 }
@@ -101,11 +109,14 @@ impl Outcomes {
     /// Returns the share of the tests within every limit and its interval: an unsolved test counts as beyond a limit in the
     /// share, and both ways in the interval, since the implant may be one that the test overloads.
     fn within(&self) -> (f64, [f64; 2]) {
-        let count = |of: Option<bool>| self.within_limits.iter().filter(|one| **one == of).count();
         let tests = self.within_limits.len() as f64;
-        let (within, unsolved) = (count(Some(true)) as f64, count(None) as f64);
+        let (within, unsolved) = (self.count(Some(true)) as f64, self.count(None) as f64);
         let [low, high] = [within, within + unsolved].map(|hits| wilson_interval(hits, tests));
         (within / tests.max(1.0), [low[0], high[1]])
+    }
+
+    fn count(&self, of: Option<bool>) -> usize {
+        self.within_limits.iter().filter(|one| **one == of).count()
     }
 
     fn keeps_limits(&self) -> bool {
@@ -113,19 +124,35 @@ impl Outcomes {
     }
 }
 
+/// Returns the disturbances under which every design is solved.
+fn solved_by_all(all: &[Outcomes]) -> Vec<usize> {
+    let count = all.first().map_or(0, |design| design.values.len());
+    let is_solved = |row: &usize| all.iter().all(|design| design.values[*row].is_finite());
+    (0..count).filter(is_solved).collect()
+}
+
 /// Returns the designs sorted by whether they keep the limits, then by how often no other is better, then by the mean.
 fn ranked(all: &[Outcomes]) -> Vec<RankedDesign> {
     let best = |design: &Outcomes| {
         let is_best = |row: &usize| {
             let value = design.values[*row];
-            all.iter().all(|other| value <= other.values[*row])
+            value.is_finite() && all.iter().all(|other| value <= other.values[*row])
         };
         let count = design.values.len();
         (0..count).filter(is_best).count() as f64 / count.max(1) as f64
     };
+    let solved = solved_by_all(all);
+    let of_solved = |design: &Outcomes, of: fn(&[f64]) -> f64| {
+        let values: Vec<f64> = solved.iter().map(|row| design.values[*row]).collect();
+        if values.is_empty() {
+            f64::NAN
+        } else {
+            of(&values)
+        }
+    };
     let mut order: Vec<(f64, f64, &Outcomes)> = all
         .iter()
-        .map(|design| (best(design), mean(&design.values), design))
+        .map(|design| (best(design), of_solved(design, mean), design))
         .collect();
     order.sort_by(|one, other| {
         let by_limits = other.2.keeps_limits().cmp(&one.2.keeps_limits());
@@ -142,8 +169,11 @@ fn ranked(all: &[Outcomes]) -> Vec<RankedDesign> {
         let (within_limits, within_limits_interval) = own.within();
         RankedDesign {
             name: own.name.clone(),
+            tests: own.within_limits.len(),
+            failed: own.count(None),
+            doubtful: own.doubtful,
             mean,
-            standard_deviation: standard_deviation(&own.values),
+            standard_deviation: of_solved(own, standard_deviation),
             within_limits,
             within_limits_interval,
             best,
@@ -429,6 +459,7 @@ mod tests {
             name: name.to_owned(),
             values: base.iter().map(|value| value + add).collect(),
             within_limits: vec![Some(true); 50],
+            doubtful: 0,
         };
         let ranked = ranked(&[outcomes("worse", 1.0), outcomes("better", 0.0)]);
         assert_eq!(ranked[0].name, "better");
@@ -446,6 +477,7 @@ mod tests {
             name: name.to_owned(),
             values: vec![value; 20],
             within_limits: vec![Some(within); 20],
+            doubtful: 0,
         };
         let ranked = ranked(&[outcomes("flat", 1.0, false), outcomes("deep", 2.0, true)]);
         assert_eq!(ranked[0].name, "deep");
@@ -458,6 +490,7 @@ mod tests {
             name: name.to_owned(),
             values: vec![value; 20],
             within_limits: [vec![Some(true); 20], vec![None; unsolved]].concat(),
+            doubtful: 0,
         };
         let ranked = ranked(&[outcomes("fails", 1.0, 5), outcomes("holds", 2.0, 0)]);
         assert_eq!((&*ranked[0].name, ranked[1].within_limits), ("holds", 0.8));
@@ -466,6 +499,33 @@ mod tests {
             wilson_interval(25.0, 25.0)[1],
         ];
         assert_eq!(ranked[1].within_limits_interval, interval);
+    }
+
+    #[test]
+    fn verify_a_design_that_cannot_be_solved_beats_none_that_can() {
+        const FAILED: f64 = f64::INFINITY;
+        let outcomes = |name: &str, values: [f64; 5]| Outcomes {
+            name: name.to_owned(),
+            within_limits: values
+                .map(|value| value.is_finite().then_some(true))
+                .to_vec(),
+            values: values.to_vec(),
+            doubtful: 0,
+        };
+        // Both fail under the last disturbance, which counts half.
+        let all = [
+            outcomes("low", [1.0, FAILED, FAILED, FAILED, FAILED]),
+            outcomes("firm", [2.0, 2.0, 2.0, 2.0, FAILED]),
+        ];
+        let ranked = ranked(&all);
+        let [firm, low] = &ranked[..] else {
+            panic!("two designs")
+        };
+        assert_eq!((&*firm.name, firm.best, low.best), ("firm", 0.6, 0.2));
+        assert_eq!((firm.beats[1], low.beats[0]), (0.7, 0.3));
+        assert_eq!(firm.beats_intervals[1], wilson_interval(3.5, 5.0));
+        assert_eq!((firm.failed, low.failed, firm.mean), (1, 4, 2.0));
+        assert_eq!(solved_by_all(&all), [0]);
     }
 
     #[test]

@@ -29,9 +29,9 @@ pub(crate) fn shown(value: f64) -> String {
     format!("{value:.decimals$}")
 }
 
-pub(crate) fn with_interval(share: f64, interval: [f64; 2]) -> String {
-    let [low, high] = interval.map(percent);
-    format!("{} ({low} to {high})", percent(share))
+pub(crate) fn with_interval(share: f64, [low, high]: [f64; 2]) -> String {
+    let low = 100.0 * low;
+    format!("{} ({low:.1} to {})", percent(share), percent(high))
 }
 
 /// Returns a probability in percent, to a ten thousandth; a smaller one than a thousandth to two digits.

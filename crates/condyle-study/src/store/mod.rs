@@ -8,7 +8,7 @@ use std::{
     time::Duration,
 };
 
-use condyle_case::config::Level;
+use condyle_case::{config::Level, study::Design};
 use condyle_results::{FolderLock, ResultsFolder};
 use rusqlite::{Connection, params_from_iter, types::Value};
 
@@ -216,8 +216,17 @@ impl Store {
             );
             return Err(StudyError::folder(folder, &problem));
         }
-        let problem = "the folder holds another study; give another one with --out, or remove it";
-        Err(StudyError::folder(folder, problem))
+        // The size of its smallest hypercube is among the inputs of a study.
+        let rule = match plan.study().design {
+            Design::LatinHypercube(_) => {
+                " (only twice the size, four times the size and so on continue a Latin hypercube)"
+            }
+            _ => "",
+        };
+        let problem = format!(
+            "the folder holds another study{rule}; give another one with --out, or remove it"
+        );
+        Err(StudyError::folder(folder, &problem))
     }
 
     /// Takes the text and the number of tests of a plan that has more of them than the study in the folder had, or aims at
@@ -579,6 +588,7 @@ mod tests {
         // Only a hypercube of twice the size begins with the same tests.
         let said = take("latin-hypercube", 12).err().unwrap().to_string();
         assert!(said.contains("another study"), "{said}");
+        assert!(said.contains("only twice the size, four times"), "{said}");
     }
 
     #[test]
