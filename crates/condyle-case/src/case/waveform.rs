@@ -223,14 +223,21 @@ pub(super) fn read(
         Ok(waveform) => match first_outside(channel, &knots) {
             Some(found) => found,
             None => match beyond_points(channel, &waveform) {
-                // It is between the points.
-                Some(fault) => (knots.len(), fault),
+                Some(fault) => {
+                    log.problem(section.span(), fault);
+                    return None;
+                }
                 None => return Some(waveform),
             },
         },
         Err(error) => {
             let advice = match error {
-                WaveformError::Seam { .. } => "or, for a measured cycle, set `remove_drift = true`",
+                WaveformError::Seam { to: 100.0, .. } => {
+                    "or, for a measured cycle, set `remove_drift = true`"
+                }
+                WaveformError::Seam { .. } => {
+                    "or set `remove_drift = true`; for a real step, `interpolation = \"half-cosine\"`"
+                }
                 _ => "",
             };
             let fault = Fault::new(format!("[{}]: {error}", section.path), advice);
@@ -475,7 +482,7 @@ fn first_outside(channel: &Channel, knots: &[Knot]) -> Option<(usize, Fault)> {
 
 /// Returns the fault of values outside the range between the points, which a spline or a low pass makes.
 fn beyond_points(channel: &Channel, waveform: &Waveform) -> Option<Fault> {
-    let percents = (0..1000).map(|place| 0.1 * f64::from(place));
+    let percents = (0..1000).map(|place| f64::from(place) / 10.0);
     let values: Vec<Knot> = percents
         .map(|percent| Knot {
             percent,

@@ -162,8 +162,7 @@ pub(crate) struct Cell {
 impl<'a> Columns<'a> {
     /// Splits `text` into a header and rows; `example` shows a header where there is none.
     ///
-    /// The header is the last line above the numbers with as many names as they have columns, and
-    /// may be a comment; the last name ends at a blank, so that a remark may follow it.
+    /// The header is the last line above the numbers with as many names as they have columns, and may be a comment.
     pub(crate) fn split(text: &'a str, file: &str, example: &str) -> Result<Self, Vec<Placed>> {
         let written = text;
         let is_separator = |one: &char| text.lines().any(|line| is_separated_by(*one, line));
@@ -176,7 +175,8 @@ impl<'a> Columns<'a> {
         };
         let lines: Vec<Range<usize>> = lines(text).collect();
         let start = lines.iter().position(is_data).unwrap_or(lines.len());
-        let columns = lines.get(start).map_or(2, |line| cells(text, line).len());
+        let first = lines.get(start);
+        let columns = first.map_or(2, |line| filled(text, line).len());
         if columns < 2 {
             let fault = Fault::new(
                 format!("{file} has one column where two or more are needed"),
@@ -184,8 +184,12 @@ impl<'a> Columns<'a> {
             );
             return Err(vec![(lines[start].clone(), fault)]);
         }
-        let named = |line: &&Range<usize>| cells(text, line).len() == columns;
-        let Some(header) = lines[..start].iter().rev().find(named) else {
+        let above = || lines[..start].iter().rev();
+        let all = |line: &Range<usize>| cells(text, line).len();
+        let named = above().find(|line| Some(all(line)) == first.map(all));
+        // Separators at the end of lines make columns without names, in some of the lines.
+        let named = named.or_else(|| above().find(|line| filled(text, line).len() == columns));
+        let Some(header) = named else {
             let first = lines.first().cloned().unwrap_or(0..0);
             let advice = format!(
                 "write one above the numbers, with the unit in the name, such as `{example}`"
@@ -196,31 +200,50 @@ impl<'a> Columns<'a> {
             );
             return Err(vec![(first, fault)]);
         };
-        let is_row = |line: &&Range<usize>| !text[(*line).clone()].trim_start().starts_with('#');
+        let is_row = |line: &&Range<usize>| {
+            let is_comment = text[(*line).clone()].trim_start().starts_with('#');
+            !is_comment && !filled(text, line).is_empty()
+        };
+        let header: Vec<_> = filled(text, header)
+            .into_iter()
+            .map(|span| without_comment(text, span))
+            .collect();
         let rows = lines[start..].iter().filter(is_row);
         let rows: Vec<_> = rows.map(|line| cells(text, line)).collect();
-        too_many_cells(&rows, columns)?;
+        too_many_cells(&rows, header.len())?;
         if separator.is_some() {
             no_thousands(written, &rows)?;
         }
-        let header = cells(text, header).into_iter().enumerate();
-        let header = header.map(|(index, span)| name_in(text, span, index + 1 == columns));
         Ok(Self {
-            header: header.collect(),
+            header,
             text: shown,
             rows,
         })
     }
 
+    /// Returns the names of the columns: up to the first blank, since a remark may follow, but whole where several begin alike.
     pub(crate) fn names(&self) -> Vec<&str> {
-        let name = |span: &Range<usize>| &self.text[span.clone()];
-        self.header.iter().map(name).collect()
+        let whole = || self.header.iter().map(|span| &self.text[span.clone()]);
+        let first = |name: &'_ str| name.find(char::is_whitespace).unwrap_or(name.len());
+        let alike = |one: &str| {
+            whole()
+                .filter(|name| name[..first(name)] == one[..first(one)])
+                .count()
+        };
+        let name = |name| {
+            if alike(name) > 1 {
+                name
+            } else {
+                &name[..first(name)]
+            }
+        };
+        whole().map(name).collect()
     }
 
     /// Returns the unit of a column: it ends a word of its name, or what precedes a bracket as in `ant_mm(xtrans)`, or stands in
     /// brackets.
     pub(crate) fn unit(&self, column: usize) -> Option<&'static str> {
-        let name = self.names()[column].to_lowercase();
+        let name = self.text[self.header[column].clone()].to_lowercase();
         let (stem, bracket) = name.split_once(['(', '[']).unwrap_or((&name, ""));
         let mut words = stem.split_whitespace();
         words
@@ -245,7 +268,7 @@ impl<'a> Columns<'a> {
     fn collected(&self, column: usize, skips_empty: bool) -> Result<Vec<Cell>, Vec<Placed>> {
         let (mut good, mut bad) = (Vec::new(), Vec::new());
         for (row, cells) in self.rows.iter().enumerate() {
-            if skips_empty && cells.get(column).is_some_and(Range::is_empty) {
+            if skips_empty && cells.get(column).is_none_or(Range::is_empty) {
                 continue;
             }
             // A row that is too short lacks its cell at its end.
@@ -266,16 +289,10 @@ impl<'a> Columns<'a> {
     }
 }
 
-/// Returns the place of a name within a cell of a header: without the `#` of a comment, and the last without a remark.
-fn name_in(text: &str, span: Range<usize>, is_last: bool) -> Range<usize> {
-    let name = text[span.clone()].trim_start_matches(|one: char| one == '#' || is_around_cell(one));
-    let start = span.end - name.len();
-    let remark = name.find(char::is_whitespace).filter(|_| is_last);
-    let is_unit = |at: &usize| {
-        unit_in_brackets(name[*at..].trim_start().trim_start_matches(['(', '['])).is_some()
-    };
-    let end = remark.filter(|at| !is_unit(at)).unwrap_or(name.len());
-    start..start + end
+/// Returns the place of a name without the `#` of a comment.
+fn without_comment(text: &str, span: Range<usize>) -> Range<usize> {
+    let name = text[span.clone()].trim_start_matches(|one| one == '#' || is_around_cell(one));
+    span.end - name.len()..span.end
 }
 
 fn unit_in_brackets(text: &str) -> Option<&'static str> {
@@ -299,10 +316,15 @@ fn too_many_cells(rows: &[Vec<Range<usize>>], columns: usize) -> Result<(), Vec<
 
 /// Reports numbers of a file without comma-separated columns that may have thousands separators.
 fn no_thousands(text: &str, rows: &[Vec<Range<usize>>]) -> Result<(), Vec<Placed>> {
+    let is_number = |span: &&Range<usize>| {
+        text[(*span).clone()]
+            .replace(',', ".")
+            .parse::<f64>()
+            .is_ok()
+    };
     let of = |mark: char| {
-        rows.iter()
-            .flatten()
-            .find(|cell| text[(*cell).clone()].contains(mark))
+        let mut numbers = rows.iter().flatten().filter(is_number);
+        numbers.find(|cell| text[(*cell).clone()].contains(mark))
     };
     let problem = |span: &Range<usize>| {
         let number = &text[span.clone()];
@@ -332,7 +354,7 @@ fn no_thousands(text: &str, rows: &[Vec<Range<usize>>]) -> Result<(), Vec<Placed
         let is_hundreds = |cell: &Range<usize>| {
             text[cell.clone()]
                 .parse()
-                .is_ok_and(|value: f64| (100.0..1000.0).contains(&value.abs()))
+                .is_ok_and(|value: f64| value.abs() > 100.0 && value.abs() < 1000.0)
         };
         if let Some(first) = marked.first()
             && marked.iter().all(is_grouped)
@@ -355,6 +377,14 @@ pub(crate) fn lines(text: &str) -> impl Iterator<Item = Range<usize>> + '_ {
     text.split_inclusive('\n')
         .map(span)
         .filter(|line| !line.is_empty())
+}
+
+/// Returns the cells of a line up to the last that is not empty.
+fn filled(text: &str, line: &Range<usize>) -> Vec<Range<usize>> {
+    let mut cells = cells(text, line);
+    let last = cells.iter().rposition(|cell| !cell.is_empty());
+    cells.truncate(last.map_or(0, |last| last + 1));
+    cells
 }
 
 /// Returns the cells of a line, without blanks and quote marks around them.
@@ -407,6 +437,8 @@ mod tests {
             "percent\ty_mm\r\n0\t1,5\r\n50\t2\r\n",
             "\"percent\",\"y_mm\"\n\"0\",\"1.5\"\n\"50\",\"2\"\n",
             "percent,y_mm,,\n0,1.5,,\n50,2,,\n",
+            "percent,y_mm,\n0,1.5\n50,2\n,\n",
+            "percent;y_mm\n0;1,5;\n50;2;\n",
         ] {
             assert_eq!(numbers(text), Ok(vec![1.5, 2.0]), "{text}");
         }
@@ -426,6 +458,11 @@ mod tests {
             let fault = numbers(text).unwrap_err();
             assert!(fault.starts_with(shown), "{text}: {fault}");
         }
+        // A cycle by sixths, and dates in a column that is not used.
+        let sixths = "percent;y_mm\n0;1\n16,667;2\n83,333;3\n100;1\n";
+        assert_eq!(numbers(sixths), Ok(vec![1.0, 2.0, 3.0, 1.0]));
+        let dated = "percent;y_mm;date\n0;1,5;1.2.2026\n50;2;2.2.2026\n";
+        assert_eq!(numbers(dated), Ok(vec![1.5, 2.0]));
         // Three decimals below a hundred are no thousands.
         assert_eq!(
             numbers("percent;y_mm\n0;64\n1;1,018\n"),
@@ -434,17 +471,13 @@ mod tests {
     }
 
     #[test]
-    fn names_keep_their_words_and_units_may_stand_in_brackets() {
-        let text = "percent,force_N left,flexion [deg],x (mm)\n0,1,2,3\n";
+    fn names_that_begin_alike_keep_their_words_and_units_may_stand_in_brackets() {
+        let text = "percent,force_N left,force_N right,axial load [N],x (mm)\n0,1,2,3,4\n";
         let columns = Columns::split(text, "x.csv", "").unwrap();
-        assert_eq!(
-            columns.names(),
-            ["percent", "force_N left", "flexion [deg]", "x (mm)"]
-        );
-        assert_eq!(
-            (columns.unit(1), columns.unit(2), columns.unit(3)),
-            (Some("N"), Some("degrees"), Some("mm"))
-        );
+        let names = ["percent", "force_N left", "force_N right", "axial", "x"];
+        assert_eq!(columns.names(), names);
+        let units = [1, 2, 3, 4].map(|column| columns.unit(column));
+        assert_eq!(units, [Some("N"), Some("N"), Some("N"), Some("mm")]);
     }
 
     #[test]

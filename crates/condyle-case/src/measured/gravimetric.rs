@@ -35,6 +35,8 @@ const SOAK: &str = "soak";
 /// Smallest plausible mass of a specimen, mg: a smaller one is in g, or its comma separates thousands. Our choice: a small pin weighs
 /// 100 mg.
 const MIN_MASS_MG: f64 = 50.0;
+/// Smallest plausible number of cycles at the last weighing; our choice.
+const MIN_CYCLES: f64 = 10_000.0;
 /// A line with an interval needs one weighing more than it has parameters.
 const MIN_WEIGHINGS: usize = 3;
 
@@ -78,6 +80,14 @@ impl Gravimetric {
                 "add weighings, or lower `fit_from_cycles`; the first row starts the test, and its loss of 0 does not count",
             );
             log.problem(section.value_span("file"), fault);
+            return None;
+        }
+        let last = cycles.last().copied().unwrap_or_default();
+        if last < MIN_CYCLES {
+            let message = format!("the weighings end at {last} cycles");
+            let advice =
+                "give whole cycles, not millions, and write them without thousands separators";
+            log.problem(section.value_span("file"), Fault::new(message, advice));
             return None;
         }
         let (mut specimens, mut soaks) = (Vec::new(), Vec::new());

@@ -377,11 +377,14 @@ pub(super) fn read_rows(
 
 /// Returns the separator of columns beside which commas are decimal ones; also for one column without decimal points.
 fn separator(text: &str) -> Option<char> {
-    let mut lines = text
+    let unmarked = text.trim_start_matches('\u{feff}');
+    let mut lines = unmarked
         .lines()
         .filter(|line| !line.trim_start().starts_with('#'));
     let head = lines.next().unwrap_or_default();
-    let written = [';', '\t'].into_iter().find(|one| head.contains(*one));
+    // Tabs beside commas only align the columns.
+    let is_written = |one: &char| head.contains(*one) && (*one == ';' || !head.contains(','));
+    let written = [';', '\t'].into_iter().find(is_written);
     let mut is_column = || !head.contains(',') && !lines.any(|line| line.contains('.'));
     written.or_else(|| is_column().then_some(';'))
 }

@@ -214,6 +214,13 @@ fn bad_masses_are_refused_with_their_place() {
         &["2 weighings remain for the line", "fit_from_cycles"],
     );
     refuses(
+        "cycles;k_mg\n0;9000\n250.000;8995\n500.000;8990\n750.000;8985\n",
+        &[
+            "the weighings end at 750 cycles",
+            "without thousands separators",
+        ],
+    );
+    refuses(
         "cycles\n0\n1\n",
         &["has one column where two or more are needed"],
     );

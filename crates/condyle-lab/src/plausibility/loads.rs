@@ -56,6 +56,8 @@ const MIN_AP_STROKE_MM: f64 = 1.0;
 /// Largest excess of the path of a prescribed motion over that of the smoothed motion, %; our choice: noise of 6 % changed the mass of
 /// a knee by 12 %.
 const MAX_NOISE_PERCENT: f64 = 3.0;
+/// Part of the increments at which a noisy motion reverses: noise of 0.01 mm does so at a quarter of them.
+const MIN_REVERSALS: f64 = 0.15;
 /// Increments of a cycle from which smoothing keeps every motion of a joint.
 const MIN_ROWS_OF_NOISE: usize = 100;
 /// Smallest plausible peak of the axial force on specimens, N; our choice: pins are pressed by tens to hundreds of newtons.
@@ -184,6 +186,12 @@ fn noisy_motion(
             .map(|row| (value(row + 1) - value(row)).abs())
             .sum()
     };
+    let turns = |row: &usize| (at(row + 1) - at(*row)) * (at(row + 2) - at(row + 1)) < 0.0;
+    let reversals = (0..count).filter(turns).count() as f64;
+    // Smoothing shortens the path of a motion with corners, too, which has few.
+    if reversals < MIN_REVERSALS * count as f64 {
+        return None;
+    }
     let percent = 100.0 * (path(&at) / path(&smooth).max(f64::MIN_POSITIVE) - 1.0);
     let message = format!(
         "the prescribed motion {}{} is noisy: its path is {percent:.0} % longer than that of the smoothed motion, and noise wears",

@@ -170,7 +170,7 @@ fn ranking(first: &Run, second: &Run) -> Option<String> {
     let (one, two) = (&first.name, &second.name);
     let own = first.results.summary.as_ref()?;
     let other = second.results.summary.as_ref()?;
-    if own[&CYCLES] != other[&CYCLES] {
+    if own.joint == other.joint && own[&CYCLES] != other[&CYCLES] {
         return Some(format!(
             "{one} and {two} have different numbers of cycles: compare their wear per cycle."
         ));

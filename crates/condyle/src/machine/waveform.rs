@@ -64,6 +64,8 @@ pub struct Waveform {
 const MIN_SAMPLES: usize = 20;
 /// Largest slope from the last sample to the first, relative to the steepest between others; our choice.
 const MAX_SEAM_SLOPE: f64 = 3.0;
+/// Smallest jump from the last sample to the first, relative to the range of all; smaller ones are noise. Our choice.
+const MIN_JUMP: f64 = 0.03;
 /// Longest gap between the last sample and the end of the cycle across which drift is known, relative to the gap before.
 const MAX_END_GAP: f64 = 2.0;
 
@@ -209,7 +211,7 @@ impl Waveform {
     }
 }
 
-/// Rejects samples that end before 100 % and jump from there to the first one: steeper than anywhere else.
+/// Rejects samples that end before 100 % and jump from there to the first one: far, and steeper than anywhere else.
 fn steady_at_seam(knots: &[Knot]) -> Result<(), WaveformError> {
     let slopes = knots.windows(2).map(|pair| {
         let [from, to] = [pair[0], pair[1]];
@@ -217,8 +219,12 @@ fn steady_at_seam(knots: &[Knot]) -> Result<(), WaveformError> {
     });
     let steepest = slopes.fold(0.0, f64::max);
     let (first, last) = (knots[0], knots[knots.len() - 1]);
-    let slope = ((first.value - last.value) / span_percent(knots, knots.len() - 1)).abs();
-    if knots.len() >= MIN_SAMPLES && slope > MAX_SEAM_SLOPE * steepest {
+    let values = || knots.iter().map(|knot| knot.value);
+    let range = values().fold(f64::MIN, f64::max) - values().fold(f64::MAX, f64::min);
+    let jump = (first.value - last.value).abs();
+    let slope = jump / span_percent(knots, knots.len() - 1);
+    let is_jump = jump > MIN_JUMP * range && slope > MAX_SEAM_SLOPE * steepest;
+    if knots.len() >= MIN_SAMPLES && is_jump {
         return Err(WaveformError::seam(first, last));
     }
     Ok(())
@@ -259,6 +265,13 @@ pub fn without_drift(samples: &[Knot]) -> Option<Vec<Knot>> {
     let (first, last) = (samples.first()?, samples.last()?);
     let gap = first.percent + 100.0 - last.percent;
     let slope = |from: &Knot, to: &Knot| (to.value - from.value) / (to.percent - from.percent);
+    // A waveform of samples out of order reports them.
+    if samples
+        .windows(2)
+        .any(|pair| pair[1].percent <= pair[0].percent)
+    {
+        return Some(samples.to_vec());
+    }
     let end = match samples {
         _ if gap == 0.0 => last.value,
         [_, second, .., before, _] if gap <= MAX_END_GAP * (last.percent - before.percent) => {
