@@ -338,7 +338,7 @@ fn foreign_files_are_replaced_with_force_only() {
     bench.write("measured.toml", "[gravimetric]\nfile = \"masses.csv\"\n");
     bench.write(
         "masses.csv",
-        "cycles,k1_mg\n0,20\n400000,18\n800000,15\n1000000,13\n",
+        "cycles,k1_mg\n0,920\n400000,918\n800000,915\n1000000,913\n",
     );
     let compare = ["compare", "out", "measured.toml", "--out", "compared"];
     fs::create_dir(bench.path("compared")).unwrap();
