@@ -176,8 +176,7 @@ impl Activity {
             let message =
                 format!("the activity \"{name}\" has no load: its axial force is never above 0 N");
             let fault = Fault::new(message, "give it an axial force above 0 N");
-            log.problem(section.key_span(knee::AXIAL_FORCE.name), fault);
-            return None;
+            return log.reject(section.key_span(knee::AXIAL_FORCE.name), fault);
         }
         Some(Self {
             keys,
@@ -203,8 +202,7 @@ impl Activity {
                 "the machine of the activity \"{name}\" is not that of [machine]: {difference}"
             );
             let advice = "give both the same joints in the same order; drives, waveforms and springs may differ";
-            log.problem(section.key_span(key), Fault::new(message, advice));
-            return None;
+            return log.reject(section.key_span(key), Fault::new(message, advice));
         }
         let of_knee = ["flexion_offset_deg", "ap_force_sign", "ie_torque_sign"];
         report_keys_of_knee(section, &of_knee, log);

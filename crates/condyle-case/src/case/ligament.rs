@@ -39,8 +39,7 @@ impl Ligament {
                 "the ligament \"{}\" needs one of `slack_length_mm` and `strain_at_zero`",
                 ligament.name
             );
-            log.problem(section.span(), Fault::new(message, ""));
-            None
+            log.reject(section.span(), Fault::new(message, ""))
         };
         sections.iter().map(read).collect()
     }

@@ -128,15 +128,13 @@ impl Form {
                 log.noted(&source, self.csv_points(source.inner(), source.name()))
             }
             (Some(_), Some(_)) => {
-                log.problem(section.key_span(file), both(&section.name(), table, file));
-                None
+                log.reject(section.key_span(file), both(&section.name(), table, file))
             }
             (None, None) => {
                 let (name, law) = (section.name(), self.law);
                 let message =
                     format!("{name} needs one of `{table}` or `{file}` for law = {law:?}");
-                log.problem(section.value_span("law"), Fault::new(message, ""));
-                None
+                log.reject(section.value_span("law"), Fault::new(message, ""))
             }
         }
     }

@@ -131,8 +131,7 @@ impl Rig {
                 let names: Vec<&str> = self.names().collect();
                 let message = format!("the machine has no joint \"{name}\" to replace");
                 let advice = format!("its joints are {}", names.join(", "));
-                log.problem(section.key_span("joints"), Fault::new(message, advice));
-                return None;
+                return log.reject(section.key_span("joints"), Fault::new(message, advice));
             };
             *known = joint;
         }
@@ -167,8 +166,7 @@ impl Rig {
     /// Returns the machine with its joints in the order of `order`, after checking that they form a chain that presses.
     fn ordered(mut self, section: &Section<'_>, log: &mut Log<'_>) -> Option<Self> {
         let mut fault = |key: &str, message: String, advice: &str| {
-            log.problem(section.key_span(key), Fault::new(message, advice));
-            None
+            log.reject(section.key_span(key), Fault::new(message, advice))
         };
         let names: Vec<&str> = self.names().collect();
         if let Some(Names(order)) = &self.keys.order {
@@ -202,8 +200,7 @@ impl Rig {
         }
         let mut springs = self.springs.iter().map(|spring| spring.build(&self.joints));
         if let Some(unattached) = springs.find_map(Result::err) {
-            log.problem(section.key_span("offset_springs"), unattached);
-            return None;
+            return log.reject(section.key_span("offset_springs"), unattached);
         }
         if let Some((one, other)) = self.same_freedom() {
             let message =

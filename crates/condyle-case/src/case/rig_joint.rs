@@ -275,8 +275,7 @@ impl RigJoint {
             let message =
                 format!("a machine has at most {MAX_JOINTS} joints, and this one has {count}");
             let fault = Fault::new(message, "two bodies have six freedoms");
-            log.problem(section.key_span("joints"), fault);
-            return None;
+            return log.reject(section.key_span("joints"), fault);
         }
         let joints: Vec<Option<Self>> = sections.iter().map(|one| Self::read(one, log)).collect();
         let joints: Vec<Self> = joints.into_iter().collect::<Option<_>>()?;
@@ -286,8 +285,7 @@ impl RigJoint {
             if before.any(|other| other.keys.name == *name) {
                 let message = format!("two joints are called \"{name}\"");
                 let fault = Fault::new(message, "give each its own name");
-                log.problem(sections[number].value_span("name"), fault);
-                return None;
+                return log.reject(sections[number].value_span("name"), fault);
             }
         }
         Some(joints)

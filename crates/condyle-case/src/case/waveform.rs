@@ -211,8 +211,7 @@ pub(super) fn read(
     let keys = WaveformSource::read(&section, log)?;
     let samples = samples(channel, &section, &keys, log)?;
     let Some(knots) = levelled(samples.knots, &keys) else {
-        log.problem(section.value_span("remove_drift"), unknown_drift(&section));
-        return None;
+        return log.reject(section.value_span("remove_drift"), unknown_drift(&section));
     };
     let interpolation = keys.interpolation.unwrap_or(samples.interpolation);
     let mut waveform = Waveform::new(knots.clone(), interpolation);
@@ -224,8 +223,7 @@ pub(super) fn read(
             Some(found) => found,
             None => match beyond_points(channel, &waveform) {
                 Some(fault) => {
-                    log.problem(section.span(), fault);
-                    return None;
+                    return log.reject(section.span(), fault);
                 }
                 None => return Some(waveform),
             },
@@ -248,10 +246,7 @@ pub(super) fn read(
     let span = samples.spans.get(index).cloned().unwrap_or(section.span());
     match &samples.source {
         Some(source) => log.noted(source, Err(vec![(span, fault)])),
-        None => {
-            log.problem(span, fault);
-            None
-        }
+        None => log.reject(span, fault),
     }
 }
 
@@ -312,8 +307,7 @@ fn samples(
     let mut given = ways.into_iter().filter(|way| section.value(way).is_some());
     if let (Some(first), Some(second)) = (given.next(), given.next()) {
         let fault = both(&section.name(), first, second);
-        log.problem(section.key_span(second), fault);
-        return None;
+        return log.reject(section.key_span(second), fault);
     }
     if keys.column.is_some() && keys.file.is_none() {
         log.problem(section.key_span("column"), idle("column", "`file`"));
@@ -334,14 +328,12 @@ fn samples(
     }
     if section.is_given() && keys.waveform.is_none() {
         let message = format!("{} needs one of `{}`", section.name(), ways.join("`, `"));
-        log.problem(section.span(), Fault::new(message, ""));
-        return None;
+        return log.reject(section.span(), Fault::new(message, ""));
     }
     let word = keys.waveform.as_deref().unwrap_or(DEFAULT_WAVEFORM);
     let Some((_, named)) = named(channel).find(|(own, _)| *own == word) else {
         let fault = unknown_word("waveform", word, &words_of(channel));
-        log.problem(section.value_span("waveform"), fault);
-        return None;
+        return log.reject(section.value_span("waveform"), fault);
     };
     let file = format!("cases/waveforms/{}.csv", named.stem);
     let columns = Columns::split(named.text, &file, "");
@@ -378,8 +370,7 @@ fn from_file(
                 ("file", Fault::new(message, advice))
             }
         };
-        log.problem(section.value_span(key), fault);
-        return None;
+        return log.reject(section.value_span(key), fault);
     };
     let mut problems = Vec::new();
     let first = names[0].to_lowercase();

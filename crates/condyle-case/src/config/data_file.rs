@@ -108,10 +108,7 @@ impl Setting for DataFile {
         let base = log.base;
         match Self::find(base.files, written, base.folder) {
             Ok(file) => Some(file),
-            Err(path) => {
-                log.problem(value.span(), missing_file(key.name, &path));
-                None
-            }
+            Err(path) => log.reject(value.span(), missing_file(key.name, &path)),
         }
     }
 

@@ -160,6 +160,12 @@ impl<'a> Log<'a> {
             .push(Problem::at(&self.source, (span, fault), key));
     }
 
+    /// Reports a problem in place of a value.
+    pub(crate) fn reject<T>(&mut self, span: Range<usize>, fault: Fault) -> Option<T> {
+        self.problem(span, fault);
+        None
+    }
+
     /// Adds the problems of a file that this one names.
     pub(crate) fn extend(&mut self, problems: Problems) {
         self.problems.extend(problems.problems);

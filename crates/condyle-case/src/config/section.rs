@@ -68,8 +68,7 @@ impl<'a> Section<'a> {
         if items != Some(tables.len()) {
             let wanted = format!("tables, each headed [[{}]]", self.part(name).path);
             let fault = type_fault(name, &wanted, type_name(value.get_ref()));
-            log.problem(self.key_span(name), fault);
-            return None;
+            return log.reject(self.key_span(name), fault);
         }
         Some(tables)
     }

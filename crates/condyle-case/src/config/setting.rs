@@ -38,8 +38,7 @@ fn limited(value: &Spanned<DeValue<'_>>, key: &Key, log: &mut Log<'_>) -> Option
         Some(limits) if !limits.allow(number) => {
             let unit = unit_of(key.name).map_or(String::new(), |unit| format!(" {unit}"));
             let (value_shown, range) = (format!("{number}{unit}"), format!("{limits}{unit}"));
-            log.problem(value.span(), out_of_range(key.name, &value_shown, &range));
-            None
+            log.reject(value.span(), out_of_range(key.name, &value_shown, &range))
         }
         _ => Some(number),
     }

@@ -79,16 +79,14 @@ impl Gravimetric {
                 format!("{rows} weighings remain for the line, and three are needed"),
                 "add weighings, or lower `fit_from_cycles`; the first row starts the test, and its loss of 0 does not count",
             );
-            log.problem(section.value_span("file"), fault);
-            return None;
+            return log.reject(section.value_span("file"), fault);
         }
         let last = cycles.last().copied().unwrap_or_default();
         if last < MIN_CYCLES {
             let message = format!("the weighings end at {last} cycles");
             let advice =
                 "give whole cycles, not millions, and write them without thousands separators";
-            log.problem(section.value_span("file"), Fault::new(message, advice));
-            return None;
+            return log.reject(section.value_span("file"), Fault::new(message, advice));
         }
         let (mut specimens, mut soaks) = (Vec::new(), Vec::new());
         for (index, specimen) in (1..).zip(all) {
@@ -125,8 +123,7 @@ fn soak_columns(
             for name in &controls.0 {
                 let Some(index) = (1..names.len()).find(|&index| names[index] == name) else {
                     let fault = no_column(name, &keys.file.name(), &names[1..]);
-                    log.problem(section.value_span("soak_controls"), fault);
-                    return None;
+                    return log.reject(section.value_span("soak_controls"), fault);
                 };
                 soaks.push(index);
             }
@@ -138,8 +135,7 @@ fn soak_columns(
             format!("every column of {file} is a soak control: there is no specimen"),
             "name only the soak controls in `soak_controls`",
         );
-        log.problem(section.value_span("soak_controls"), fault);
-        return None;
+        return log.reject(section.value_span("soak_controls"), fault);
     }
     Some(soaks)
 }

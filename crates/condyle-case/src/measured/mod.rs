@@ -55,8 +55,7 @@ fn read_tables(root: &Section<'_>, side: Side, log: &mut Log<'_>) -> Option<Meas
     let given = |name: &str| root.value(name).is_some();
     if !TABLES.iter().any(|name| given(name)) {
         let advice = "add one of [kinematics], [gravimetric] and [surface], each with `file = `";
-        log.problem(0..0, Fault::new("the file names no measured data", advice));
-        return None;
+        return log.reject(0..0, Fault::new("the file names no measured data", advice));
     }
     let kinematics = given("kinematics").then(|| Kinematics::read(root, log));
     let gravimetric = given("gravimetric").then(|| Gravimetric::read(root, log));

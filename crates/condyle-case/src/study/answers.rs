@@ -55,8 +55,7 @@ impl Answers {
         let Some(&first) = outputs.first() else {
             let advice = "name one, such as `mass_loss_mg`, or omit the key";
             let fault = Fault::new("the study names no output", advice);
-            log.problem(section.value_span("outputs"), fault);
-            return None;
+            return log.reject(section.value_span("outputs"), fault);
         };
         let two = pareto.map_or(Some(outputs.clone()), |two| two)?;
         let bounds: Option<Vec<Bound>> = bounds?;
@@ -83,8 +82,7 @@ impl Bound {
         let (least, most) = (keys.least, keys.most);
         if least.or(most).is_none() {
             let fault = Fault::new("a limit needs `least`, `most` or both", "add `most = 40.0`");
-            log.problem(section.span(), fault);
-            return None;
+            return log.reject(section.span(), fault);
         }
         Some(Self {
             output,

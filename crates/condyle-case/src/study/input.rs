@@ -217,8 +217,7 @@ impl Variation {
                 "the median of a lognormal distribution is not above 0",
                 "give a positive `median`, or use `distribution = \"normal\"`",
             );
-            log.problem(section.value_span("distribution"), fault);
-            return None;
+            return log.reject(section.value_span("distribution"), fault);
         }
         Some(())
     }
@@ -253,8 +252,7 @@ impl Variation {
                     format!("the case has no number at `{key}` to start from"),
                     "give `mean`, `mode` or `median`, or write the key in the case",
                 );
-                log.problem(section.value_span("key"), fault);
-                return None;
+                return log.reject(section.value_span("key"), fault);
             }
         }
         self.check_median(section, log)?;
@@ -274,8 +272,7 @@ impl Variation {
                 "write the smaller one as `low`",
             ),
         };
-        log.problem(section.value_span("high"), fault);
-        None
+        log.reject(section.value_span("high"), fault)
     }
 }
 
@@ -314,8 +311,7 @@ impl EmpiricalKeys {
                 let message = format!("the file has several columns, and none is named `{key}`");
                 let advice =
                     format!("name the column of the values `{key}`, and write decimal points");
-                log.problem(span, Fault::new(message, advice));
-                return None;
+                return log.reject(span, Fault::new(message, advice));
             };
             let values = rows.into_iter().map(|mut row| row.swap_remove(column));
             self.values = Levels(values.collect());
@@ -327,8 +323,7 @@ impl EmpiricalKeys {
                 "measured values must be numbers, at least two of them different",
                 "give `file` or `values = [0.03, 0.04, 0.06]`",
             );
-            log.problem(span, fault);
-            return None;
+            return log.reject(span, fault);
         }
         Some(())
     }
@@ -344,8 +339,7 @@ pub(super) fn check_count(
         return Some(());
     }
     let message = format!("the study has {count} {what}; at most {MAX_LISTED} are allowed");
-    log.problem(span, Fault::new(message, "divide it into several studies"));
-    None
+    log.reject(span, Fault::new(message, "divide it into several studies"))
 }
 
 /// The values of each test.

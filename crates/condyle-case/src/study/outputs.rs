@@ -140,8 +140,7 @@ impl Outputs {
                 format!("`{name}` is not a valid name of an output")
             };
             let advice = "use letters, digits and `_`, with the unit at the end, such as `mass_per_million_mg`";
-            log.problem(section.value_span("name"), Fault::new(message, advice));
-            return None;
+            return log.reject(section.value_span("name"), Fault::new(message, advice));
         }
         if keys.formula.chars().count() > MAX_CHARACTERS {
             let message = format!("a formula has at most {MAX_CHARACTERS} characters");
@@ -149,8 +148,7 @@ impl Outputs {
                 message,
                 "shorten it, or compute it from the table afterwards",
             );
-            log.problem(section.value_span("formula"), fault);
-            return None;
+            return log.reject(section.value_span("formula"), fault);
         }
         let names = RefCell::new(Vec::new());
         let read = arithmetic::formula(&keys.formula, &|name: &str| {
@@ -162,8 +160,7 @@ impl Outputs {
             let message = format!("the formula cannot be read from its character {place} on");
             let advice = "write numbers and results such as `mass_loss_mg / 5`, with + - * / ^, parentheses, \
                           sqrt(), abs(), exp(), ln(), min(,) and max(,)";
-            log.problem(section.value_span("formula"), Fault::new(message, advice));
-            return None;
+            return log.reject(section.value_span("formula"), Fault::new(message, advice));
         }
         let numbers: Vec<&'static Scalar> = catalogue::results().collect();
         let mut known = names.into_inner().into_iter();
@@ -213,8 +210,7 @@ impl Outputs {
             Some(_) => format!("a test of this joint has no `{name}`"),
             None => format!("a run has no output `{name}`"),
         };
-        log.problem(section.value_span(key), Fault::new(message, advice));
-        None
+        log.reject(section.value_span(key), Fault::new(message, advice))
     }
 }
 

@@ -145,8 +145,7 @@ fn inputs(
     });
     if count == 0 && root.value("alternative").is_none() {
         let advice = "add `[[vary]]` with `key = \"contact.friction\"`, `low` and `high`";
-        log.problem(0..0, Fault::new("the study has no varied inputs", advice));
-        return None;
+        return log.reject(0..0, Fault::new("the study has no varied inputs", advice));
     }
     Some((inputs?, Vec::new()))
 }
@@ -176,11 +175,10 @@ fn correlation(section: &Section<'_>, inputs: &[Input], log: &mut Log<'_>) -> Op
     let span = section.value_span("keys");
     let [one, other] = &keys.keys.0[..] else {
         let advice = "write `keys = [\"contact.friction\", \"wear.wear_factor_mm3_per_nm\"]`";
-        log.problem(
+        return log.reject(
             span,
             Fault::new("a correlation needs exactly two keys", advice),
         );
-        return None;
     };
     let mut place = |key: &String| {
         let is_input = |input: &Input| input.key == *key && input.is_continuous();
