@@ -76,7 +76,7 @@ settings! {
         posterior_n_per_mm: f64 = 33.8, in within(0.0, 10_000.0);
         /// Stiffness against anterior motion of the insert.
         anterior_n_per_mm: f64 = 7.24, in within(0.0, 10_000.0);
-        /// Whether the stiffnesses are those of the pair or of each spring, which Knight 2007 does not state.
+        /// Springs to which the stiffnesses apply: the pair or each one, which Knight 2007 does not state.
         stiffness_of: StiffnessOf = StiffnessOf::Pair;
         /// Motion each way before the springs engage.
         free_play_mm: f64 = 2.5, in within(0.0, 50.0);

@@ -404,9 +404,7 @@ fn split(text: &str) -> Result<(Vec<String>, Rows), Vec<Placed>> {
     };
     let cells = |line: &Range<usize>| -> Vec<String> {
         let cells = cells(text, line).into_iter();
-        cells
-            .map(|cell| text[cell].trim_matches('"').to_owned())
-            .collect()
+        cells.map(|cell| text[cell].to_owned()).collect()
     };
     let keys = cells(&head);
     let (mut rows, mut wrong) = (Vec::new(), Vec::new());

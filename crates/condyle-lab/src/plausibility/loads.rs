@@ -106,11 +106,15 @@ pub(crate) fn load_small(finished: &Finished<'_>) -> Option<PlausibilityWarning>
 pub(crate) fn motions(finished: &Finished<'_>) -> Vec<PlausibilityWarning> {
     let mut warnings: Vec<PlausibilityWarning> = Vec::new();
     for index in JointIndex::ALL {
+        let is_moved = |cycle: &SolvedCycle<'_>| {
+            let machine = finished.machine(cycle);
+            let is_prescribed = matches!(machine.joint(index).drive, Drive::Prescribed(_));
+            // A constant curve varies by round-off.
+            is_prescribed && joint_range(cycle.rows, machine.mechanism, index) > 1e-6
+        };
         for check in [small_motion, noisy_motion] {
-            let mut own = finished
-                .cycles()
-                .filter_map(|cycle| check(finished, &cycle, index));
-            warnings.extend(own.next());
+            let mut moved = finished.cycles().filter(is_moved);
+            warnings.extend(moved.find_map(|cycle| check(finished, &cycle, index)));
         }
     }
     warnings
@@ -123,11 +127,10 @@ fn small_motion(
 ) -> Option<PlausibilityWarning> {
     let machine = finished.machine(cycle);
     let description = machine.mechanism.joint(index);
-    let is_prescribed = matches!(machine.joint(index).drive, Drive::Prescribed(_));
     // Heights and varus are small in any unit.
     let is_along_y = matches!(description.axis, Axis::Along([0.0, _, 0.0]));
     let is_varus = *machine.mechanism == KNEE && index == VV;
-    if !is_prescribed || is_along_y || is_varus {
+    if is_along_y || is_varus {
         return None;
     }
     let is_ap_of_joint = matches!(description.axis, Axis::Along([_, 0.0, 0.0]))
@@ -155,8 +158,7 @@ fn small_motion(
         description.symbol, cycle.name
     );
     let value = (range, least, unit);
-    // A constant curve varies by round-off.
-    (range > 1e-6 && range < least).then(|| warning("motion_small", value, message, advice))
+    (range < least).then(|| warning("motion_small", value, message, advice))
 }
 
 /// Compares the path of a prescribed motion with that of the motion smoothed over seven increments.
@@ -170,9 +172,6 @@ fn noisy_motion(
     const SUM: f64 = 21.0;
     let machine = finished.machine(cycle);
     let count = cycle.rows.len();
-    if !matches!(machine.joint(index).drive, Drive::Prescribed(_)) || count < MIN_ROWS_OF_NOISE {
-        return None;
-    }
     let at = |row: usize| index.of(&cycle.rows[row % count].positions);
     let smooth = |row: usize| {
         let weighted = WEIGHTS.iter().enumerate();
@@ -189,7 +188,7 @@ fn noisy_motion(
     let turns = |row: &usize| (at(row + 1) - at(*row)) * (at(row + 2) - at(row + 1)) < 0.0;
     let reversals = (0..count).filter(turns).count() as f64;
     // Smoothing shortens the path of a motion with corners, too, which has few.
-    if reversals < MIN_REVERSALS * count as f64 {
+    if count < MIN_ROWS_OF_NOISE || reversals < MIN_REVERSALS * count as f64 {
         return None;
     }
     let percent = 100.0 * (path(&at) / path(&smooth).max(f64::MIN_POSITIVE) - 1.0);
@@ -200,8 +199,7 @@ fn noisy_motion(
     );
     let advice = "Filter it: low_pass_harmonics = 15 in the table of its waveform.";
     let value = (percent, MAX_NOISE_PERCENT, "%");
-    let moves = joint_range(cycle.rows, machine.mechanism, index) > 1e-6;
-    (moves && percent > MAX_NOISE_PERCENT).then(|| warning("motion_noisy", value, message, advice))
+    (percent > MAX_NOISE_PERCENT).then(|| warning("motion_noisy", value, message, advice))
 }
 
 pub(crate) fn not_reached(finished: &Finished<'_>) -> Vec<PlausibilityWarning> {

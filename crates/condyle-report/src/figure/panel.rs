@@ -238,12 +238,12 @@ pub(crate) fn sheet(
     for (class, meaning) in key {
         let (end, text, base) = (x + 24.0, x + 32.0, y + 3.8);
         let words = escape(meaning);
-        let own = || panels.iter().flat_map(|panel| &panel.curves);
-        let own = || own().filter(|curve| curve.class == *class);
-        if own().any(Curve::has_line) {
+        let curves = panels.iter().flat_map(|panel| &panel.curves);
+        let own: Vec<&Curve> = curves.filter(|curve| curve.class == *class).collect();
+        if own.iter().any(|curve| curve.has_line()) {
             body += &format!(r#"<path class="{class}" d="M{x} {y}H{end}"/>"#);
         }
-        if own().any(|curve| curve.has_dots) {
+        if own.iter().any(|curve| curve.has_dots) {
             body += &dot(class, x + 12.0, y);
         }
         body += &format!(r#"<text x="{text}" y="{base}">{words}</text>"#);
