@@ -124,7 +124,7 @@ settings! {
     }
 }
 
-/// The waveform of a case that gives none.
+/// The waveform of a knee simulator whose case names none.
 const DEFAULT_WAVEFORM: &str = "iso-like";
 
 /// Describes the table of each waveform; with `in_book`, the first also describes all of them in the book.
@@ -161,7 +161,13 @@ pub(super) fn table(channels: &[&'static Channel]) -> TableItem {
     let mut ways = vec!["waveform", "file"];
     ways.extend(knots.iter().map(|key| key.name));
     items.extend(knots.into_iter().map(Item::Key));
-    items.extend([Item::OneOf(ways), Item::Needs("column", "file")]);
+    let is_of_knee = KNEE.channel(first.name).is_some();
+    items.push(if is_of_knee {
+        Item::AtMostOne(ways)
+    } else {
+        Item::OneOf(ways)
+    });
+    items.push(Item::Needs("column", "file"));
     TableItem::new(first.name, first.about, items)
 }
 
@@ -183,7 +189,7 @@ fn page() -> String {
     let channels: String = KNEE.channels.iter().map(row).collect();
     format!(
         "\n## Waveforms: {}\n\n\
-        One of `waveform`, `file` or the points themselves. A freedom takes the waveform that its drive \
+        One of `waveform`, `file` or the points themselves; `iso-like` if none of them is given. A freedom takes the waveform that its drive \
         needs; one for another drive is an error.\n\n{keys}\n\
         | table | points | unit | values may be | shipped waveforms | meaning |\n\
         | --- | --- | --- | --- | --- | --- |\n{channels}",
@@ -326,7 +332,7 @@ fn samples(
             interpolation: Interpolation::HalfCosine,
         });
     }
-    if section.is_given() && keys.waveform.is_none() {
+    if KNEE.channel(channel.name).is_none() && keys.waveform.is_none() {
         let message = format!("{} needs one of `{}`", section.name(), ways.join("`, `"));
         return log.reject(section.span(), Fault::new(message, ""));
     }

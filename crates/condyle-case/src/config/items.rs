@@ -14,6 +14,8 @@ pub(crate) enum Item {
     Table(TableItem),
     /// Exactly one of these keys must be given.
     OneOf(Vec<&'static str>),
+    /// One of these keys may be given.
+    AtMostOne(Vec<&'static str>),
     /// The first key needs the second.
     Needs(&'static str, &'static str),
 }
@@ -134,7 +136,7 @@ impl Item {
             Self::Key(key) => Some(key.name),
             Self::Choice(choices) => Some(choices.by.name),
             Self::Table(table) => Some(table.name),
-            Self::OneOf(_) | Self::Needs(..) => None,
+            Self::OneOf(_) | Self::AtMostOne(_) | Self::Needs(..) => None,
         }
     }
 }
@@ -146,7 +148,7 @@ pub(crate) fn keys(items: &[Item]) -> Vec<&Key> {
         match item {
             Item::Key(key) => keys.push(key),
             Item::Choice(choices) => keys.push(&choices.by),
-            Item::Table(_) | Item::OneOf(_) | Item::Needs(..) => {}
+            Item::Table(_) | Item::OneOf(_) | Item::AtMostOne(_) | Item::Needs(..) => {}
         }
     }
     keys

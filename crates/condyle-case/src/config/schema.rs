@@ -40,7 +40,7 @@ fn property(item: &Item) -> Option<(String, Value)> {
             json!({ "type": "array", "minItems": 1, "items": table_schema(&table.about, &table.items) })
         }
         Item::Table(table) => table_schema(&table.about, &table.items),
-        Item::OneOf(_) | Item::Needs(..) => return None,
+        Item::OneOf(_) | Item::AtMostOne(_) | Item::Needs(..) => return None,
     };
     Some((item.name()?.to_owned(), schema))
 }
@@ -55,9 +55,11 @@ fn rules(items: &[Item]) -> Vec<Value> {
     }
     for item in items {
         match item {
-            Item::OneOf(names) => {
-                let alone = names.iter().map(|name| json!({ "required": [name] }));
-                rules.push(json!({ "oneOf": alone.collect::<Vec<Value>>() }));
+            Item::OneOf(names) => rules.push(json!({ "oneOf": given(names) })),
+            Item::AtMostOne(names) => {
+                let mut ways = given(names);
+                ways.push(json!({ "not": { "anyOf": given(names) } }));
+                rules.push(json!({ "oneOf": ways }));
             }
             Item::Needs(key, needs) => {
                 rules.push(json!({ "dependentRequired": { *key: [needs] } }));
@@ -66,6 +68,11 @@ fn rules(items: &[Item]) -> Vec<Value> {
         }
     }
     rules
+}
+
+fn given(names: &[&str]) -> Vec<Value> {
+    let given = names.iter().map(|name| json!({ "required": [name] }));
+    given.collect()
 }
 
 /// Adds the entries that each word brings, and the rule that they are given only under such a word.

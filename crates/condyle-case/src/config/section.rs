@@ -102,10 +102,6 @@ impl<'a> Section<'a> {
         }
     }
 
-    pub(crate) fn is_given(&self) -> bool {
-        self.table.is_some()
-    }
-
     /// Place of the table's name; of the table around it if it is absent.
     pub(crate) fn span(&self) -> Range<usize> {
         self.span.clone()

@@ -544,7 +544,7 @@ fn waveform_in_another_unit_names_the_key() {
 }
 
 #[test]
-fn waveform_given_twice_or_not_at_all_is_refused() {
+fn waveform_given_twice_is_refused_and_the_default_is_scaled() {
     let shown = refusal("[machine.flexion]\nwaveform = \"none\"\nknots_deg = [[0.0, 0.0]]\n");
     assert_shows(
         &shown,
@@ -554,11 +554,12 @@ fn waveform_given_twice_or_not_at_all_is_refused() {
             "help: keep `waveform` or `knots_deg`, not both",
         ],
     );
-    let shown = refusal("[machine.flexion]\nscale = 2.0\n");
-    assert_shows(
-        &shown,
-        &["[machine.flexion] needs one of `waveform`, `file`, `knots_deg`"],
-    );
+    let waveforms = ["", "waveform = \"iso-like\"\n"].map(|named| {
+        let case = parsed(&format!("[machine.axial_force]\n{named}scale = 0.5\n"));
+        case.expect("a case").machine
+    });
+    assert_eq!(waveforms[0], waveforms[1]);
+    assert_ne!(waveforms[0], parsed("").expect("a case").machine);
 }
 
 #[test]
