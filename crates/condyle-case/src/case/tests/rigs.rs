@@ -2,6 +2,8 @@
 
 use std::path::Path;
 
+use condyle::Vec3;
+
 use crate::case::{Case, Preset, template};
 
 const HIP: &str = r#"
@@ -47,6 +49,47 @@ fn a_machine_by_joints_is_written_and_read_back() {
         let case = Case::parse(&template(preset), "case.toml", Path::new("")).unwrap();
         let is_by_joints = case.machine.rig.is_some();
         assert_ne!(is_by_joints, preset.machine().is_knee_simulator());
+    }
+}
+
+#[test]
+fn verify_rotations_of_the_presets_have_the_signs_of_their_names() {
+    let (anterior, lateral, up) = (Vec3::x(), Vec3::z(), Vec3::y());
+    // A positive rotation moves the first direction of the counterface towards the second. The stem of a head points up, and
+    // the shank stands below the ankle.
+    let motions = [
+        (Preset::Iso142421Like, "flexion", up, anterior),
+        (Preset::Iso142421Like, "abduction", up, lateral),
+        (Preset::Iso142421Like, "rotation", anterior, -lateral),
+        (Preset::Iso142424Like, "flexion", up, anterior),
+        (Preset::Iso142424Like, "abduction", up, lateral),
+        (Preset::Iso142424Like, "rotation", anterior, -lateral),
+        (Preset::Iso181921LumbarLike, "flexion", up, anterior),
+        (Preset::Iso181921LumbarLike, "bending", up, -lateral),
+        (Preset::Iso181921LumbarLike, "rotation", anterior, -lateral),
+        (Preset::Iso181921CervicalLike, "flexion", up, anterior),
+        (Preset::Iso181921CervicalLike, "bending", up, -lateral),
+        (
+            Preset::Iso181921CervicalLike,
+            "rotation",
+            anterior,
+            -lateral,
+        ),
+        (Preset::Iso22622Like, "flexion", anterior, -up),
+        (Preset::Iso22622Like, "rotation", anterior, -lateral),
+        (Preset::Iso22622DisplacementLike, "flexion", anterior, -up),
+        (
+            Preset::Iso22622DisplacementLike,
+            "rotation",
+            anterior,
+            -lateral,
+        ),
+    ];
+    for (preset, name, from, towards) in motions {
+        let mut joints = preset.machine().joints.iter();
+        let joint = joints.find(|joint| joint.keys.name == name).expect(name);
+        let moved = Vec3::from(joint.keys.axis).cross(&from);
+        assert_eq!(moved, towards, "{} {name}", preset.word());
     }
 }
 
