@@ -54,7 +54,7 @@ settings! {
         preset: Preset = Preset::StanmoreForce;
         /// Machine file in place of a preset, relative to the case file; [its keys](machines.md) may also stand here, where a joint replaces that of the same name.
         file: Option<DataFile> = None;
-        /// Gait cycles a second.
+        /// Cycles a second.
         frequency_hz: f64 = 1.1, in within(0.001, 100.0);
         /// Added to the flexion waveform: -7 sets the femur 7 degrees towards hyperextension.
         flexion_offset_deg: f64 = -7.0, in within(-45.0, 45.0);
@@ -473,7 +473,7 @@ impl Settings for Machine {
                 ..unused
             });
         }
-        if root.value("activity").is_none() {
+        if root.tables("activity").is_empty() {
             return Self::read(&section, log);
         }
         for channel in KNEE.channels {

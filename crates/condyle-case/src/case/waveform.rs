@@ -216,7 +216,10 @@ pub(super) fn read(
     let section = machine.table(channel.name, log);
     let keys = WaveformSource::read(&section, log)?;
     let samples = samples(channel, &section, &keys, log)?;
-    let Some(knots) = levelled(samples.knots, &keys) else {
+    if let Some(fault) = parts_of_a_cycle(&samples.knots) {
+        return samples.reject(samples.knots.len() - 1, fault, &section, log);
+    }
+    let Some(knots) = levelled(samples.knots.clone(), &keys) else {
         return log.reject(section.value_span("remove_drift"), unknown_drift(&section));
     };
     let interpolation = keys.interpolation.unwrap_or(samples.interpolation);
@@ -248,12 +251,7 @@ pub(super) fn read(
             (point_of(&error, &knots), fault)
         }
     };
-    // An error of the whole waveform has no point: it is shown at the table.
-    let span = samples.spans.get(index).cloned().unwrap_or(section.span());
-    match &samples.source {
-        Some(source) => log.noted(source, Err(vec![(span, fault)])),
-        None => log.reject(span, fault),
-    }
+    samples.reject(index, fault, &section, log)
 }
 
 /// Returns points scaled, shifted and without drift; none where the drift is unknown.
@@ -397,7 +395,7 @@ fn from_file(
         problems.push((columns.name_span(index), fault));
     }
     let read = if problems.is_empty() {
-        column_points(&columns, index).and_then(within_a_cycle)
+        column_points(&columns, index)
     } else {
         Err(problems)
     };
@@ -422,21 +420,29 @@ impl Samples {
             interpolation,
         })
     }
+
+    /// Reports a fault of a point; one of the whole waveform has no point and is shown at its table.
+    fn reject<T>(
+        &self,
+        index: usize,
+        fault: Fault,
+        section: &Section<'_>,
+        log: &mut Log<'_>,
+    ) -> Option<T> {
+        let span = self.spans.get(index).cloned().unwrap_or(section.span());
+        match &self.source {
+            Some(source) => log.noted(source, Err(vec![(span, fault)])),
+            None => log.reject(span, fault),
+        }
+    }
 }
 
-/// Rejects points whose cycle runs from 0 to 1.
-fn within_a_cycle((knots, spans): PlacedKnots) -> Result<PlacedKnots, Vec<Placed>> {
-    match knots.last() {
-        Some(last) if last.percent <= 1.0 && knots.len() > 2 => {
-            let message = format!("the points end at {} % of the cycle", last.percent);
-            let fault = Fault::new(
-                message,
-                "give percent from 0 to 100, not parts of the cycle from 0 to 1",
-            );
-            Err(vec![(spans[knots.len() - 1].clone(), fault)])
-        }
-        _ => Ok((knots, spans)),
-    }
+/// Returns the fault of points whose cycle runs from 0 to 1.
+fn parts_of_a_cycle(knots: &[Knot]) -> Option<Fault> {
+    let last = knots.last().filter(|_| knots.len() > 2)?;
+    let message = format!("the points end at {} % of the cycle", last.percent);
+    let advice = "give percent from 0 to 100, not parts of the cycle from 0 to 1";
+    (last.percent <= 1.0).then(|| Fault::new(message, advice))
 }
 
 /// Reads percent from the first column and values from column `index`.
