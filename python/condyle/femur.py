@@ -15,6 +15,8 @@ __all__ = ["femur_points_at", "rows_of_cycle"]
 
 def rows_of_cycle(cycles: NDArray[np.float64], cycle: Literal["first", "last"]) -> NDArray[np.bool_]:
     """Marks the rows of a column ``cycles`` that belong to a cycle."""
+    if cycle not in ("first", "last"):
+        raise ValueError(f"a cycle is 'first' or 'last', and this one is {cycle!r}")
     return cycles == (cycles.min() if cycle == "first" else cycles.max())
 
 

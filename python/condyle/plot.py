@@ -61,8 +61,10 @@ class Plots:
         """Motions and loads in the first and the last cycle."""
         pyplot = extra("matplotlib.pyplot", "plot")
         figure, grid = pyplot.subplots(2, 3, figsize=(11, 5.5), sharex=True, layout="constrained")
-        table = self._result.kinematics
-        shown = {name: label for name, label in _MOTIONS.items() if name in table}
+        result = self._result
+        table = result.kinematics
+        labels = _MOTIONS if result.joint == "knee" else {motion["column"]: motion["title"] for motion in result.motions}
+        shown = {name: label for name, label in labels.items() if name in table}
         for axes, (name, label) in zip(grid.flat, shown.items()):
             for cycle, style in _cycles(table["cycles"]):
                 rows = rows_of_cycle(table["cycles"], cycle)
@@ -85,8 +87,11 @@ class Plots:
         from_above = triangulation(positions[:, 2], positions[:, 0], triangles)
         colours = axes.tripcolor(from_above, result.fields[field][update], shading="gouraud", cmap="magma_r", vmin=0.0)
         axes.get_figure().colorbar(colours, ax=axes, label=label, shrink=0.7)
-        left, right = ("lateral", "medial") if result.case["side"] == "left" else ("medial", "lateral")
-        axes.set(xlabel=f"{left}  <  z, mm  >  {right}", ylabel="x, anterior up, mm", aspect="equal")
+        label_x, label_z = "x, mm", "z, mm"
+        if result.joint == "knee":
+            left, right = ("lateral", "medial") if result.case["side"] == "left" else ("medial", "lateral")
+            label_x, label_z = "x, anterior up, mm", f"{left}  <  z, mm  >  {right}"
+        axes.set(xlabel=label_z, ylabel=label_x, aspect="equal")
         axes.set_title(f"after {result.update_cycles[update] / 1e6:g} million cycles", fontsize="medium")
         return axes
 

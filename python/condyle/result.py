@@ -131,7 +131,8 @@ class Result(Summary):
         """Results at the nodes at every update, unworn first: shape (updates + 1, nodes), for directions (updates + 1, nodes, 3).
 
         ``wear_depth_mm``, ``depth_per_cycle_mm``, ``peak_pressure_mpa``, ``sliding_distance_mm``, ``cross_shear``,
-        ``thickness_mm``, ``principal_direction``; 0 at nodes outside of the articulating surface.
+        ``thickness_mm``, ``principal_direction``; 0 at nodes outside of the articulating surface. NaN at updates without the field,
+        such as ``von_mises_mpa`` of the unworn insert.
         """
         return self._run["fields"]
 

@@ -86,10 +86,14 @@ class Search:
                 minimised or limited are necessary; for a test that failed, the exception or its reason as text.
 
         Raises:
-            BadInput: values outside the study, and results that lack an output; nothing is stored then.
+            BadInput: values outside the study, results that lack an output, and a :class:`Result` of another case than that of its
+                design; nothing is stored then.
         """
         if len(designs) != len(results):
             raise ValueError(f"there are {len(designs)} designs and {len(results)} results; tell one result for each design")
+        for design, result in zip(designs, results):
+            if isinstance(result, Result) and result.inputs_blake3 != self.case(design).inputs_blake3:
+                raise BadInput(f"the result is not that of the case of its design, {dict(design)}")
         found = [(self._values(design), self._found(result)) for design, result in zip(designs, results)]
         self._held.tell(self._study._raw, found)
         told = [dict(design) for design in designs]

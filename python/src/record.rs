@@ -33,8 +33,23 @@ pub struct Record {
     pub updates: usize,
     /// Positions of the nodes, update after update, mm.
     pub points: Vec<f64>,
-    /// Scalars and vectors at the nodes, update after update, by name.
-    pub fields: BTreeMap<String, Vec<f64>>,
+    /// Fields at the nodes by name.
+    pub fields: BTreeMap<String, Field>,
+}
+
+/// A field at the nodes, update after update.
+#[derive(Default)]
+pub struct Field {
+    /// Numbers of a node: 1 of a scalar, 3 of a vector.
+    components: usize,
+    values: Vec<f64>,
+}
+
+impl Field {
+    /// Appends NaN for the nodes of updates that have no such field: the unworn insert has no stress.
+    fn fill(&mut self, nodes: usize) {
+        self.values.resize(nodes * self.components, f64::NAN);
+    }
 }
 
 impl Record {
@@ -45,6 +60,7 @@ impl Record {
         articulating: Vec<bool>,
         fields: impl Iterator<Item = (&'a str, &'a [f64])>,
     ) {
+        let nodes = articulating.len();
         if self.updates == 0 {
             self.hexes = mesh.hexes.to_vec();
         }
@@ -52,8 +68,10 @@ impl Record {
         let positions = mesh.nodes.iter().flat_map(|node| [node.x, node.y, node.z]);
         self.points.extend(positions);
         for (name, values) in fields {
-            let all = self.fields.entry(name.to_owned()).or_default();
-            all.extend_from_slice(values);
+            let field = self.fields.entry(name.to_owned()).or_default();
+            field.components = values.len() / nodes.max(1);
+            field.fill(self.updates * nodes);
+            field.values.extend_from_slice(values);
         }
         self.updates += 1;
     }
@@ -62,11 +80,11 @@ impl Record {
     pub fn into_python(self, py: Python<'_>) -> PyResult<Bound<'_, PyDict>> {
         let (updates, nodes) = (self.updates, self.articulating.len());
         let fields = PyDict::new(py);
-        for (name, values) in self.fields {
-            let values = if values.len() == updates * nodes {
-                array(py, values, [updates, nodes])?
-            } else {
-                array(py, values, [updates, nodes, 3])?
+        for (name, mut field) in self.fields {
+            field.fill(updates * nodes);
+            let values = match field.components {
+                1 => array(py, field.values, [updates, nodes])?,
+                components => array(py, field.values, [updates, nodes, components])?,
             };
             fields.set_item(name, values)?;
         }
