@@ -1,6 +1,6 @@
 //! Measured motions and loads: a CSV file by percent of the cycle, and phases of the gait cycle.
 
-use condyle::machine::knee::KNEE;
+use condyle::{machine::knee::KNEE, parameter::unit_of};
 
 use super::columns::{growing, misnamed_first, repeated, too_few, unless};
 use crate::config::*;
@@ -39,9 +39,6 @@ settings! {
 
 const EXAMPLE: &str = "percent,ap_mm,ie_deg";
 
-/// Columns of kinematics.csv that a measured curve can be compared with.
-pub const COLUMNS: [&str; 11] = KNEE.column_names();
-
 /// Measured motions and loads and their comparison.
 #[derive(Clone, Debug)]
 pub struct Kinematics {
@@ -56,8 +53,8 @@ pub struct Kinematics {
 /// A column of a measured cycle.
 #[derive(Clone, Debug, PartialEq)]
 pub struct MeasuredCurve {
-    /// Its name, one of [`COLUMNS`], which ends in the unit.
-    pub column: &'static str,
+    /// Its name, that of a column of the run, which ends in the unit.
+    pub column: String,
     /// Its points, by increasing percent, without empty cells.
     pub samples: Vec<Sample>,
 }
@@ -92,27 +89,24 @@ fn curves(text: &str, file: &str) -> Result<Vec<MeasuredCurve>, Vec<Placed>> {
     let columns = Columns::split(text, file, EXAMPLE)?;
     let mut problems = repeated(&columns);
     problems.extend(misnamed_first(&columns, "percent"));
-    let mut known = Vec::new();
     for (index, name) in columns.names().iter().enumerate().skip(1) {
-        match COLUMNS.iter().find(|column| *column == name) {
-            Some(column) => known.push((index, *column)),
-            None => {
-                let all = COLUMNS.join(", ");
-                let advice = match nearest(name, COLUMNS.iter().copied()) {
-                    Some(near) => format!("did you mean `{near}`? It can be {all}"),
-                    None => format!("remove it, or name it one of {all}"),
-                };
-                let message = format!("a run has no column `{name}` to compare with");
-                let fault = Fault::new(message, advice);
-                problems.push((columns.name_span(index), fault));
-            }
+        // Those of other joints than a knee are compared with the run's own columns.
+        if unit_of(name).is_none() {
+            let known: [&str; 11] = KNEE.column_names();
+            let all = known.join(", ");
+            let advice = match nearest(name, known.into_iter()) {
+                Some(near) => format!("did you mean `{near}`? It can be {all}"),
+                None => format!("remove it, or name it one of {all}"),
+            };
+            let message = format!("a run has no column `{name}` to compare with");
+            problems.push((columns.name_span(index), Fault::new(message, advice)));
         }
     }
     unless(problems, ())?;
     let percents = growing(&columns, within(0.0, 100.0), "0 to 100")?;
     let (mut curves, mut problems) = (Vec::new(), Vec::new());
-    for (index, column) in known {
-        match curve(&columns, index, column, &percents) {
+    for index in 1..columns.names().len() {
+        match curve(&columns, index, &percents) {
             Ok(curve) => curves.push(curve),
             Err(found) => problems.extend(found),
         }
@@ -123,10 +117,10 @@ fn curves(text: &str, file: &str) -> Result<Vec<MeasuredCurve>, Vec<Placed>> {
 fn curve(
     columns: &Columns<'_>,
     index: usize,
-    column: &'static str,
     percents: &[f64],
 ) -> Result<MeasuredCurve, Vec<Placed>> {
     const MIN_SAMPLES: usize = 2;
+    let column = columns.names()[index];
     let cells = columns.numbers_given(index)?;
     if cells.len() < MIN_SAMPLES {
         let span = columns.name_span(index);
@@ -138,6 +132,7 @@ fn curve(
         value: cell.value,
     };
     let samples = cells.iter().map(sample).collect();
+    let column = column.to_owned();
     Ok(MeasuredCurve { column, samples })
 }
 

@@ -11,7 +11,7 @@ mod scan;
 pub use crate::config::Names;
 pub use gravimetric::{Gravimetric, GravimetricKeys, IntervalWord, Specimen};
 pub use kinematics::{
-    AlignWord, COLUMNS, CycleWord, Kinematics, KinematicsKeys, MeasuredCurve, Phase, Sample,
+    AlignWord, CycleWord, Kinematics, KinematicsKeys, MeasuredCurve, Phase, Sample,
 };
 pub use scan::{FitWord, Scan, ScanKeys};
 

@@ -282,7 +282,10 @@ fn what_a_results_folder_lacks_is_said() {
     assert_refused(
         &bench,
         toml,
-        &["the results have no column `ap_mm`", "run the case again"],
+        &[
+            "the run has no column `ap_mm`",
+            "or remove it: cycles, percent, ie_deg",
+        ],
     );
     std::fs::remove_file(bench.path("out/kinematics.csv")).unwrap();
     assert_refused(

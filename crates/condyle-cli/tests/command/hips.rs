@@ -124,7 +124,14 @@ fn bodies_that_are_no_hip_are_refused_with_the_reason() {
         said.assert_refused(2, &[why]);
         assert!(!bench.path("hip.toml").exists());
     }
-    bench.say(&["new", "hip.toml", "--head", "head.stl", "--cup", "cup.stl"]);
+    let pair = ["--head", "head.stl", "--cup", "cup.stl"];
+    let of_joint = |joint| bench.say(&[&["new", "hip.toml", "--joint", joint], &pair[..]].concat());
+    of_joint("ankle").assert_refused(2, &["of a hip or a disc"]);
+    of_joint("disc");
+    let drafted = std::fs::read_to_string(bench.path("hip.toml")).expect("a case is written");
+    assert!(drafted.contains("inclination_deg = 0.0"), "{drafted}");
+    std::fs::remove_file(bench.path("hip.toml")).expect("it exists");
+    bench.say(&[&["new", "hip.toml"], &pair[..]].concat());
     let said = bench.say(&[
         "run",
         "hip.toml",
@@ -322,6 +329,16 @@ fn a_hip_is_described_in_its_own_words() {
     assert!(words == [true; 2] && !said.contains("dish"), "{said}");
     let ran = bench.run_into("hip").out;
     assert!(ran.contains("measured on hip simulators"), "{ran}");
+    bench.write(
+        "motion.csv",
+        "percent,abduction_deg,penetration_mm\n0,-3,0\n50,4,0\n",
+    );
+    bench.write(
+        "measured.toml",
+        "[kinematics]\nfile = \"motion.csv\"\nlargest_gap_percent = 50\n",
+    );
+    let compared = bench.say(&["compare", "hip", "measured.toml"]).out;
+    assert!(compared.contains("abduction_deg"), "{compared}");
     let summary = bench.summary("hip");
     assert_eq!(summary.joint.name(), "hip");
     assert_eq!(summary.motions[0].title, "Lateral motion");

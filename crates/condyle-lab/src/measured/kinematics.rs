@@ -23,7 +23,7 @@ pub struct KinematicsComparison {
 #[derive(Clone, Debug, Serialize)]
 pub struct ColumnComparison {
     /// Name of the column, which ends in the unit of everything here but percents.
-    pub column: &'static str,
+    pub column: String,
     /// Mean of predicted minus measured, before any alignment.
     pub mean_difference: f64,
     /// Over the whole cycle.
@@ -98,9 +98,13 @@ pub(crate) fn compare(
     })
 }
 
-fn column_of<'a>(run: &'a Table, column: &'static str) -> Result<&'a [f64], CompareError> {
-    run.column(column)
-        .ok_or_else(|| CompareError::no_column(column))
+fn column_of<'a>(run: &'a Table, column: &str) -> Result<&'a [f64], CompareError> {
+    run.column(column).ok_or_else(|| {
+        CompareError::NotComparable(format!(
+            "the run has no column `{column}` to compare with; name it as one of its columns, or remove it: {}",
+            run.names().join(", ")
+        ))
+    })
 }
 
 fn column(
@@ -109,7 +113,7 @@ fn column(
     run: &Table,
     rows: &[usize],
 ) -> Result<ColumnComparison, CompareError> {
-    let (percents, values) = (column_of(run, "percent")?, column_of(run, curve.column)?);
+    let (percents, values) = (column_of(run, "percent")?, column_of(run, &curve.column)?);
     let gap = measured.keys.largest_gap_percent;
     let point = |&row: &usize| {
         let measured = value_at(&curve.samples, percents[row], gap)?;
@@ -117,7 +121,7 @@ fn column(
     };
     let mut points: Vec<[f64; 3]> = rows.iter().filter_map(point).collect();
     if points.is_empty() {
-        let column = curve.column;
+        let column = &curve.column;
         return Err(CompareError::NotComparable(format!(
             "the measured points of `{column}` are all more than {gap} % of the cycle apart, so nothing is compared; raise \
              largest_gap_percent in [kinematics], or leave the column out"
@@ -140,7 +144,7 @@ fn column(
         }
     });
     Ok(ColumnComparison {
-        column: curve.column,
+        column: curve.column.clone(),
         mean_difference,
         errors: errors(&points).ok_or_else(|| CompareError::no_column("percent"))?,
         phases: phases.collect(),

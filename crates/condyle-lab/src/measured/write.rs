@@ -41,7 +41,7 @@ impl Comparison {
 impl KinematicsComparison {
     fn svg(&self) -> String {
         let columns = self.columns.iter();
-        let columns = columns.map(|column| (column.column, column.points.as_slice()));
+        let columns = columns.map(|column| (column.column.as_str(), column.points.as_slice()));
         let title = format!("Motion in the {} cycle, measured and predicted", self.cycle);
         compared_kinematics_svg(&title, &columns.collect::<Vec<_>>())
     }
