@@ -132,7 +132,12 @@ fn from_origin(place: [f64; 3], names: Directions) -> String {
         ..names
     };
     let [left, right] = names.along_z();
-    let directions = [names.along_x(), ["superior", "inferior"], [right, left]];
+    let along_y = match names.joint {
+        TestedJoint::Knee => ["superior", "inferior"],
+        // The bearing lies below its counterface, which is upside down in a hip.
+        _ => ["above", "below"],
+    };
+    let directions = [names.along_x(), along_y, [right, left]];
     let parts = place.into_iter().zip(directions);
     let parts = parts.map(|(value, [plus, minus])| {
         let direction = if value < 0.0 { minus } else { plus }.to_lowercase();

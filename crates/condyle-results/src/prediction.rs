@@ -23,7 +23,7 @@ const LOGISTIC: f64 = 1.702;
 /// The wear of conventional inserts in force-controlled knee simulators [haider-garvin2008]; [reinders2014] found 8.0 +/- 0.9.
 const MEASURED_KNEES: &str = "measured on knee simulators: 8.1 +/- 2.6 mg/Mc";
 /// The wear of conventional cups of 28 mm (not read) on a machine of ISO 14242-1 in two lubricants [kaddick2001].
-const MEASURED_HIPS: &str = "measured on hip simulators: 22 and 27 mg/Mc";
+const MEASURED_HIPS: &str = "measured on hip simulators of ISO 14242-1: 22 and 27 mg/Mc";
 /// 90 % of a normal distribution are within this many deviations.
 const DEVIATIONS_OF_90_PERCENT: f64 = 1.645;
 /// Pressure that the factors of the draws refer to, MPa.

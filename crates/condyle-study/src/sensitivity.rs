@@ -113,10 +113,28 @@ fn changes_of(case: &Case) -> Vec<NamedChange> {
 fn replaced(case: &Case, keys: &[&str], text: &str) -> (String, Vec<Assignment>) {
     let is_other = |key: &&&str| case.has(key) && case.word_at(key).as_deref() != Some(text);
     let set = keys.iter().filter(is_other);
-    let set = set.map(|key| Assignment::new(key, text.to_owned()));
+    let set = set.map(|key| Assignment::new(key, processed(case, key, text)));
     // Of a table of one key, its word.
     let words = text.split('"').nth(1).unwrap_or(text);
     (words.to_owned(), set.collect())
+}
+
+/// Returns the table of another shipped waveform with the scale and the offset of the case; those of a file or of points stay
+/// with them.
+fn processed(case: &Case, key: &str, table: &str) -> String {
+    let is_own = ["file", "knots_n"].map(|source| case.is_written(&format!("{key}.{source}")));
+    let number = |name: &str| case.number_at_or_written(&format!("{key}.{name}"));
+    match (
+        table.strip_suffix(" }"),
+        is_own,
+        number("scale"),
+        number("offset"),
+    ) {
+        (Some(open), [false, false], Some(scale), Some(offset)) => {
+            format!("{open}, scale = {scale:?}, offset = {offset:?} }}")
+        }
+        _ => table.to_owned(),
+    }
 }
 
 /// Returns the assignments that multiply the keys by a number or add it to them, and the change in words.

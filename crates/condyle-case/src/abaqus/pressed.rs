@@ -38,9 +38,9 @@ const MIN_SHARE: f64 = 1e-6;
 const MAX_INCREMENTS: u32 = 1000;
 
 const HEAD: &str = "\nUNITS mm, N, MPa.
-FRAME that of the insert: x anterior, y superior, z lateral of a right knee.
+FRAME that of the insert: the counterface presses along -y; in a knee x is anterior, z lateral of a right one.
 MODEL small displacements, as condyle's deformable insert: the steps have no NLGEOM. The insert is bonded
-by its backside; the femur is rigid and prescribed. The reaction is the total force on BACKSIDE, the pressure
+by its backside; the counterface is rigid and prescribed. The reaction is the total force on BACKSIDE, the pressure
 that at the nodes of ARTICULATING.";
 
 /// A slide of the pressed femur.
@@ -89,7 +89,7 @@ impl Pressed<'_> {
         self.femur(lift_mm, inp)?;
         self.materials(inp)?;
         self.contact(inp)?;
-        inp.comment("\nSTEP PRESSED: the femur descends from a pose without contact.")?;
+        inp.comment("\nSTEP PRESSED: the counterface descends from a pose without contact.")?;
         let down = Vec3::new(0.0, -lift_mm, 0.0);
         let share = match self.hardening {
             Some(_) => YIELDING_SHARE,
@@ -212,7 +212,7 @@ impl Pressed<'_> {
             }
         }
         inp.keyword("*SOLID SECTION, ELSET=INSERT, MATERIAL=UHMWPE")?;
-        inp.comment("All nodes of the femur are prescribed: its material has no effect.")?;
+        inp.comment("All nodes of the counterface are prescribed: its material has no effect.")?;
         inp.keyword("*MATERIAL, NAME=METAL")?;
         inp.keyword("*ELASTIC")?;
         inp.reals(&[METAL_MPA, METAL_RATIO])?;

@@ -285,6 +285,11 @@ impl Case {
         self.number_at(path).or_else(written).or_else(default)
     }
 
+    /// Returns whether the case file or a change has written the key at the dotted `path`.
+    pub fn is_written(&self, path: &str) -> bool {
+        self.origin.places.contains_key(path)
+    }
+
     /// Returns the word at the dotted `path`, which may be a default.
     pub fn word_at(&self, path: &str) -> Option<String> {
         self.value_at(path)?.as_str().map(str::to_owned)

@@ -97,7 +97,7 @@ impl Case {
     }
 
     /// Returns the joint whose replacement the machine tests.
-    pub(crate) fn tested_joint(&self) -> TestedJoint {
+    pub fn tested_joint(&self) -> TestedJoint {
         let tested = |rig: &Rig| rig.keys.tests;
         self.machine.rig.as_ref().map_or(TestedJoint::Knee, tested)
     }

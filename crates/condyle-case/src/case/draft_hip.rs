@@ -3,6 +3,7 @@
 use std::path::Path;
 
 use condyle::geometry::TriangleMesh;
+use condyle::machine::TestedJoint;
 use condyle_mesh::files::Disk;
 use condyle_mesh::formats::{parse_surface, surface_bytes};
 use condyle_mesh::{FittedSphere, Roundness};
@@ -29,6 +30,15 @@ impl Drafted {
     /// # Errors
     /// A file that cannot be read, a head without a ball, a cup without a socket, and a cup that is smaller than its head.
     pub fn hip(preset: Preset, [head, cup]: [&Path; 2], folder: &Path) -> Result<Self, DraftError> {
+        let inclination = match preset.machine().keys.tests {
+            TestedJoint::Hip => "",
+            // The discs of the presets lie across the load.
+            TestedJoint::Disc => "inclination_deg = 0.0\n",
+            _ => {
+                let message = "--head and --cup are a ball and its socket, of a hip or a disc; the machine tests another joint";
+                return Err(BuildError::mesh(head, &["file"], message).into());
+            }
+        };
         let ball = Round::from(head, Roundness::Convex)?;
         let (ball, socket) = match (ball, Round::from(cup, Roundness::Concave)?) {
             (Some(ball), Some(socket)) => (ball, socket),
@@ -76,7 +86,7 @@ impl Drafted {
         );
         let keys = format!(
             "title = \"Untitled\"\n[femur]\nshape = \"sphere\"\nradius_mm = {:.4}\n[insert]\nshape = \"cup-mesh\"\nfile = {file}\n\
-             length_unit = \"{}\"\n[machine]\npreset = \"{}\"\n",
+             length_unit = \"{}\"\n{inclination}[machine]\npreset = \"{}\"\n",
             ball.radius_mm(),
             socket.unit.word(),
             preset.word()

@@ -20,7 +20,7 @@ settings! {
     Heading {
         /// Title of the case, one line.
         title: String = "Untitled".to_owned();
-        /// Side of the knee; a left one is mirrored on input and output.
+        /// Side of the body; a left one is mirrored on input and output.
         side: Side = Side::Right;
     }
 }

@@ -11,7 +11,7 @@ settings! {
     Ligament {
         /// Its name in messages.
         name: String;
-        /// Attachment to the bearing, [x, y, z] in the insert frame.
+        /// Attachment to the bearing, [x, y, z] in the insert frame; z points to the right on both sides.
         on_bearing_mm: [f64; 3], in within(-300.0, 300.0);
         /// Attachment to the counterface, [x, y, z] in its own frame.
         on_counterface_mm: [f64; 3], in within(-300.0, 300.0);

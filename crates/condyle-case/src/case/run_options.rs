@@ -7,7 +7,7 @@ use crate::config::*;
 settings! {
     /// The march over the life of the insert.
     March {
-        /// Gait cycles in all.
+        /// Cycles of the whole test.
         cycles: u64 = 5_000_000, in within(1.0, 1e10);
         /// Schedule of the updates of the worn shape.
         [flat] update: Update;

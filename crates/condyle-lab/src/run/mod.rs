@@ -24,9 +24,9 @@ pub(crate) type Listener<'a> = dyn FnMut(RunEvent<'_>) -> ControlFlow<()> + 'a;
 pub struct Reached {
     /// Updates done.
     pub updates: usize,
-    /// Gait cycles done.
+    /// Cycles done.
     pub cycles: f64,
-    /// Gait cycles in all.
+    /// Cycles in all.
     pub of_cycles: f64,
 }
 

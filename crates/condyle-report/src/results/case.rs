@@ -23,7 +23,7 @@ fn has_left(table: &Table) -> bool {
 pub(crate) struct CaseFacts {
     /// `title` or `name` at the top of the case.
     pub title: Option<String>,
-    /// Gait cycles of the whole test.
+    /// Cycles of the whole test.
     pub cycles: Option<f64>,
     /// True if the insert is a deformable solid rather than a foundation.
     pub is_deformable: bool,

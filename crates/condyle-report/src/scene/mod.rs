@@ -53,7 +53,7 @@ struct SceneUpdate {
 pub struct SceneCycle {
     /// "first" or "last".
     pub name: &'static str,
-    /// Gait cycles before it.
+    /// Cycles before it.
     pub cycles: f64,
     /// Percent of the cycle at each increment.
     pub percents: Vec<f64>,

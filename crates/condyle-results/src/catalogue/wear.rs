@@ -3,7 +3,7 @@
 use super::{Scalar, scalar::scalars};
 
 scalars! { "Wear";
-    /// Gait cycles of the test.
+    /// Cycles of the test.
     CYCLES = Scalar::new("cycles", "cycles", 0, |run| run.last.cycles)
         .exact()
         .printed();

@@ -92,7 +92,7 @@ impl WearTest {
 /// The cycles of a test, and the updates of the geometry.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Schedule {
-    /// Gait cycles of the whole test.
+    /// Cycles of the whole test.
     pub cycles: f64,
     /// Times of the updates.
     pub updates: Updates,

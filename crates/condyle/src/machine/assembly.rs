@@ -100,7 +100,7 @@ pub struct Machine {
     pub springs: Vec<Spring>,
     /// The ligaments between the bodies.
     pub ligaments: Vec<Ligament>,
-    /// Gait cycles per second.
+    /// Cycles per second.
     pub frequency_hz: f64,
 }
 

@@ -219,11 +219,9 @@ impl Case {
             PressureLawChoice::Linear => PressureLaw::Linear { modulus_mpa },
             PressureLawChoice::Logarithmic => PressureLaw::Logarithmic { modulus_mpa },
             PressureLawChoice::Softening(curve) => PressureLaw::Softening {
-                modulus_mpa: softening_modulus(
-                    curve.softening_strain,
-                    curve.softening_stress_mpa,
-                    material.poissons_ratio,
-                ),
+                // A shell is as much softer than a flat layer as under the linear law.
+                modulus_mpa: modulus_mpa / confined_modulus(e_mpa, v)
+                    * softening_modulus(curve.softening_strain, curve.softening_stress_mpa, v),
                 softening_stress_mpa: curve.softening_stress_mpa,
             },
             PressureLawChoice::Tabulated(table) => PressureLaw::Tabulated(table.clone()),

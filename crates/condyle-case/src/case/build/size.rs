@@ -51,7 +51,8 @@ pub(super) fn check_points(
         None => "check length_unit and the mesh".to_owned(),
     };
     let size = rounded(size_mm);
-    let message = format!("the body is {size} mm long, and a knee's is 5 mm to 500 mm; {remedy}");
+    let message =
+        format!("the body is {size} mm long, and an implant's is 5 mm to 500 mm; {remedy}");
     Err(BuildError::mesh(file, &["length_unit", "file"], message))
 }
 

@@ -398,7 +398,7 @@ fn a_body_of_the_wrong_size_is_refused_with_the_unit_to_write() {
     };
     assert_eq!(
         said("m"),
-        "the body is 30000.0 mm long, and a knee's is 5 mm to 500 mm; \
+        "the body is 30000.0 mm long, and an implant's is 5 mm to 500 mm; \
          write length_unit = \"mm\", with which it is 30.0 mm long"
     );
     assert!(said("in").contains("the body is 762.0 mm long"));
