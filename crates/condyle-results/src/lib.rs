@@ -40,7 +40,7 @@ pub use cycle_files::{
     BODIES, KeptCycle, cycle_pressure_csv, cycle_pressure_file, cycle_pvd, femur_on_side,
     femur_vtu, frame_name, insert_frame,
 };
-pub use declared::{python_types, results_schema, typescript_types};
+pub use declared::results_schema;
 pub use error_estimate::{ErrorEstimate, ErrorParts, Part, QuantityError, QuantityErrors};
 #[cfg(feature = "file-system")]
 pub use files::{DamagedFile, FolderLock, check_file, create_file, replace_file};
