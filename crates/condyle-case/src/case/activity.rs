@@ -49,10 +49,6 @@ pub struct Activities {
     all: Vec<Activity>,
 }
 
-const ACTIVITIES: &str = "
-One table for each activity, with every waveform that its freedoms need, as `[activity.axial_force]`, `[activity.flexion]` and so on, with the keys of the waveforms above; `[machine]` then has none ([Activities and creep](activities-and-creep.md)). On a machine by joints, an activity has a [machine file](machines.md#activities) instead.
-";
-
 impl Activities {
     /// Returns every activity.
     pub fn iter(&self) -> impl Iterator<Item = &Activity> {
@@ -74,23 +70,15 @@ impl Activities {
 
 impl Settings for Activities {
     fn items() -> Vec<Item> {
-        let mut items = [ActivityKeys::items(), waveform_items(false)].concat();
-        let of_rig = Rig::items_beside(&items).into_iter();
-        items.extend(of_rig.map(|item| match item {
-            // The page describes the joints of a machine once.
-            Item::Table(table) => Item::Table(TableItem {
-                page: Some(String::new()),
-                ..table
-            }),
-            other => other,
-        }));
+        let mut items = [ActivityKeys::items(), waveform_items()].concat();
+        let of_rig = Rig::items_beside(&items);
+        items.extend(of_rig);
         items
     }
 
     fn item(name: &'static str, about: &str) -> Item {
         Item::Table(TableItem {
             is_list: true,
-            note: ACTIVITIES.to_owned(),
             ..TableItem::new(name, about, Self::items())
         })
     }

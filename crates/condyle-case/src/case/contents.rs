@@ -22,21 +22,6 @@ use super::run_options::{Accuracy, Limits, March, Output, Time};
 use super::wear::{Wear, WearLaws};
 use crate::config::*;
 
-const OPENING: &str = "\
-# The case file
-
-A case is a TOML file. This page lists all its keys. Keys with a default may be omitted, the names of numbers end with
-their units, and paths are relative to the folder of the case file.
-
-Editors complete keys, show their meaning, unit and range, and underline errors with the schema that
-`condyle schema > condyle.schema.json` writes. taplo and the extension Even Better TOML of VS Code find it by the first
-line of the case, `#:schema condyle.schema.json`, which the shipped cases have and `condyle new` writes. `condyle check`
-also checks that files exist and that values fit each other.
-
-## Top of the file
-
-";
-
 // A new table is a type with `Settings` in its own file, and one entry here.
 settings! {
     /// A wear test as its file describes it, checked, with every default filled in.
@@ -190,12 +175,6 @@ impl Case {
         }
         format!("{schema:#}\n")
     }
-}
-
-/// Returns the page of the book on the case file: every key of a case that may choose from `wear_laws`, as Markdown.
-pub fn schema_markdown(wear_laws: WearLaws) -> String {
-    let items = Case::items_with(wear_laws);
-    format!("{OPENING}{}{}", rows(&keys(&items)), sections("", &items))
 }
 
 /// The text of a case file, the places of its keys, and remarks on the reading. All origins compare equal: two cases are

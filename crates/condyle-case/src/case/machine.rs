@@ -169,7 +169,7 @@ impl Preset {
 impl Freedom {
     /// Returns the keys of a freedom: its drive, and position when locked, inertia and damping, each with its default.
     /// No source gives inertia and damping: the book explains the defaults.
-    fn keys(kind: JointKind) -> (Key, [(Key, f64); 3]) {
+    pub(super) fn keys(kind: JointKind) -> (Key, [(Key, f64); 3]) {
         let number = |name, doc: &'static str, default, least, most| {
             (
                 Key::number(name, doc, default, within(least, most)),
@@ -304,28 +304,13 @@ impl Freedoms {
             .map(|(joint, index)| (joint, self.get(index)))
     }
 
-    /// Describes the table; the book describes freedoms of a kind together.
     fn item() -> Item {
-        let page = [JointKind::Translation, JointKind::Rotation].map(|kind| {
-            let joints = joints_in_files().filter(|joint| joint.kind() == kind);
-            let names: Vec<&str> = joints.map(|joint| joint.name).collect();
-            let (last, others) = names
-                .split_last()
-                .expect("a machine has freedoms of each kind");
-            let others = others.join(", .");
-            let (drive, [(held, _), (inertia, _), (damping, _)]) = Freedom::keys(kind);
-            let rows = rows(&[&drive, &held, &inertia, &damping]);
-            format!("\n## `[machine.freedoms.{others} and .{last}]`\n\n{rows}")
-        });
         let items = joints_in_files().map(Freedom::item).collect();
-        Item::Table(TableItem {
-            page: Some(page.concat()),
-            ..TableItem::new("freedoms", "The six freedoms.", items)
-        })
+        Item::Table(TableItem::new("freedoms", "The six freedoms.", items))
     }
 }
 
-fn joints_in_files() -> impl Iterator<Item = &'static JointDescription> {
+pub(super) fn joints_in_files() -> impl Iterator<Item = &'static JointDescription> {
     KNEE.in_files.iter().map(|&index| KNEE.joint(index))
 }
 
@@ -451,7 +436,7 @@ impl Settings for Machine {
             "The pair of springs that represents the ligaments.",
         ));
         items.push(Freedoms::item());
-        items.extend(waveform_items(true));
+        items.extend(waveform_items());
         let of_rig = Rig::items_beside(&items);
         items.extend(of_rig);
         items

@@ -76,7 +76,7 @@ pub(super) fn words_of(channel: &'static Channel) -> Vec<&'static str> {
     named(channel).map(|(word, _)| word).collect()
 }
 
-fn knots_key(channel: &Channel) -> Key {
+pub(super) fn knots_key(channel: &Channel) -> Key {
     let name = match channel.unit {
         ChannelUnit::Newton => "knots_n",
         ChannelUnit::NewtonMetre => "knots_nm",
@@ -127,20 +127,12 @@ settings! {
 /// The waveform of a knee simulator whose case names none.
 const DEFAULT_WAVEFORM: &str = "iso-like";
 
-/// Describes the table of each waveform; with `in_book`, the first also describes all of them in the book.
-pub(super) fn waveform_items(in_book: bool) -> Vec<Item> {
-    let table = |(index, channel): (usize, &&'static Channel)| {
-        let page = if in_book && index == 0 {
-            page()
-        } else {
-            String::new()
-        };
-        Item::Table(TableItem {
-            page: Some(page),
-            ..table(&[channel])
-        })
-    };
-    KNEE.channels.iter().enumerate().map(table).collect()
+/// Describes the table of each waveform.
+pub(super) fn waveform_items() -> Vec<Item> {
+    let channels = KNEE.channels.iter();
+    channels
+        .map(|&channel| Item::Table(table(&[channel])))
+        .collect()
 }
 
 /// Describes the table of a waveform that is one of `channels`, which share a name.
@@ -169,32 +161,6 @@ pub(super) fn table(channels: &[&'static Channel]) -> TableItem {
     });
     items.push(Item::Needs("column", "file"));
     TableItem::new(first.name, first.about, items)
-}
-
-fn page() -> String {
-    let table = |channel: &&Channel| format!("`[machine.{}]`", channel.name);
-    let tables: Vec<String> = KNEE.channels.iter().map(table).collect();
-    let keys = rows(&keys(&WaveformSource::items()));
-    let row = |channel: &&'static Channel| {
-        let key = knots_key(channel).name;
-        format!(
-            "| `{}` | `{key}` | {} | {} | {} | {} |\n",
-            channel.name,
-            unit_of(key).unwrap_or_default(),
-            limits(channel),
-            words_of(channel).join(", "),
-            channel.about,
-        )
-    };
-    let channels: String = KNEE.channels.iter().map(row).collect();
-    format!(
-        "\n## Waveforms: {}\n\n\
-        One of `waveform`, `file` or the points themselves; `iso-like` if none of them is given. A freedom takes the waveform that its drive \
-        needs; one for another drive is an error.\n\n{keys}\n\
-        | table | points | unit | values may be | shipped waveforms | meaning |\n\
-        | --- | --- | --- | --- | --- | --- |\n{channels}",
-        tables.join(", ")
-    )
 }
 
 /// Points of a waveform before they are scaled.

@@ -159,11 +159,7 @@ impl Wear {
     /// Describes the table of a case that may choose from `laws`.
     pub(super) fn item_of(laws: WearLaws) -> Item {
         let items = vec![Item::Choice(Self::choices(laws))];
-        let lines: String = laws.iter().map(|law| law_line(law)).collect();
-        Item::Table(TableItem {
-            note: format!("\n{lines}"),
-            ..TableItem::new(Self::TABLE, "The wear law.", items)
-        })
+        Item::Table(TableItem::new(Self::TABLE, "The wear law.", items))
     }
 
     /// Name of the table.
@@ -206,26 +202,4 @@ fn key_of(parameter: &Parameter) -> Key {
     };
     let doc = format!("{}{approximate}", parameter.about);
     Key::number(parameter.name, doc, parameter.default, limits_of(parameter))
-}
-
-/// Returns the formula of a law and the sources of its constants.
-fn law_line(law: &WearLawKind) -> String {
-    let source = |parameter: &Parameter| match parameter.source {
-        "choice" => "choice".to_owned(),
-        key if parameter.known == Known::Approximate => format!("[{key}] (approximate)"),
-        key => format!("[{key}]"),
-    };
-    let sources: Vec<String> = law.parameters.iter().map(source).collect();
-    let (word, about, sources) = (law.word, law.about, sources.join(", "));
-    let formula = if law.known == Known::Approximate {
-        " The formula is approximate: quoted from memory, not checked at the source."
-    } else {
-        ""
-    };
-    let constants = if sources.is_empty() {
-        String::new()
-    } else {
-        format!(" Sources of the constants, in the order of the table: {sources}.")
-    };
-    format!("- `{word}`: {about}{constants}{formula}\n")
 }

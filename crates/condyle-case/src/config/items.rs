@@ -27,10 +27,6 @@ pub(crate) struct TableItem {
     pub items: Vec<Item>,
     /// The file may have several, each headed `[[name]]`.
     pub is_list: bool,
-    /// Markdown after the keys on the page of the book.
-    pub note: String,
-    /// Markdown in place of the derived section of the book, for tables that are described together.
-    pub page: Option<String>,
 }
 
 impl TableItem {
@@ -40,8 +36,6 @@ impl TableItem {
             about: about.trim().to_owned(),
             items,
             is_list: false,
-            note: String::new(),
-            page: None,
         }
     }
 }

@@ -1,15 +1,13 @@
-//! Declared tables described: a page of the book in Markdown, and a JSON schema, draft 2020-12, with which editors complete
-//! keys and underline errors.
+//! Declared tables described by a JSON schema, draft 2020-12, with which editors complete keys and underline errors.
 //!
 //! The schema accepts every file that the reader accepts; the reader may reject more.
 
 use std::collections::BTreeMap;
-use std::fmt::Write;
 
 use condyle::parameter::unit_of;
 use serde_json::{Map, Value, json};
 
-use super::items::{Choices, Item, TableItem, keys};
+use super::items::{Choices, Item, keys};
 use super::key::{Key, Kind, Limits, WhereSilent};
 
 pub(crate) fn table_schema(about: &str, items: &[Item]) -> Value {
@@ -180,74 +178,4 @@ fn description(key: &Key) -> String {
         WhereSilent::MustBeGiven => text + " Must be given.",
         WhereSilent::LeftOut => text,
     }
-}
-
-/// Returns the sections of the book on the tables among `items`, `above` being the path of the table around them.
-pub(crate) fn sections(above: &str, items: &[Item]) -> String {
-    let inside = items.iter().flat_map(|item| match item {
-        Item::Choice(choices) => choices
-            .offered
-            .iter()
-            .flat_map(|offer| &offer.items)
-            .collect(),
-        item => vec![item],
-    });
-    let sections = inside.filter_map(|item| match item {
-        Item::Table(table) => Some(section(above, table)),
-        _ => None,
-    });
-    sections.collect()
-}
-
-fn section(above: &str, table: &TableItem) -> String {
-    if let Some(page) = &table.page {
-        return page.clone();
-    }
-    let path = match above {
-        "" => table.name.to_owned(),
-        above => format!("{above}.{}", table.name),
-    };
-    let title = if table.is_list {
-        format!("[[{path}]]")
-    } else {
-        format!("[{path}]")
-    };
-    let mut text = format!("\n## `{title}`\n\n{}", rows(&keys(&table.items)));
-    for item in &table.items {
-        let Item::Choice(choices) = item else {
-            continue;
-        };
-        for offer in &choices.offered {
-            let keys = keys(&offer.items);
-            if !keys.is_empty() {
-                let (by, word) = (choices.by.name, offer.word);
-                text += &format!("\nWith `{by} = \"{word}\"`:\n\n{}", rows(&keys));
-            }
-        }
-    }
-    text + &table.note + &sections(&path, &table.items)
-}
-
-pub(crate) fn rows(keys: &[&Key]) -> String {
-    let mut text =
-        "| key | unit | may be | default | meaning |\n| --- | --- | --- | --- | --- |\n".to_owned();
-    for key in keys {
-        let (name, kind, doc) = (key.name, &key.kind, &key.doc);
-        let unit = unit_of(name).unwrap_or("");
-        let range = key
-            .limits
-            .map(|limits| format!(", {limits}"))
-            .unwrap_or_default();
-        let default = match &key.silent {
-            WhereSilent::Takes(text) => format!("`{text}`"),
-            WhereSilent::LeftOut => "none".to_owned(),
-            WhereSilent::MustBeGiven => "must be given".to_owned(),
-        };
-        let row = writeln!(
-            text,
-            "| `{name}` | {unit} | {kind}{range} | {default} | {doc} |"
-        );
-        debug_assert!(row.is_ok(), "writing to a String does not fail");
-    }
-    text
 }

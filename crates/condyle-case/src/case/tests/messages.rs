@@ -1,7 +1,7 @@
 //! Rendered messages: limited in number, and harmless to a terminal.
 
+use super::page::schema_markdown;
 use super::{assert_shows, parsed, refusal};
-use crate::case::schema_markdown;
 use crate::config::{RenderStyle, SYNONYMS};
 
 #[test]

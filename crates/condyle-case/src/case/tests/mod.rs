@@ -8,6 +8,7 @@ mod material;
 mod memory;
 mod messages;
 mod orientation_check;
+mod page;
 mod rigs;
 mod round_trip;
 mod wear;

@@ -3,13 +3,10 @@
 use std::path::Path;
 
 use condyle::machine::{self, knee, knee::KNEE};
-use condyle::wear::WEAR_LAWS;
 
 use super::super::waveform::words_of;
 use super::{cases, has_dm_data, parsed};
-use crate::case::{
-    Case, DriveWord, FemurShape, InsertShape, Preset, Side, schema_markdown, template,
-};
+use crate::case::{Case, DriveWord, FemurShape, InsertShape, Preset, Side, template};
 
 fn shipped(name: &str) -> Case {
     Case::read(&cases().join(name)).unwrap_or_else(|error| panic!("{error}"))
@@ -175,27 +172,9 @@ fn templates_are_cases_of_their_preset() {
 }
 
 #[test]
-fn page_of_keys_has_unit_range_default_and_meaning() {
-    let page = schema_markdown(WEAR_LAWS);
-    let row = "| `edge_mm` | mm | a number, 0.1 to 10 | `1.05` | Edge of a hexahedron, seen from above. |";
-    assert!(page.contains(row), "{page}");
-    assert!(page.contains("| `file` |  | a path in quotes | must be given |"));
-    assert!(page.contains("| `axial_force` | `knots_n` | N | 0 to 20000 | iso-like, paper-like, stairs-like, chair-like |"));
-}
-
-#[test]
 fn schema_next_to_the_cases_is_up_to_date() {
     let path = cases().join("condyle.schema.json");
     let schema = std::fs::read_to_string(path).unwrap_or_default();
     let advice = "run: condyle schema > cases/condyle.schema.json";
     assert!(schema == Case::json_schema(), "{advice}");
-}
-
-#[test]
-fn page_of_keys_in_the_book_is_up_to_date() {
-    let path = cases().join("../docs/src/case-file.md");
-    let page = std::fs::read_to_string(path).unwrap_or_default();
-    let advice =
-        "run: cargo run -q -p condyle-case --example case_file_page > docs/src/case-file.md";
-    assert!(page == schema_markdown(WEAR_LAWS), "{advice}");
 }

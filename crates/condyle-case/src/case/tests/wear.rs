@@ -7,8 +7,9 @@ use condyle::contact::Moment;
 use condyle::parameter::{Known, Parameter};
 use condyle::wear::{MeanCycle, NodeWear, WEAR_LAWS, WearLaw, WearLawKind};
 
+use super::page::schema_markdown;
 use super::{assert_shows, pressed_once};
-use crate::case::{Case, CaseReader, ConstantError, Wear, WearLaws, schema_markdown};
+use crate::case::{Case, CaseReader, ConstantError, Wear, WearLaws};
 
 /// Wear that begins at a pressure: depth per cycle = a (sum of p |ds| - b), 0 or more.
 #[derive(Debug)]
