@@ -8,7 +8,7 @@ use crate::config::*;
 
 settings! {
     /// A ligament: a straight line that carries tension only, with a toe region. It does not act while the machine settles.
-    Ligament {
+    Ligament [check] {
         /// Its name in messages.
         name: String;
         /// Attachment to the bearing, [x, y, z] in the insert frame; z points to the right on both sides.
@@ -27,35 +27,13 @@ settings! {
 }
 
 impl Ligament {
-    /// Returns the ligaments of the list in `section`; none if one has problems.
-    pub(super) fn read_list(section: &Section<'_>, log: &mut Log<'_>) -> Option<Vec<Self>> {
-        let sections = section.list("ligaments", log)?;
-        let read = |section: &Section<'_>| {
-            let ligament = Self::read(section, log)?;
-            if ligament.slack_length_mm.is_some() != ligament.strain_at_zero.is_some() {
-                return Some(ligament);
-            }
+    fn check(&self, section: &Section<'_>, log: &mut Log<'_>) {
+        if self.slack_length_mm.is_some() == self.strain_at_zero.is_some() {
             let message = format!(
                 "the ligament \"{}\" needs one of `slack_length_mm` and `strain_at_zero`",
-                ligament.name
+                self.name
             );
-            log.reject(section.span(), Fault::new(message, ""))
-        };
-        sections.iter().map(read).collect()
-    }
-
-    pub(super) fn list_item() -> Item {
-        let about = "A ligament between the bodies, on any machine.";
-        let item = TableItem::new("ligaments", about, Self::items());
-        Item::Table(TableItem {
-            is_list: true,
-            ..item
-        })
-    }
-
-    pub(super) fn write_list(all: &[Self], out: &mut Writer) {
-        for ligament in all {
-            out.table_of_list("ligaments", |out| ligament.write(out));
+            log.problem(section.span(), Fault::new(message, ""));
         }
     }
 

@@ -381,7 +381,7 @@ impl Machine {
     ) -> Option<Self> {
         let settings = MachineSettings::read(section, log);
         let springs = Springs::read_in(section, "springs", log);
-        let ligaments = Ligament::read_list(section, log);
+        let ligaments = Ligament::read_list(section, "ligaments", log);
         let settings = settings?;
         let freedoms = Freedoms::read(section, settings.preset, log)?;
         let waveforms = waveforms(section, &freedoms, log);
@@ -488,6 +488,6 @@ impl Settings for Machine {
                 freedom.write(joint, out);
             });
         }
-        Ligament::write_list(&self.ligaments, out);
+        self.ligaments.write_in("ligaments", out);
     }
 }

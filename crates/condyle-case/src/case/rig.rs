@@ -43,17 +43,18 @@ settings! {
     }
 }
 
-/// A machine from a file.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Rig {
-    /// Its keys.
-    pub keys: RigKeys,
-    /// Its joints, from the bearing to the counterface.
-    pub joints: Vec<RigJoint>,
-    /// Its springs between two joints.
-    pub springs: Vec<OffsetSpring>,
-    /// Its ligaments.
-    pub ligaments: Vec<Ligament>,
+settings! {
+    /// A machine from a file.
+    Rig {
+        /// Its keys besides those of the joints.
+        [flat] keys: RigKeys;
+        /// A joint of a machine, from the bearing to the counterface.
+        [table] joints: Vec<RigJoint>;
+        /// A spring along a translation of a machine, beside the axis of a rotation.
+        [table "offset_springs"] springs: Vec<OffsetSpring>;
+        /// A ligament between the bodies, on any machine.
+        [table] ligaments: Vec<Ligament>;
+    }
 }
 
 /// Puts every one of `changes` in place of that of the same name in `all`, or after them.
@@ -124,7 +125,7 @@ impl Rig {
 
     /// Returns the machine with the keys of `section`, and with its joints and ligaments in place of those of the same name.
     pub(super) fn changed_by(mut self, section: &Section<'_>, log: &mut Log<'_>) -> Option<Self> {
-        for joint in RigJoint::read_list(section, log)? {
+        for joint in RigJoint::read_list(section, "joints", log)? {
             let name = &joint.keys.name;
             let mut joints = self.joints.iter_mut();
             let Some(known) = joints.find(|known| known.keys.name == *name) else {
@@ -135,9 +136,9 @@ impl Rig {
             };
             *known = joint;
         }
-        let springs = OffsetSpring::read_list(section, log)?;
+        let springs = OffsetSpring::read_list(section, "offset_springs", log)?;
         replace_by_name(&mut self.springs, springs, |spring| &spring.name);
-        let ligaments = Ligament::read_list(section, log)?;
+        let ligaments = Ligament::read_list(section, "ligaments", log)?;
         replace_by_name(&mut self.ligaments, ligaments, |ligament| &ligament.name);
         for key in RigKeys::keys() {
             let keys = &mut self.keys;
@@ -360,44 +361,11 @@ impl Rig {
         }
     }
 
-    /// Writes the entries of the table `[machine]`.
-    pub(super) fn write(&self, out: &mut Writer) {
-        self.keys.write(out);
-        for joint in &self.joints {
-            out.table_of_list("joints", |out| joint.write(out));
-        }
-        for spring in &self.springs {
-            out.table_of_list("offset_springs", |out| spring.write(out));
-        }
-        Ligament::write_list(&self.ligaments, out);
-    }
-
     /// Returns the entries that a table may have besides `items`: none is required, and those of the same name count once.
     pub(super) fn items_beside(items: &[Item]) -> Vec<Item> {
         let known: Vec<&str> = items.iter().filter_map(Item::name).collect();
         let own = Self::items().into_iter();
         let other = own.filter(|item| !item.name().is_some_and(|name| known.contains(&name)));
         other.map(Item::optional).collect()
-    }
-
-    fn items() -> Vec<Item> {
-        let mut items = RigKeys::items();
-        items.extend([
-            RigJoint::list_item(),
-            OffsetSpring::list_item(),
-            Ligament::list_item(),
-        ]);
-        items
-    }
-
-    fn read(section: &Section<'_>, log: &mut Log<'_>) -> Option<Self> {
-        let keys = RigKeys::read(section, log);
-        let joints = RigJoint::read_list(section, log)?;
-        Some(Self {
-            keys: keys?,
-            joints,
-            springs: OffsetSpring::read_list(section, log)?,
-            ligaments: Ligament::read_list(section, log)?,
-        })
     }
 }

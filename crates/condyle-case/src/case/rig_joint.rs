@@ -266,19 +266,26 @@ pub struct RigJoint {
     pub waveform: Option<Waveform>,
 }
 
-impl RigJoint {
+impl Settings for RigJoint {
+    fn items() -> Vec<Item> {
+        let mut items = RigJointKeys::items();
+        for channels in [[&FORCE, &TORQUE], [&TRANSLATION, &ROTATION]] {
+            items.push(Item::Table(waveform::table(&channels)));
+        }
+        items
+    }
+
     /// Reads the joints of a machine; each has its own name.
-    pub(super) fn read_list(section: &Section<'_>, log: &mut Log<'_>) -> Option<Vec<Self>> {
-        let sections = section.list("joints", log)?;
+    fn read_list(above: &Section<'_>, name: &str, log: &mut Log<'_>) -> Option<Vec<Self>> {
+        let sections = above.list(name, log)?;
         if sections.len() > MAX_JOINTS {
             let count = sections.len();
             let message =
                 format!("a machine has at most {MAX_JOINTS} joints, and this one has {count}");
             let fault = Fault::new(message, "two bodies have six freedoms");
-            return log.reject(section.key_span("joints"), fault);
+            return log.reject(above.key_span(name), fault);
         }
-        let joints: Vec<Option<Self>> = sections.iter().map(|one| Self::read(one, log)).collect();
-        let joints: Vec<Self> = joints.into_iter().collect::<Option<_>>()?;
+        let joints = above.read_list(name, log, Self::read)?;
         for (number, joint) in joints.iter().enumerate() {
             let name = &joint.keys.name;
             let mut before = joints[..number].iter();
@@ -316,7 +323,7 @@ impl RigJoint {
         is_sound.then_some(Self { keys, waveform })
     }
 
-    pub(super) fn write(&self, out: &mut Writer) {
+    fn write(&self, out: &mut Writer) {
         self.keys.write(out);
         if let (Some(channel), Some(waveform)) =
             (channel_of(self.keys.kind, self.keys.drive), &self.waveform)
@@ -324,7 +331,9 @@ impl RigJoint {
             out.table(channel.name, |out| waveform::write(channel, waveform, out));
         }
     }
+}
 
+impl RigJoint {
     pub(super) fn name(&self) -> &str {
         &self.keys.name
     }
@@ -505,22 +514,5 @@ impl RigJoint {
             motion: Some(motion),
             load: Loading::By(load),
         }
-    }
-
-    /// Returns the entry of the list of joints.
-    pub(super) fn list_item() -> Item {
-        let mut joint = RigJointKeys::items();
-        for channels in [[&FORCE, &TORQUE], [&TRANSLATION, &ROTATION]] {
-            joint.push(Item::Table(waveform::table(&channels)));
-        }
-        let list = TableItem {
-            is_list: true,
-            ..TableItem::new(
-                "joints",
-                "A joint of a machine, from the bearing to the counterface.",
-                joint,
-            )
-        };
-        Item::Table(list)
     }
 }

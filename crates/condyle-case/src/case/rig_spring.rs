@@ -26,20 +26,6 @@ settings! {
 }
 
 impl OffsetSpring {
-    /// Returns the springs of the list in `section`; none if one has problems.
-    pub(super) fn read_list(section: &Section<'_>, log: &mut Log<'_>) -> Option<Vec<Self>> {
-        let sections = section.list("offset_springs", log)?;
-        sections.iter().map(|one| Self::read(one, log)).collect()
-    }
-
-    pub(super) fn list_item() -> Item {
-        let about = "A spring along a translation of a machine, beside the axis of a rotation.";
-        Item::Table(TableItem {
-            is_list: true,
-            ..TableItem::new("offset_springs", about, Self::items())
-        })
-    }
-
     /// Returns the spring between two of `joints`, or the fault of a name that is not a joint of the kind it needs.
     pub(super) fn build(&self, joints: &[RigJoint]) -> Result<Spring, Fault> {
         let joint = |key: &str, name: &str, kind: JointKind| {

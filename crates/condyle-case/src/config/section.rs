@@ -73,6 +73,18 @@ impl<'a> Section<'a> {
         Some(tables)
     }
 
+    /// Reads every table of the list `name`; returns none if one of them has a problem.
+    pub(crate) fn read_list<T>(
+        &self,
+        name: &str,
+        log: &mut Log<'_>,
+        mut read: impl FnMut(&Self, &mut Log<'_>) -> Option<T>,
+    ) -> Option<Vec<T>> {
+        let tables = self.list(name, log)?;
+        let read: Vec<Option<T>> = tables.iter().map(|table| read(table, log)).collect();
+        read.into_iter().collect()
+    }
+
     /// Returns every table called `name`: none, one, or those of a list.
     pub(crate) fn tables(&self, name: &str) -> Vec<Self> {
         let Some(list) = self

@@ -33,10 +33,48 @@ pub(crate) trait Settings: Sized {
         out.table(name, |out| self.write(out));
     }
 
+    /// Reads the parts of the list `name`; returns none if one of them has a problem.
+    fn read_list(above: &Section<'_>, name: &str, log: &mut Log<'_>) -> Option<Vec<Self>> {
+        above.read_list(name, log, Self::read)
+    }
+
     /// Reads the part from `section`, and reports every key that it does not have.
     fn read_checked(section: &Section<'_>, log: &mut Log<'_>) -> Option<Self> {
         check(section, &Self::items(), log);
         Self::read(section, log)
+    }
+}
+
+/// A list of tables, each headed `[[name]]`.
+impl<T: Settings> Settings for Vec<T> {
+    fn items() -> Vec<Item> {
+        T::items()
+    }
+
+    fn item(name: &'static str, about: &str) -> Item {
+        Item::Table(TableItem {
+            is_list: true,
+            ..TableItem::new(name, about, T::items())
+        })
+    }
+
+    /// Reads the only part of `section`.
+    fn read(section: &Section<'_>, log: &mut Log<'_>) -> Option<Self> {
+        Some(vec![T::read(section, log)?])
+    }
+
+    fn read_in(above: &Section<'_>, name: &'static str, log: &mut Log<'_>) -> Option<Self> {
+        T::read_list(above, name, log)
+    }
+
+    fn write(&self, out: &mut Writer) {
+        self.iter().for_each(|part| part.write(out));
+    }
+
+    fn write_in(&self, name: &str, out: &mut Writer) {
+        for part in self {
+            out.table_of_list(name, |out| part.write(out));
+        }
     }
 }
 

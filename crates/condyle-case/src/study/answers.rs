@@ -40,8 +40,7 @@ impl Answers {
     }
 
     pub(super) fn read(root: &Section<'_>, own: &Outputs, log: &mut Log<'_>) -> Option<Self> {
-        let bounds = root.list("limit", log);
-        let bounds = bounds.map(|all| all.iter().map(|one| Bound::read(one, own, log)).collect());
+        let bounds = root.read_list("limit", log, |one, log| Bound::read(one, own, log));
         let section = root.table("answers", log);
         let keys = AnswersKeys::read_checked(&section, log)?;
         let mut output = |key: &str, name: &String| own.named(name, key, &section, log);
@@ -58,7 +57,6 @@ impl Answers {
             return log.reject(section.value_span("outputs"), fault);
         };
         let two = pareto.map_or(Some(outputs.clone()), |two| two)?;
-        let bounds: Option<Vec<Bound>> = bounds?;
         let bounds = bounds?;
         // A limit is a question about its output too.
         for bound in &bounds {

@@ -77,14 +77,14 @@ fn read_study(
     let answers = Answers::read(root, &outputs, log);
     let design = design?;
     let (inputs, rows) = inputs(root, &design, &case, log)?;
-    let alternatives = listed(root, "alternative", log, alternative)?;
+    let alternatives = root.read_list("alternative", log, alternative)?;
     check_count(
         "designs",
         alternatives.len(),
         root.key_span("alternative"),
         log,
     )?;
-    let correlations = listed(root, "correlation", log, |section, log| {
+    let correlations = root.read_list("correlation", log, |section, log| {
         correlation(section, &inputs, log)
     })?;
     let absolute = folder.canonicalize();
@@ -108,18 +108,6 @@ fn read_study(
     Some(study)
 }
 
-/// Returns the tables of a list, or none if one of them has a problem.
-fn listed<T>(
-    root: &Section<'_>,
-    name: &str,
-    log: &mut Log<'_>,
-    read: impl Fn(&Section<'_>, &mut Log<'_>) -> Option<T>,
-) -> Option<Vec<T>> {
-    let listed = root.list(name, log)?;
-    let read: Vec<Option<T>> = listed.iter().map(|one| read(one, log)).collect();
-    read.into_iter().collect()
-}
-
 fn inputs(
     root: &Section<'_>,
     design: &Design,
@@ -138,7 +126,7 @@ fn inputs(
         return read_rows(&root.table("design", log), &keys.file, case, log);
     }
     check_count("inputs", count, root.key_span("vary"), log)?;
-    let inputs = listed(root, "vary", log, |one, log| Input::read(one, case, log));
+    let inputs = root.read_list("vary", log, |one, log| Input::read(one, case, log));
     let inputs = inputs.map(|mut inputs| {
         inputs.sort_by_key(|input| input.is_disturbance);
         inputs
