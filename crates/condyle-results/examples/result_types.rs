@@ -4,7 +4,7 @@
 
 use std::{fs, io};
 
-use condyle_results::catalogue::{self, PARTS, PartKind};
+use condyle_results::{PARTS, PartKind, catalogue};
 
 fn main() -> io::Result<()> {
     fs::write("python/condyle/_summary.py", python_types())?;

@@ -4,8 +4,9 @@ use serde_json::{Value, json};
 
 use super::{
     CycleQuantity, KNEE,
-    catalogue::{self, PARTS, PartKind, Scalar},
+    catalogue::{self, Scalar},
     insert_fields::NODE_FIELDS,
+    summary::{PARTS, PartKind},
     tables::WEAR_COLUMNS,
 };
 

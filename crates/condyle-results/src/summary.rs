@@ -12,47 +12,127 @@ use serde::{
 use serde_json::{Map, Value};
 
 use super::{
-    catalogue::{self, FinishedRun, PARTS, RunFacts, Scalar},
+    catalogue::{
+        self, CYCLES, FinishedRun, PEAK_PRESSURE_MPA, RunFacts, Scalar, UPDATES, WALL_S,
+        WEAR_OVER_CONVENTIONAL,
+    },
     error_estimate::ErrorEstimate,
     parts::{ActivitySummary, CreepSummary, LawWear, MotionColumn, NeutralPose},
     prediction::Prediction,
 };
 
-/// The results of a run in one table: `summary[&MASS_LOSS_MG]` is a number of the catalogue.
-///
-/// A summary is read from any version of `summary.json`: an entry that is missing is absent, and one that is not in the
-/// catalogue is in [`Self::others`].
-#[derive(Clone, Debug, Default, PartialEq)]
-pub struct Summary {
-    scalars: BTreeMap<&'static str, f64>,
-    /// Reasons to doubt the numbers, the worst first.
-    pub plausibility: Vec<PlausibilityWarning>,
-    /// Remarks on the physics of the run that leave its numbers sound, each with its effect on them.
-    pub notes: Vec<PlausibilityWarning>,
-    /// The results that laboratories would find; none unless the march summed the family of calibrated laws.
-    pub prediction: Option<Prediction>,
-    /// Estimated discretisation errors; none if the case does not request them.
-    pub error: Option<ErrorEstimate>,
-    /// Wear by every law for the same histories, that of the run first; only this law moves the surface.
-    pub wear_laws: Vec<LawWear>,
-    /// Each of several activities; motions and ranges of the summary are those of the first.
-    pub activities: Vec<ActivitySummary>,
-    /// Creep; none for an insert that does not creep.
-    pub creep: Option<CreepSummary>,
-    /// The joint whose replacement the machine tests.
-    pub joint: TestedJoint,
-    /// The joints of the machine; empty in a file of an older version.
-    pub motions: Vec<MotionColumn>,
-    /// The pose of the settled femur in the insert frame, at which AP, ML and IS read zero.
-    pub neutral_pose: Option<NeutralPose>,
-    /// Corrections of the input, and remarks on suspicious input.
-    pub warnings: Vec<String>,
-    /// Version of condyle.
-    pub version: String,
-    /// Hash of case and meshes, in hexadecimal.
-    pub inputs_blake3: String,
-    /// Entries of a file by another version that the catalogue does not have.
-    pub others: BTreeMap<String, Value>,
+/// The JSON type of a part of `summary.json`.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum PartKind {
+    /// A text.
+    Text,
+    /// A list of texts.
+    Texts,
+    /// An object.
+    Object,
+    /// An object or null.
+    ObjectOrNull,
+    /// A list of objects.
+    Objects,
+}
+
+/// An entry of `summary.json` that is not a number.
+#[derive(Clone, Copy, Debug)]
+pub struct SummaryPart {
+    /// Its key.
+    pub key: &'static str,
+    /// Its JSON type.
+    pub kind: PartKind,
+    /// True if every run has it.
+    pub is_always_there: bool,
+    /// A description.
+    pub about: &'static str,
+    /// The number that it stands before in the file; none at the end.
+    pub before: Option<&'static Scalar>,
+}
+
+/// Declares [`Summary`] and [`PARTS`]: the type and JSON type of each part, whether every run has it, the number that it
+/// stands before, and a description; more for readers of the code is in its doc comment.
+macro_rules! summary {
+    ($(
+        $(#[doc = $more:literal])*
+        $key:ident: $ty:ty as $kind:ident, $is_always_there:literal, before $before:expr, $about:literal;
+    )+) => {
+        /// The results of a run in one table: `summary[&MASS_LOSS_MG]` is a number of the catalogue.
+        ///
+        /// A summary is read from any version of `summary.json`: an entry that is missing is absent, and one that is not in the
+        /// catalogue is in [`Self::others`].
+        #[derive(Clone, Debug, Default, PartialEq)]
+        pub struct Summary {
+            scalars: BTreeMap<&'static str, f64>,
+            $(
+                #[doc = $about]
+                $(#[doc = $more])*
+                pub $key: $ty,
+            )+
+            /// Entries of a file by another version that the catalogue does not have.
+            pub others: BTreeMap<String, Value>,
+        }
+
+        /// All parts, in the order of the file.
+        pub static PARTS: &[SummaryPart] = &[$(SummaryPart {
+            key: stringify!($key),
+            kind: PartKind::$kind,
+            is_always_there: $is_always_there,
+            about: $about,
+            before: $before,
+        }),+];
+
+        impl Summary {
+            fn write_part<M: SerializeMap>(&self, part: &SummaryPart, map: &mut M) -> Result<(), M::Error> {
+                match part.key {
+                    $( stringify!($key) if part.is_always_there || self.$key != <$ty>::default() => {
+                        map.serialize_entry(part.key, &self.$key)
+                    } )+
+                    _ => Ok(()),
+                }
+            }
+
+            /// Creates the summary with these numbers, and the parts among `entries`.
+            fn with_parts(scalars: BTreeMap<&'static str, f64>, mut entries: Map<String, Value>) -> Self {
+                Self {
+                    scalars,
+                    $( $key: part(&mut entries, stringify!($key)), )+
+                    others: entries.into_iter().collect(),
+                }
+            }
+        }
+    };
+}
+
+summary! {
+    plausibility: Vec<PlausibilityWarning> as Objects, true, before Some(&CYCLES),
+        "Findings that make the numbers doubtful, the worst first, each with `message` and `advice`.";
+    notes: Vec<PlausibilityWarning> as Objects, true, before Some(&CYCLES),
+        "Remarks on the physics that do not make the numbers doubtful, each with `message` and its effect in `advice`.";
+    /// None unless the march summed the family of calibrated laws.
+    prediction: Option<Prediction> as Object, false, before Some(&CYCLES),
+        "Predicted results of laboratories: medians and 90 % intervals of mass and depth, and the sources of their width.";
+    error: Option<ErrorEstimate> as ObjectOrNull, true, before Some(&WEAR_OVER_CONVENTIONAL),
+        "Estimated discretisation errors by their parts; null if the case does not ask for them.";
+    wear_laws: Vec<LawWear> as Objects, true, before Some(&WEAR_OVER_CONVENTIONAL),
+        "Wear by every law for the same histories, that of the run first; only this law moves the surface.";
+    /// Empty for one activity; motions and ranges of the summary are those of the first.
+    activities: Vec<ActivitySummary> as Objects, false, before Some(&PEAK_PRESSURE_MPA),
+        "Motion, loads and wear of each activity.";
+    /// None for an insert that does not creep.
+    creep: Option<CreepSummary> as Object, false, before Some(&PEAK_PRESSURE_MPA),
+        "Creep, and its separation from wear.";
+    joint: TestedJoint as Text, true, before Some(&UPDATES),
+        "The joint whose replacement the machine tests, such as `hip`.";
+    /// Empty in a file of an older version.
+    motions: Vec<MotionColumn> as Objects, true, before Some(&UPDATES),
+        "The joints of the machine: `column` of `kinematics.csv`, `title`, and the `positive` direction.";
+    neutral_pose: Option<NeutralPose> as Object, true, before Some(&UPDATES),
+        "Pose of the settled femur in the insert frame: there AP, ML and IS read zero.";
+    warnings: Vec<String> as Texts, true, before Some(&WALL_S), "Corrections of the input, and doubts about it.";
+    version: String as Text, true, before None, "Version of condyle.";
+    inputs_blake3: String as Text, true, before None, "Hash of case and meshes.";
 }
 
 /// A number of a run beyond the limit of plausible runs.
@@ -110,27 +190,6 @@ impl Summary {
     pub fn set(&mut self, scalar: &Scalar, value: f64) {
         self.scalars.insert(scalar.key, value);
     }
-
-    fn write_part<M: SerializeMap>(&self, key: &'static str, map: &mut M) -> Result<(), M::Error> {
-        match key {
-            "plausibility" => map.serialize_entry(key, &self.plausibility),
-            "notes" => map.serialize_entry(key, &self.notes),
-            "prediction" if self.prediction.is_some() => map.serialize_entry(key, &self.prediction),
-            "error" => map.serialize_entry(key, &self.error),
-            "wear_laws" => map.serialize_entry(key, &self.wear_laws),
-            "activities" if !self.activities.is_empty() => {
-                map.serialize_entry(key, &self.activities)
-            }
-            "creep" if self.creep.is_some() => map.serialize_entry(key, &self.creep),
-            "joint" => map.serialize_entry(key, &self.joint),
-            "motions" => map.serialize_entry(key, &self.motions),
-            "neutral_pose" => map.serialize_entry(key, &self.neutral_pose),
-            "warnings" => map.serialize_entry(key, &self.warnings),
-            "version" => map.serialize_entry(key, &self.version),
-            "inputs_blake3" => map.serialize_entry(key, &self.inputs_blake3),
-            _ => Ok(()),
-        }
-    }
 }
 
 /// NaN where the run does not have the number.
@@ -147,7 +206,7 @@ impl Serialize for Summary {
         let mut map = serializer.serialize_map(None)?;
         for scalar in catalogue::scalars() {
             for part in PARTS.iter().filter(|part| part.before == Some(scalar)) {
-                self.write_part(part.key, &mut map)?;
+                self.write_part(part, &mut map)?;
             }
             match self.get(scalar) {
                 // A double holds whole numbers up to 2^53: no count is rounded.
@@ -159,7 +218,7 @@ impl Serialize for Summary {
             }
         }
         for part in PARTS.iter().filter(|part| part.before.is_none()) {
-            self.write_part(part.key, &mut map)?;
+            self.write_part(part, &mut map)?;
         }
         map.end()
     }
@@ -171,23 +230,7 @@ impl<'de> Deserialize<'de> for Summary {
         let values = catalogue::scalars();
         let values =
             values.filter_map(|scalar| Some((scalar.key, entries.remove(scalar.key)?.as_f64()?)));
-        Ok(Self {
-            scalars: values.collect(),
-            plausibility: part(&mut entries, "plausibility"),
-            notes: part(&mut entries, "notes"),
-            prediction: part(&mut entries, "prediction"),
-            error: part(&mut entries, "error"),
-            wear_laws: part(&mut entries, "wear_laws"),
-            activities: part(&mut entries, "activities"),
-            creep: part(&mut entries, "creep"),
-            joint: part(&mut entries, "joint"),
-            motions: part(&mut entries, "motions"),
-            neutral_pose: part(&mut entries, "neutral_pose"),
-            warnings: part(&mut entries, "warnings"),
-            version: part(&mut entries, "version"),
-            inputs_blake3: part(&mut entries, "inputs_blake3"),
-            others: entries.into_iter().collect(),
-        })
+        Ok(Self::with_parts(values.collect(), entries))
     }
 }
 

@@ -14,11 +14,9 @@
 //! ```
 
 mod finished;
-mod part;
 mod scalar;
 
 pub use finished::{FinishedRun, RunFacts};
-pub use part::{PARTS, Part, PartKind};
 pub use scalar::{ErrorMethod, Prominence, Scalar, Section};
 
 scalar::sections! {
