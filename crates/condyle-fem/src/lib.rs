@@ -44,7 +44,7 @@ pub use compliance::HalfSolved;
 pub use eigenstrain::YieldingElement;
 pub use elastic::{Elastic, ElasticError, Strain, Stress};
 pub use element::ElementMean;
-pub use mesh::{HEX_EDGES, HEX_FACES, HexMesh, trilinear_volume, volume_below};
+pub use mesh::{HEX_EDGES, HEX_FACES, HexMesh, numbered, trilinear_volume, volume_below};
 pub use plastic::{
     ElasticPlastic, Hardening, HardeningError, Material, MaterialPoint, PlasticPoint,
 };

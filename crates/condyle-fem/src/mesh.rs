@@ -90,6 +90,16 @@ impl HexMesh {
     }
 }
 
+/// Returns the nodes of quads, ascending, and the quads in numbers of these nodes.
+pub fn numbered(quads: &[[u32; 4]]) -> (Vec<u32>, Vec<[u32; 4]>) {
+    let mut nodes: Vec<u32> = quads.iter().flatten().copied().collect();
+    nodes.sort_unstable();
+    nodes.dedup();
+    let number = |node: u32| nodes.partition_point(|&other| other < node) as u32;
+    let faces = quads.iter().map(|quad| quad.map(number)).collect();
+    (nodes, faces)
+}
+
 fn sorted(mut quad: [u32; 4]) -> [u32; 4] {
     quad.sort_unstable();
     quad

@@ -181,6 +181,8 @@ const MAY_USE: &[(&str, &[&str])] = &[
             "condyle_results::side",
             "condyle_report::number",
             "condyle_report::results",
+            // The border of a surface.
+            "condyle_mesh::repair",
             // The joint of a body.
             "condyle::machine::mechanism",
         ],

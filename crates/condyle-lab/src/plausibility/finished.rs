@@ -1,6 +1,6 @@
 //! The run that the checks examine.
 
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::BTreeSet;
 
 use condyle::{
     evolve::{CycleRecord, March},
@@ -8,6 +8,7 @@ use condyle::{
     machine::{CycleRow, Machine},
 };
 use condyle_case::case::BuildWarning;
+use condyle_mesh::repair::border_sides;
 use condyle_results::{PlausibilityWarning, Summary};
 
 /// Returns the warning of the check called `check`, of a value beyond its limit, in their unit.
@@ -123,15 +124,8 @@ impl<'a> Finished<'a> {
 
 /// Returns the edges that belong to a single face.
 pub(crate) fn rim_of(insert: &Insert) -> Vec<[u32; 2]> {
-    let mut faces_at = BTreeMap::<[u32; 2], usize>::new();
-    for face in insert.surface_faces() {
-        for side in 0..4 {
-            let (a, b) = (face[side], face[(side + 1) % 4]);
-            *faces_at.entry([a.min(b), a.max(b)]).or_default() += 1;
-        }
-    }
-    let at_end = faces_at.into_iter().filter(|(_, faces)| *faces == 1);
-    at_end.map(|(edge, _)| edge).collect()
+    let sides = border_sides(insert.surface_faces()).into_iter();
+    sides.map(|(ends, ..)| ends).collect()
 }
 
 /// Returns a part of a whole in %; 0 of nothing.

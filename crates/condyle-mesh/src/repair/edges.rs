@@ -42,6 +42,26 @@ pub(crate) fn by_edge(uses: &[EdgeUse]) -> impl Iterator<Item = &[EdgeUse]> {
     uses.chunk_by(|one, other| one.ends == other.ends)
 }
 
+/// Returns the sides that belong to one face only, in the order of their ends: these with the lower number first, the number
+/// of the face, and that of the corner at which the side begins.
+pub fn border_sides<const N: usize>(faces: &[[u32; N]]) -> Vec<([u32; 2], usize, usize)> {
+    let sides_of = |(face, corners): (usize, &[u32; N])| {
+        let corners = *corners;
+        (0..N).map(move |side| {
+            let (from, to) = (corners[side], corners[(side + 1) % N]);
+            ([from.min(to), from.max(to)], face, side)
+        })
+    };
+    let mut sides: Vec<_> = faces.iter().enumerate().flat_map(sides_of).collect();
+    sides.sort_unstable();
+    let alike = sides.chunk_by(|one, other| one.0 == other.0);
+    alike
+        .filter(|same| same.len() == 1)
+        .flatten()
+        .copied()
+        .collect()
+}
+
 /// Connections of the triangles of a mesh, without any repair.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct EdgeReport {

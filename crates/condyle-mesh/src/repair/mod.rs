@@ -27,7 +27,7 @@ mod weld;
 pub use self::defect::RepairError;
 pub use checked::{CheckedMesh, Checks, checked_mesh};
 pub use defect::{Defect, DefectKind};
-pub use edges::{EdgeReport, edge_report};
+pub use edges::{EdgeReport, border_sides, edge_report};
 pub(crate) use edges::{EdgeUse, by_edge, edge_uses};
 pub use parts::{LeftOut, Parts, WhyLeftOut};
 pub use touching::Touching;

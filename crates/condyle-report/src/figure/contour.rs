@@ -4,6 +4,8 @@
 //! level is bounded by iso-lines through triangles and by pieces of the mesh's own border. Only
 //! those are collected and joined into loops, so a region is one path without inner seams.
 
+use condyle_mesh::repair::border_sides;
+
 use crate::results::SurfaceFields;
 
 /// A mesh prepared for contours, seen from above: (x, y) of the picture.
@@ -132,17 +134,9 @@ fn crossing(a: u32, b: u32) -> Corner {
 
 /// Returns the sides of each quad that belong to no other quad.
 fn borders(quads: &[[u32; 4]]) -> Vec<[bool; 4]> {
-    let edge = |(quad, nodes): (usize, &[u32; 4])| {
-        let nodes = *nodes;
-        (0..4).map(move |side| (crossing(nodes[side], nodes[(side + 1) % 4]), quad, side))
-    };
-    let mut edges: Vec<_> = quads.iter().enumerate().flat_map(edge).collect();
-    edges.sort_unstable();
     let mut borders = vec![[false; 4]; quads.len()];
-    for same in edges.chunk_by(|one, other| one.0 == other.0) {
-        if let &[(_, quad, side)] = same {
-            borders[quad][side] = true;
-        }
+    for (_, quad, side) in border_sides(quads) {
+        borders[quad][side] = true;
     }
     borders
 }

@@ -1,9 +1,8 @@
 //! The articulating surface with its fields.
 
-use std::collections::BTreeSet;
 use std::path::Path;
 
-use condyle_fem::{HexMesh, Vec3};
+use condyle_fem::{HexMesh, Vec3, numbered};
 use condyle_results::Directions;
 
 use crate::error::ReportError;
@@ -235,14 +234,7 @@ impl Articulating {
         if quads.is_empty() {
             return None;
         }
-        let nodes: BTreeSet<u32> = quads.iter().flatten().copied().collect();
-        let nodes = Vec::from_iter(nodes);
-        let mut place = vec![u32::MAX; mesh.nodes.len()];
-        for (new, &old) in (0..).zip(&nodes) {
-            place[old as usize] = new;
-        }
-        let renumbered = |quad: &[u32; 4]| quad.map(|node| place[node as usize]);
-        let quads = quads.iter().map(renumbered).collect();
+        let (nodes, quads) = numbered(&quads);
         Some(Self { nodes, quads })
     }
 

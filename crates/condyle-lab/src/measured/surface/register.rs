@@ -5,6 +5,7 @@ use condyle::{
     geometry::{CurvedMesh, TriangleMesh},
 };
 use condyle_case::measured::{FitWord, Scan, ScanKeys};
+use condyle_mesh::repair::border_sides;
 use condyle_report::SurfaceFields;
 use nalgebra::{Isometry3, Matrix6, Translation3, UnitQuaternion, Vector6};
 use rstar::{AABB, PointDistance, RTree, RTreeObject};
@@ -375,16 +376,12 @@ pub(crate) fn triangulated(surface: &SurfaceFields) -> TriangleMesh {
 
 /// Returns whether each node has an edge of a single triangle.
 fn borders(mesh: &TriangleMesh) -> Vec<bool> {
-    let edge = |a: u32, b: u32| (a.min(b), a.max(b));
-    let edges = |&[a, b, c]: &[u32; 3]| [edge(a, b), edge(b, c), edge(c, a)];
-    let mut all: Vec<_> = mesh.triangles.iter().flat_map(edges).collect();
-    all.sort_unstable();
     let mut is_border = vec![false; mesh.vertices.len()];
-    for same in all.chunk_by(|one, other| one == other) {
-        if let &[(a, b)] = same {
-            is_border[a as usize] = true;
-            is_border[b as usize] = true;
-        }
+    for end in border_sides(&mesh.triangles)
+        .iter()
+        .flat_map(|(ends, ..)| ends)
+    {
+        is_border[*end as usize] = true;
     }
     is_border
 }

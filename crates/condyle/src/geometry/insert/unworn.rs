@@ -1,6 +1,6 @@
 //! The state of an insert as it was made, which wear does not change.
 
-use condyle_fem::{HEX_EDGES, HexMesh};
+use condyle_fem::{HEX_EDGES, HexMesh, numbered};
 use condyle_mesh::{
     bounds,
     columns::{ColumnError, TooManyNodes},
@@ -202,16 +202,6 @@ fn marked(nodes: &[u32], count: usize) -> Vec<bool> {
         is_marked[node as usize] = true;
     }
     is_marked
-}
-
-/// Returns the nodes of quads, ascending, and the quads in numbers of these nodes.
-fn numbered(quads: &[[u32; 4]]) -> (Vec<u32>, Vec<[u32; 4]>) {
-    let mut nodes: Vec<u32> = quads.iter().flatten().copied().collect();
-    nodes.sort_unstable();
-    nodes.dedup();
-    let number = |node: u32| nodes.partition_point(|&other| other < node) as u32;
-    let faces = quads.iter().map(|quad| quad.map(number)).collect();
-    (nodes, faces)
 }
 
 /// Edge of the bins that sort the backside over the transverse plane, mm: about the edge of an element.
