@@ -32,7 +32,7 @@ settings! {
     }
 }
 
-/// A repeated motion of the machine with its own inputs.
+/// A repeated motion of the machine with its own inputs; in a case without any, `[machine]` has the inputs.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Activity {
     /// Its name, share and numbers.
@@ -43,32 +43,14 @@ pub struct Activity {
     pub rig: Option<Rig>,
 }
 
-/// The activities of a case in the order of the file; empty if `[machine]` has the inputs of the only activity.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub struct Activities {
-    all: Vec<Activity>,
+/// Returns the share of each activity in all cycles; the shares add up to 1.
+pub(super) fn shares(activities: &[Activity]) -> Vec<f64> {
+    let parts: Vec<f64> = activities.iter().map(Activity::part).collect();
+    let sum: f64 = parts.iter().sum();
+    parts.iter().map(|part| part / sum).collect()
 }
 
-impl Activities {
-    /// Returns every activity.
-    pub fn iter(&self) -> impl Iterator<Item = &Activity> {
-        self.all.iter()
-    }
-
-    /// Returns true if `[machine]` has the inputs.
-    pub fn is_empty(&self) -> bool {
-        self.all.is_empty()
-    }
-
-    /// Returns the share of each in all cycles; the shares add up to 1.
-    pub(super) fn shares(&self) -> Vec<f64> {
-        let parts: Vec<f64> = self.all.iter().map(Activity::part).collect();
-        let sum: f64 = parts.iter().sum();
-        parts.iter().map(|part| part / sum).collect()
-    }
-}
-
-impl Settings for Activities {
+impl Settings for Activity {
     fn items() -> Vec<Item> {
         let mut items = [ActivityKeys::items(), waveform_items()].concat();
         let of_rig = Rig::items_beside(&items);
@@ -76,48 +58,33 @@ impl Settings for Activities {
         items
     }
 
-    fn item(name: &'static str, about: &str) -> Item {
-        Item::Table(TableItem {
-            is_list: true,
-            ..TableItem::new(name, about, Self::items())
-        })
-    }
-
-    /// Reads the only activity of `section`.
     fn read(section: &Section<'_>, log: &mut Log<'_>) -> Option<Self> {
-        let all = vec![Activity::read(section, None, log)?];
-        Some(Self { all })
+        Self::read_on_knee(section, None, log)
     }
 
-    fn read_in(root: &Section<'_>, name: &'static str, log: &mut Log<'_>) -> Option<Self> {
+    fn read_list(root: &Section<'_>, name: &str, log: &mut Log<'_>) -> Option<Vec<Self>> {
         let sections = root.list(name, log)?;
         if sections.is_empty() {
-            return Some(Self::default());
+            return Some(Vec::new());
         }
         // Problems of the machine are reported where the machine is read.
         let mut discarded = Log::new(&log.source, log.base);
         let rig = Machine::rig_in(&root.part("machine"), &mut discarded).flatten();
         let freedoms = Machine::freedoms_in(root, log);
-        let read = |section| match &rig {
-            Some(rig) => Activity::read_on(rig, section, log),
-            None => Activity::read(section, freedoms.as_ref(), log),
-        };
-        let all: Vec<Option<Activity>> = sections.iter().map(read).collect();
-        let all: Vec<Activity> = all.into_iter().collect::<Option<_>>()?;
+        let all = root.read_list(name, log, |section, log| match &rig {
+            Some(rig) => Self::read_on(rig, section, log),
+            None => Self::read_on_knee(section, freedoms.as_ref(), log),
+        })?;
         check_names(&sections, &all, log);
         check_shares(&sections, &all, log);
-        Some(Self { all })
+        Some(all)
     }
 
     fn write(&self, out: &mut Writer) {
-        for activity in &self.all {
-            activity.write(out);
-        }
-    }
-
-    fn write_in(&self, name: &str, out: &mut Writer) {
-        for activity in &self.all {
-            out.table_of_list(name, |out| activity.write(out));
+        self.keys.write(out);
+        self.waveforms.write(out);
+        if let Some(rig) = &self.rig {
+            rig.write(out);
         }
     }
 }
@@ -129,7 +96,11 @@ impl Activity {
         self.keys.share.or(cycles).unwrap_or_default()
     }
 
-    fn read(section: &Section<'_>, freedoms: Option<&Freedoms>, log: &mut Log<'_>) -> Option<Self> {
+    fn read_on_knee(
+        section: &Section<'_>,
+        freedoms: Option<&Freedoms>,
+        log: &mut Log<'_>,
+    ) -> Option<Self> {
         let keys = ActivityKeys::read(section, log);
         let name = keys.as_ref().map_or("", |keys| keys.name.as_str());
         let waveforms = freedoms.and_then(|freedoms| {
@@ -199,14 +170,6 @@ impl Activity {
             waveforms: Waveforms::default(),
             rig: Some(rig),
         })
-    }
-
-    fn write(&self, out: &mut Writer) {
-        self.keys.write(out);
-        self.waveforms.write(out);
-        if let Some(rig) = &self.rig {
-            rig.write(out);
-        }
     }
 }
 

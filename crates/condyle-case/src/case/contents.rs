@@ -8,7 +8,7 @@ use condyle::machine::TestedJoint;
 use condyle::wear::WEAR_LAWS;
 use serde_json::json;
 
-use super::activity::Activities;
+use super::activity::Activity;
 use super::build::BuildWarning;
 use super::contact::Contact;
 use super::femur::{Femur, FemurShape};
@@ -39,7 +39,7 @@ settings! {
         /// The simulator.
         [table] machine: Machine;
         /// An activity of the simulator, with its own inputs.
-        [table "activity"] activities: Activities;
+        [table "activity"] activities: Vec<Activity>;
         /// The wear law.
         [table] wear: Wear;
         /// Creep of the polyethylene of the insert.

@@ -5,6 +5,7 @@ use condyle::evolve::Activity;
 use condyle::machine::knee::{self, KNEE};
 use condyle::machine::{Channel, Drive, JointIndex, JointKind, Machine, Waveform};
 
+use crate::case::activity::shares;
 use crate::case::contents::Case;
 use crate::case::machine as case;
 use crate::case::machine::{Freedom, Springs, StiffnessOf};
@@ -110,7 +111,7 @@ impl Case {
             let machine = build(self.machine.by_joints());
             return vec![Activity::only("gait", machine)];
         }
-        let activities = self.activities.iter().zip(self.activities.shares());
+        let activities = self.activities.iter().zip(shares(&self.activities));
         let built = activities.map(|(activity, share)| {
             let (mut machine, keys) = (self.machine.clone(), &activity.keys);
             machine.rig.clone_from(&activity.rig);
