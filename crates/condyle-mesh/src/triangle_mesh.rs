@@ -56,8 +56,13 @@ impl TriangleMesh {
     /// Returns the unit normal at each vertex: the sum over the triangles around of a x b / (a^2 b^2), with a
     /// and b the two edges that leave the vertex; exact for vertices on a sphere (Max 1999).
     pub fn vertex_normals(&self) -> Vec<Vec3> {
-        let mut normals = vec![Vec3::zeros(); self.vertices.len()];
-        for (triangle, &numbers) in self.triangles.iter().enumerate() {
+        self.normals_of(&self.triangles, self.vertices.len())
+    }
+
+    /// Returns the same sums over the triangles at each of `count` numbers; `numbers_of` has those of the corners.
+    pub(crate) fn normals_of(&self, numbers_of: &[[u32; 3]], count: usize) -> Vec<Vec3> {
+        let mut normals = vec![Vec3::zeros(); count];
+        for (triangle, numbers) in numbers_of.iter().enumerate() {
             let corners = self.corners(triangle);
             for i in 0..3 {
                 let [a, b] = [1, 2].map(|step| corners[(i + step) % 3] - corners[i]);

@@ -50,21 +50,7 @@ impl Normals {
             .flatten()
             .max()
             .map_or(0, |&last| last as usize + 1);
-        let mut estimate = vec![Vec3::zeros(); count];
-        for (triangle, fans) in fan_of.iter().enumerate() {
-            let corners = mesh.corners(triangle);
-            for i in 0..3 {
-                let [a, b] = [1, 2].map(|step| corners[(i + step) % 3] - corners[i]);
-                let weight = a.norm_squared() * b.norm_squared();
-                // A corner with an edge of no length has no direction.
-                if weight > 0.0 {
-                    estimate[fans[i] as usize] += a.cross(&b) / weight;
-                }
-            }
-        }
-        for normal in &mut estimate {
-            *normal = normal.try_normalize(0.0).unwrap_or_default();
-        }
+        let estimate = mesh.normals_of(&fan_of, count);
         let mut is_smooth = vec![true; count];
         for (fans, facet) in fan_of.iter().zip(facets) {
             for &fan in fans {
