@@ -22,8 +22,8 @@ pub struct CrossLinked {
 impl CrossLinked {
     /// About 50 kGy: the upper bound of pins that wear less than half as much as conventional ones (Abdelgaied 2013).
     pub const MODERATE: Parameter = Parameter {
-        name: NAME,
-        about: ABOUT,
+        name: "wear_over_conventional",
+        about: "Wear relative to that of conventional polyethylene by the same law.",
         default: 0.5,
         least: 1e-3,
         most: 2.0,
@@ -32,13 +32,9 @@ impl CrossLinked {
     };
     /// About 100 kGy: the middle of 0.14 to 0.27, measured on inserts of two designs in simulators (Haider 2012).
     pub const HIGH: Parameter = Parameter {
-        name: NAME,
-        about: ABOUT,
         default: 0.2,
-        least: 1e-3,
-        most: 2.0,
         source: "haider2012",
-        known: Known::Read,
+        ..Self::MODERATE
     };
 
     /// Applies the factor to a named law.
@@ -53,9 +49,6 @@ impl CrossLinked {
         }
     }
 }
-
-const NAME: &str = "wear_over_conventional";
-const ABOUT: &str = "Wear relative to that of conventional polyethylene by the same law.";
 
 impl WearLaw for CrossLinked {
     fn wear(&self, cycle: &MeanCycle<'_>) -> NodeWear {
