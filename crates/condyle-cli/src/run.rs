@@ -162,16 +162,17 @@ fn in_words(summary: &Summary, scalar: &Scalar) -> Option<String> {
 }
 
 fn rows_of_creep(creep: &CreepSummary) -> Vec<SummaryLine> {
+    let last = &creep.last;
     let parts = |penetration: f64, wear: f64, creep: f64| {
         format!("{penetration:.4} mm: {wear:.4} by wear, {creep:.4} by creep (approximate)")
     };
-    let (wear_mm, creep_mm) = (creep.wear_there_mm, creep.creep_there_mm);
-    let deepest = parts(creep.max_penetration_mm, wear_mm, creep_mm);
-    let unloaded = format!("{:.4} mm", creep.max_unloaded_depth_mm);
+    let (wear_mm, creep_mm) = (last.wear_there_mm, last.creep_there_mm);
+    let deepest = parts(last.max_penetration_mm, wear_mm, creep_mm);
+    let unloaded = format!("{:.4} mm", last.max_unloaded_depth_mm);
     let mut rows = vec![
         ("deepest penetration", deepest),
         ("  scanned without load", unloaded),
-        ("volume of creep", format!("{:.2} mm3", creep.volume_mm3)),
+        ("volume of creep", format!("{:.2} mm3", last.volume_mm3)),
     ];
     if let Some(first) = creep.first_million {
         let first = parts(first.penetration_mm, first.wear_mm, first.creep_mm);

@@ -175,18 +175,9 @@ const MILLION: f64 = 1e6;
 /// Creep of a finished run; units are in the names.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct CreepSummary {
-    /// Volume of the recession of the surface without loss of mass, mm3.
-    pub volume_mm3: f64,
-    /// Deepest creep, mm.
-    pub max_depth_mm: f64,
-    /// Deepest penetration, wear and creep together, mm.
-    pub max_penetration_mm: f64,
-    /// Wear at that place, mm.
-    pub wear_there_mm: f64,
-    /// Creep at that place, mm.
-    pub creep_there_mm: f64,
-    /// Deepest place that a scan would find once the insert has rested without load, mm.
-    pub max_unloaded_depth_mm: f64,
+    /// Creep at the end of the test.
+    #[serde(flatten)]
+    pub last: CreepRecord,
     /// The deepest penetration after a million cycles; none for a shorter test.
     pub first_million: Option<Penetration>,
     /// The line that a laboratory fits to its scans from a million cycles on; none of fewer than two scans.
@@ -216,14 +207,8 @@ pub struct ScanLine {
 impl CreepSummary {
     /// Returns the creep of a finished march, if its insert creeps.
     pub fn of(state: &MarchState) -> Option<Self> {
-        let last = state.updates.last()?.creep?;
         Some(Self {
-            volume_mm3: last.volume_mm3,
-            max_depth_mm: last.max_depth_mm,
-            max_penetration_mm: last.max_penetration_mm,
-            wear_there_mm: last.wear_there_mm,
-            creep_there_mm: last.creep_there_mm,
-            max_unloaded_depth_mm: last.max_unloaded_mm,
+            last: state.updates.last()?.creep?,
             first_million: Penetration::at(&state.updates, MILLION),
             line_from_a_million: ScanLine::through(&state.updates, MILLION),
         })
@@ -255,7 +240,8 @@ impl Penetration {
 impl ScanLine {
     /// Returns the least-squares line through the scans from a number of cycles on.
     fn through(updates: &[UpdateRecord], from: f64) -> Option<Self> {
-        let scan = |update: &UpdateRecord| Some((update.cycles, update.creep?.max_unloaded_mm));
+        let scan =
+            |update: &UpdateRecord| Some((update.cycles, update.creep?.max_unloaded_depth_mm));
         let scans = updates.iter().filter(|update| update.cycles >= from);
         let scans: Vec<(f64, f64)> = scans.filter_map(scan).collect();
         let mean = |values: &dyn Fn(&(f64, f64)) -> f64| {
@@ -355,7 +341,7 @@ mod tests {
             max_penetration_mm: penetration_mm,
             wear_there_mm: wear_mm,
             creep_there_mm: penetration_mm - wear_mm,
-            max_unloaded_mm: unloaded_mm,
+            max_unloaded_depth_mm: unloaded_mm,
         };
         UpdateRecord {
             cycles,

@@ -68,7 +68,7 @@ described! {
     /// Creep at the deepest penetration.
     creep_at_max_penetration_mm = Value::OfCreep(|creep| creep.creep_there_mm);
     /// Deepest place of a scan after the insert has rested without load.
-    max_unloaded_depth_mm = Value::OfCreep(|creep| creep.max_unloaded_mm);
+    max_unloaded_depth_mm = Value::OfCreep(|creep| creep.max_unloaded_depth_mm);
 }
 
 /// `wear.csv`: a row an update.

@@ -368,7 +368,7 @@ fn creep_takes_the_surface_down_and_no_mass() {
     assert!((crept.volume_loss_mesh_mm3 / crept.volume_loss_mm3 - 1.0).abs() < 0.05);
     let there = creep.wear_there_mm + creep.creep_there_mm;
     assert!((there / creep.max_penetration_mm - 1.0).abs() < 1e-12);
-    assert!(creep.max_unloaded_mm < creep.max_penetration_mm);
+    assert!(creep.max_unloaded_depth_mm < creep.max_penetration_mm);
 }
 
 #[test]

@@ -151,7 +151,7 @@ pub struct CreepRecord {
     /// Creep at that place, mm.
     pub creep_there_mm: f64,
     /// Maximum depth in a scan after long rest without load, mm: wear and the permanent part of creep.
-    pub max_unloaded_mm: f64,
+    pub max_unloaded_depth_mm: f64,
 }
 
 impl CreepRecord {
@@ -169,7 +169,7 @@ impl CreepRecord {
             max_penetration_mm: deepest.map_or(0.0, penetration),
             wear_there_mm: at(wear_mm),
             creep_there_mm: at(creep_mm),
-            max_unloaded_mm: nodes().map(unloaded).fold(0.0, f64::max),
+            max_unloaded_depth_mm: nodes().map(unloaded).fold(0.0, f64::max),
         }
     }
 }
