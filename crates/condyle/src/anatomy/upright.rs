@@ -55,10 +55,8 @@ impl Upright {
         let recognition = Recognition::of_insert(&turned(mesh, turn.as_ref()))?;
         Some(Self {
             turn,
-            recognition,
-            slope: None,
-            is_flexion_open: false,
             right,
+            ..Self::square(recognition)
         })
     }
 
@@ -177,10 +175,9 @@ fn by_mirror(
     let recognition = recognise(&turned(mesh, turn.as_ref()))?;
     Some(Upright {
         turn,
-        recognition,
-        slope: None,
         is_flexion_open,
         right,
+        ..Upright::square(recognition)
     })
 }
 

@@ -68,11 +68,7 @@ impl Counterface {
     pub(crate) fn prepared_spread_mm2(&self) -> f64 {
         match self {
             Self::Mesh(field) => field.spread_mm2,
-            Self::Generic(_)
-            | Self::Placed(_)
-            | Self::Sphere(_)
-            | Self::Cylinder(_)
-            | Self::Plane => 0.0,
+            _ => 0.0,
         }
     }
 
@@ -95,11 +91,7 @@ impl Counterface {
     pub fn deviation_mm(&self, point: &Vec3) -> f64 {
         match self {
             Self::Mesh(field) => field.deviation_mm(point),
-            Self::Generic(_)
-            | Self::Placed(_)
-            | Self::Sphere(_)
-            | Self::Cylinder(_)
-            | Self::Plane => 0.0,
+            _ => 0.0,
         }
     }
 
