@@ -177,9 +177,7 @@ fn add_surface(surface: &SurfaceComparison, lines: &mut Lines) {
         "volume over the area scanned: {:.2} mm3 scanned, {:.2} mm3 predicted",
         surface.scanned_volume_mm3, surface.predicted_volume_mm3
     ));
-    for note in &surface.notes {
-        lines.line(format!("note: {note}"));
-    }
+    lines.notes(&surface.notes);
     lines.line("");
 }
 

@@ -124,9 +124,7 @@ pub fn diff(arguments: &Diff) -> Done {
     let mut lines = Lines::default();
     let [first, second] = &differences.runs;
     lines.line(format!("A  {first}\nB  {second}"));
-    for note in &differences.notes {
-        lines.line(format!("note: {note}"));
-    }
+    lines.notes(&differences.notes);
     add(
         "settings that differ, A and B",
         differences.settings.iter().map(setting_row),
