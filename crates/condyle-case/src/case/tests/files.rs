@@ -281,7 +281,7 @@ fn verify_a_strain_table_is_read_back_from_its_file_and_its_case() {
 fn verify_a_cup_is_as_much_softer_than_a_layer_under_the_softening_law_as_under_the_linear_one() {
     let stiffness = |law: &str, insert: &str| {
         let text = format!("[insert]\n{insert}\n[contact.foundation]\nlaw = \"{law}\"\n");
-        let machine = "[femur]\nshape = \"sphere\"\n[machine]\npreset = \"iso-14242-1-like\"\n";
+        let machine = "[femur]\nshape = \"sphere\"\nradius_mm = 14.0\n[machine]\npreset = \"iso-14242-1-like\"\n";
         let case = Case::parse(&(text + machine), "case.toml", Path::new("")).unwrap();
         let insert = case.build(1).unwrap().test.insert;
         case.foundation(&insert).pressure.pressure(1e-6, 8.0).0

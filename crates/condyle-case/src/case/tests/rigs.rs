@@ -318,7 +318,7 @@ fn activities_of_a_machine_by_joints_have_their_own_drives() {
     let case = Case::parse(&text, "case.toml", Path::new("")).unwrap();
     let again = Case::parse(&case.to_toml(), "case.toml", Path::new("")).unwrap();
     assert_eq!(case, again);
-    let activities = case.built_activities(condyle::Vec3::zeros());
+    let activities = case.built_activities(Vec3::zeros());
     let load_n = |number: usize| match &activities[number]
         .machine
         .joint(condyle::machine::JointIndex::ALL[0])
@@ -402,7 +402,7 @@ fn a_joint_of_a_case_replaces_that_of_its_preset() {
 /// Returns the machine of a case around a bearing that is lowest at y = 1 mm.
 fn machine_of(text: &str) -> condyle::machine::Machine {
     let case = Case::parse(text, "case.toml", Path::new("")).unwrap();
-    let mut activities = case.built_activities(condyle::Vec3::new(0.5, 1.0, 23.0));
+    let mut activities = case.built_activities(Vec3::new(0.5, 1.0, 23.0));
     activities.remove(0).machine
 }
 
