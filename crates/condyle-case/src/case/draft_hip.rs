@@ -30,14 +30,9 @@ impl Drafted {
     /// # Errors
     /// A file that cannot be read, a head without a ball, a cup without a socket, and a cup that is smaller than its head.
     pub fn hip(preset: Preset, [head, cup]: [&Path; 2], folder: &Path) -> Result<Self, DraftError> {
-        let inclination = match preset.machine().keys.tests {
-            TestedJoint::Hip => "",
-            // The discs of the presets lie across the load.
-            TestedJoint::Disc => "inclination_deg = 0.0\n",
-            _ => {
-                let message = "--head and --cup are a ball and its socket, of a hip or a disc; the machine tests another joint";
-                return Err(BuildError::mesh(head, &["file"], message).into());
-            }
+        let Some(inclination) = inclination(preset) else {
+            let message = "--head and --cup are a ball and its socket, of a hip or a disc; the machine tests another joint";
+            return Err(BuildError::mesh(head, &["file"], message).into());
         };
         let ball = Round::from(head, Roundness::Convex)?;
         let (ball, socket) = match (ball, Round::from(cup, Roundness::Concave)?) {
@@ -93,6 +88,16 @@ impl Drafted {
         );
         let text = Case::parse(&keys, "draft", folder)?.as_draft_in(folder);
         Ok(Self::with_remarks(text, of_head, of_cup))
+    }
+}
+
+/// Returns the line of the inclination of a cup that differs from the usual one; none if the machine tests no ball and socket.
+fn inclination(preset: Preset) -> Option<&'static str> {
+    match preset.machine().keys.tests {
+        TestedJoint::Hip => Some(""),
+        // The discs of the presets lie across the load.
+        TestedJoint::Disc => Some("inclination_deg = 0.0\n"),
+        _ => None,
     }
 }
 
