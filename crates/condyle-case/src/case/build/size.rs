@@ -4,6 +4,7 @@ use std::path::Path;
 
 use condyle::Vec3;
 use condyle::geometry::TriangleMesh;
+use condyle_mesh::bounds;
 
 use super::error::BuildError;
 use crate::case::frame::LengthUnit;
@@ -34,11 +35,7 @@ pub(super) fn check_points(
     points: &[Vec3],
     unit: LengthUnit,
 ) -> Result<(), BuildError> {
-    // A box that the first point replaces.
-    let none = (Vec3::repeat(f64::INFINITY), Vec3::repeat(f64::NEG_INFINITY));
-    let (low, high) = points
-        .iter()
-        .fold(none, |(low, high), point| (low.inf(point), high.sup(point)));
+    let (low, high) = bounds(points);
     let size_mm = (high - low).max();
     // A body without points has no size; other checks reject it.
     if points.is_empty() || POSSIBLE_MM.contains(&size_mm) {
