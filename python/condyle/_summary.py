@@ -11,7 +11,7 @@ class Summary:
     """The entries of ``summary.json`` as attributes; a run does not have all of them."""
 
     cycles: float
-    """Gait cycles of the test."""
+    """Cycles of the test."""
     mass_loss_mg: float
     """Worn mass. In mg."""
     volume_loss_mm3: float
