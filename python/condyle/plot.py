@@ -28,6 +28,15 @@ _MOTIONS = {
 }
 
 
+def _of_joint(result: Result) -> dict[str, str]:
+    """The labels of the motions and loads of a joint other than the knee."""
+    labels = {}
+    for motion in result.motions:
+        unit = motion["column"].rpartition("_")[2]
+        labels[motion["column"]] = f"{motion['positive'] or motion['title']} +, {unit}"
+    return labels | {name: _MOTIONS[name] for name in ("axial_force_n", "peak_pressure_mpa")}
+
+
 class Plots:
     """Pictures of a result. Each is drawn into the given or into new axes, which are returned."""
 
@@ -60,11 +69,12 @@ class Plots:
     def kinematics(self) -> Figure:
         """Motions and loads in the first and the last cycle."""
         pyplot = extra("matplotlib.pyplot", "plot")
-        figure, grid = pyplot.subplots(2, 3, figsize=(11, 5.5), sharex=True, layout="constrained")
         result = self._result
         table = result.kinematics
-        labels = _MOTIONS if result.joint == "knee" else {motion["column"]: motion["title"] for motion in result.motions}
+        labels = _MOTIONS if result.joint == "knee" else _of_joint(result)
         shown = {name: label for name, label in labels.items() if name in table}
+        lines = -(-len(shown) // 3)
+        figure, grid = pyplot.subplots(lines, 3, figsize=(11, 2.75 * lines), sharex=True, squeeze=False, layout="constrained")
         for axes, (name, label) in zip(grid.flat, shown.items()):
             for cycle, style in _cycles(table["cycles"]):
                 rows = rows_of_cycle(table["cycles"], cycle)

@@ -7,6 +7,8 @@ import pytest
 
 import condyle
 
+from conftest import ROOT
+
 matplotlib.use("Agg")
 
 
@@ -29,6 +31,16 @@ def test_maps_take_axes_and_an_update(result: condyle.Result) -> None:
     _, axes = plt.subplots()
     assert result.plot.wear_map(update=1, ax=axes) is axes
     assert axes.get_title() == "after 1.66667 million cycles"
+
+
+def test_other_joints_have_their_own_labels() -> None:
+    changes = {"march.updates": 1, "insert.edge_mm": 2.5, "time.increments": 50, "accuracy.estimate": False}
+    hip = condyle.run(condyle.Case.read(ROOT / "cases" / "hip-iso.toml").replace(changes))
+    assert hip.plot.wear_map().get_xlabel() == "z, mm"
+    titles = [axes.get_title() for axes in hip.plot.kinematics().axes]
+    assert "abduction +, deg" in titles and "peak pressure, MPa" in titles and len(titles) == 8
+    with pytest.raises(ValueError, match="'midle'"):
+        hip.femur_points_at(0, "midle")
 
 
 def test_the_curve_ends_at_the_mass(result: condyle.Result) -> None:

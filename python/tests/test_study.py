@@ -429,6 +429,8 @@ def test_results_that_do_not_fit_a_search_are_errors(study: condyle.Study, small
         ]:
             with pytest.raises(condyle.BadInput, match=expected):
                 search.tell([wrong], [result])
+        with pytest.raises(condyle.BadInput, match="not that of the case of its design"):
+            search.tell([design], [condyle.run(small.replace({"insert.thickness_mm": 8.25}), fields=False)])
         assert search.tested == 0 and search.pending == [design]
         search.tell([design], [condyle.NotSolved("no equilibrium\nat 3 %")])
         assert search.tested == 1 and search.pending == []

@@ -257,6 +257,21 @@ mod tests {
     }
 
     #[test]
+    fn another_curve_keeps_the_scale_of_a_shipped_one() {
+        let paper = "{ waveform = \"paper-like\" }";
+        let set = |text: &str| {
+            let case = Case::parse(text, "case", Path::new("")).expect("a case");
+            let (_, set) = replaced(&case, &["machine.axial_force"], paper);
+            set[0].to_string()
+        };
+        let scaled = "{ waveform = \"paper-like\", scale = 0.5, offset = 0.0 }";
+        let kept = set("[machine.axial_force]\nscale = 0.5\n");
+        assert_eq!(kept, format!("machine.axial_force={scaled}"));
+        let in_kn = "[machine.axial_force]\nscale = 1e3\nknots_n = [[0.0, 1.0], [50.0, 2.0]]\n";
+        assert_eq!(set(in_kn), format!("machine.axial_force={paper}"));
+    }
+
+    #[test]
     fn the_table_shows_changes_and_lists_those_without_effect_or_result() {
         let all = Outputs::default();
         let value = |output: &'static Scalar| (output.key, all.value(&values(80.0), output));

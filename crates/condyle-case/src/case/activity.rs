@@ -52,7 +52,7 @@ pub(super) fn shares(activities: &[Activity]) -> Vec<f64> {
 
 impl Settings for Activity {
     fn items() -> Vec<Item> {
-        let mut items = [ActivityKeys::items(), waveform_items()].concat();
+        let mut items = [ActivityKeys::items(), waveform_items(false)].concat();
         let of_rig = Rig::items_beside(&items);
         items.extend(of_rig);
         items

@@ -11,9 +11,9 @@ settings! {
     Ligament [check] {
         /// Its name in messages.
         name: String;
-        /// Attachment to the bearing, [x, y, z] in the insert frame; z points to the right on both sides.
+        /// Attachment to the bearing, [x, y, z] in the insert frame; z points to the right on both sides of a knee.
         on_bearing_mm: [f64; 3], in within(-300.0, 300.0);
-        /// Attachment to the counterface, [x, y, z] in its own frame.
+        /// Attachment to the counterface, [x, y, z] in its own frame, with the same z.
         on_counterface_mm: [f64; 3], in within(-300.0, 300.0);
         /// Tension per strain beyond the toe region.
         stiffness_n: f64, in within(0.0, 1e6);

@@ -436,7 +436,7 @@ impl Settings for Machine {
             "The pair of springs that represents the ligaments.",
         ));
         items.push(Freedoms::item());
-        items.extend(waveform_items());
+        items.extend(waveform_items(true));
         let of_rig = Rig::items_beside(&items);
         items.extend(of_rig);
         items

@@ -270,7 +270,7 @@ impl Settings for RigJoint {
     fn items() -> Vec<Item> {
         let mut items = RigJointKeys::items();
         for channels in [[&FORCE, &TORQUE], [&TRANSLATION, &ROTATION]] {
-            items.push(Item::Table(waveform::table(&channels)));
+            items.push(Item::Table(waveform::table(&channels, false)));
         }
         items
     }

@@ -124,19 +124,19 @@ settings! {
     }
 }
 
-/// The waveform of a knee simulator whose case names none.
+/// The waveform of a knee simulator without activities whose case names none.
 const DEFAULT_WAVEFORM: &str = "iso-like";
 
-/// Describes the table of each waveform.
-pub(super) fn waveform_items() -> Vec<Item> {
+/// Describes the table of each waveform; with `has_default`, a table may leave the points to the default waveform.
+pub(super) fn waveform_items(has_default: bool) -> Vec<Item> {
     let channels = KNEE.channels.iter();
     channels
-        .map(|&channel| Item::Table(table(&[channel])))
+        .map(|&channel| Item::Table(table(&[channel], has_default)))
         .collect()
 }
 
 /// Describes the table of a waveform that is one of `channels`, which share a name.
-pub(super) fn table(channels: &[&'static Channel]) -> TableItem {
+pub(super) fn table(channels: &[&'static Channel], has_default: bool) -> TableItem {
     let first = channels[0];
     let mut items = WaveformSource::items();
     for item in &mut items {
@@ -153,8 +153,7 @@ pub(super) fn table(channels: &[&'static Channel]) -> TableItem {
     let mut ways = vec!["waveform", "file"];
     ways.extend(knots.iter().map(|key| key.name));
     items.extend(knots.into_iter().map(Item::Key));
-    let is_of_knee = KNEE.channel(first.name).is_some();
-    items.push(if is_of_knee {
+    items.push(if has_default {
         Item::AtMostOne(ways)
     } else {
         Item::OneOf(ways)
@@ -296,7 +295,10 @@ fn samples(
             interpolation: Interpolation::HalfCosine,
         });
     }
-    if KNEE.channel(channel.name).is_none() && keys.waveform.is_none() {
+    // Activities do not inherit waveforms, and machine files have none.
+    let has_default =
+        KNEE.channel(channel.name).is_some() && !section.path.starts_with("activity.");
+    if !has_default && keys.waveform.is_none() {
         let message = format!("{} needs one of `{}`", section.name(), ways.join("`, `"));
         return log.reject(section.span(), Fault::new(message, ""));
     }

@@ -35,7 +35,7 @@ fn property(item: &Item) -> Option<(String, Value)> {
         Item::Key(key) => of_key(key),
         Item::Choice(choices) => of_key(&choices.by),
         Item::Table(table) if table.is_list => {
-            json!({ "type": "array", "minItems": 1, "items": table_schema(&table.about, &table.items) })
+            json!({ "type": "array", "items": table_schema(&table.about, &table.items) })
         }
         Item::Table(table) => table_schema(&table.about, &table.items),
         Item::OneOf(_) | Item::AtMostOne(_) | Item::Needs(..) => return None,

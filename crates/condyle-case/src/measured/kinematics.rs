@@ -96,7 +96,9 @@ fn curves(text: &str, file: &str) -> Result<Vec<MeasuredCurve>, Vec<Placed>> {
             let all = known.join(", ");
             let advice = match nearest(name, known.into_iter()) {
                 Some(near) => format!("did you mean `{near}`? It can be {all}"),
-                None => format!("remove it, or name it one of {all}"),
+                None => format!(
+                    "remove it, or name it one of {all}, or as another joint's with its unit"
+                ),
             };
             let message = format!("a run has no column `{name}` to compare with");
             problems.push((columns.name_span(index), Fault::new(message, advice)));

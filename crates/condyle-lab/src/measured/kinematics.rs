@@ -101,8 +101,8 @@ pub(crate) fn compare(
 fn column_of<'a>(run: &'a Table, column: &str) -> Result<&'a [f64], CompareError> {
     run.column(column).ok_or_else(|| {
         CompareError::NotComparable(format!(
-            "the run has no column `{column}` to compare with; name it as one of its columns, or remove it: {}",
-            run.names().join(", ")
+            "the run has no column `{column}` to compare with; remove it, or name it one of {}",
+            run.names()[2..].join(", ")
         ))
     })
 }

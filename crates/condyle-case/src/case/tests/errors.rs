@@ -560,6 +560,25 @@ fn waveform_given_twice_is_refused_and_the_default_is_scaled() {
     });
     assert_eq!(waveforms[0], waveforms[1]);
     assert_ne!(waveforms[0], parsed("").expect("a case").machine);
+    // An activity takes nothing from elsewhere.
+    let shown = refusal(
+        "[[activity]]\nname = \"walking\"\nshare = 1.0\n[activity.axial_force]\nscale = 2.0\n[activity.flexion]\n\
+         waveform = \"iso-like\"\n[activity.ap_force]\nwaveform = \"none\"\n[activity.ie_torque]\nwaveform = \"none\"\n",
+    );
+    assert_shows(&shown, &["needs one of `waveform`, `file`, `knots_n`"]);
+    assert_eq!(
+        parsed("activity = []\n").expect("a case").machine,
+        parsed("").expect("a case").machine
+    );
+}
+
+#[test]
+fn points_of_a_cycle_from_0_to_1_are_refused() {
+    let shown = refusal("[machine.flexion]\nknots_deg = [[0.0, 0.0], [0.5, 58.0], [1.0, 0.0]]\n");
+    assert_shows(
+        &shown,
+        &["the points end at 1 % of the cycle", "[case.toml:2:39]"],
+    );
 }
 
 #[test]

@@ -33,14 +33,14 @@ const ACTIVITIES: &str = "
 One table for each activity, with every waveform that its freedoms need, as `[activity.axial_force]`, `[activity.flexion]` and so on, with the keys of the waveforms above; `[machine]` then has none ([Activities and creep](activities-and-creep.md)). On a machine by joints, an activity has a [machine file](machines.md#activities) instead.
 ";
 
-/// The page, for a case that may choose from `wear_laws`.
+/// Returns the page, for a case that may choose from `wear_laws`.
 pub(super) fn schema_markdown(wear_laws: WearLaws) -> String {
     let items = Case::items_with(wear_laws);
     let sections = sections("", &items, wear_laws);
     format!("{OPENING}{}{sections}", rows(&keys(&items)))
 }
 
-/// The sections on the tables among `items`, `above` being the path of the table around them.
+/// Returns the sections on the tables among `items`, `above` being the path of the table around them.
 fn sections(above: &str, items: &[Item], wear_laws: WearLaws) -> String {
     let inside = items.iter().flat_map(|item| match item {
         Item::Choice(choices) => choices
@@ -83,7 +83,7 @@ fn section(path: &str, table: &TableItem, wear_laws: WearLaws) -> String {
     text + &note(path, wear_laws) + &sections(path, &table.items, wear_laws)
 }
 
-/// What follows the keys of a table.
+/// Returns the text after the keys of a table.
 fn note(path: &str, wear_laws: WearLaws) -> String {
     match path {
         "activity" => ACTIVITIES.to_owned(),
@@ -95,7 +95,7 @@ fn note(path: &str, wear_laws: WearLaws) -> String {
     }
 }
 
-/// The section on a table that is described together with others, at the first of them; empty at the others.
+/// Returns the section on a table that is described together with others, at the first of them; empty at the others.
 fn shared_section(path: &str) -> Option<String> {
     let waveform = |name| {
         KNEE.channels

@@ -91,6 +91,21 @@ fn verify_rotations_of_the_presets_have_the_signs_of_their_names() {
         let moved = Vec3::from(joint.keys.axis).cross(&from);
         assert_eq!(moved, towards, "{} {name}", preset.word());
     }
+    // In stance a hip is adducted, and an ankle dorsiflexed before the toe lifts.
+    for (preset, name, knot) in [
+        (Preset::Iso142421Like, "abduction", "[21, -7]"),
+        (Preset::Iso142424Like, "abduction", "[21, -7]"),
+        (Preset::Iso22622Like, "flexion", "[45, 15]"),
+        (Preset::Iso22622DisplacementLike, "flexion", "[45, 15]"),
+    ] {
+        let joints = preset.text().split("[[joints]]");
+        let joint = joints.filter(|joint| joint.contains(&format!("name = \"{name}\"")));
+        assert!(
+            joint.last().expect(name).contains(knot),
+            "{} {name}",
+            preset.word()
+        );
+    }
 }
 
 #[test]
