@@ -596,10 +596,10 @@ fn what_is_wrong_with_a_study_is_said_with_its_place() {
             vec!["-0.01"],
         ),
         (
-            vary("machine.ap_force.scale", "low = 0.9\nhigh = 1.1"),
+            vary("machine.ap_motion.scale", "low = 0.9\nhigh = 1.1"),
             vec![
-                "rejects `machine.ap_force.scale`: ",
-                "write in the case what is missing",
+                "rejects `machine.ap_motion.scale`: ",
+                "remove [machine.ap_motion]",
             ],
         ),
         (
