@@ -149,7 +149,7 @@ fn waveforms() -> String {
     let channels: String = KNEE.channels.iter().map(row).collect();
     format!(
         "\n## Waveforms: {}\n\n\
-        One of `waveform`, `file` or the points themselves; `iso-like` if none of them is given. A freedom takes the waveform that its drive \
+        One of `waveform`, `file` or the points themselves; `iso-like` if none of them is given, except in an activity. A freedom takes the waveform that its drive \
         needs; one for another drive is an error.\n\n{keys}\n\
         | table | points | unit | values may be | shipped waveforms | meaning |\n\
         | --- | --- | --- | --- | --- | --- |\n{channels}",
