@@ -352,6 +352,16 @@ fn a_pin_as_wide_as_the_coarsest_mesh_has_no_error_by_its_mesh() {
 }
 
 #[test]
+fn a_peak_that_a_coarse_mesh_does_not_resolve_is_doubtful() {
+    let bench = Bench::with_case(
+        "[femur]\nshape = \"cylinder\"\nradius_mm = 24.0\n[insert]\nshape = \"trough\"\nradius_mm = 25.0\nedge_mm = 4.0\n\
+         [machine]\npreset = \"iso-22622-like\"\n[march]\nupdates = 2\n",
+    );
+    bench.run_into("out");
+    assert!(checks(&bench, "out").contains(&"error_of_peak".to_owned()));
+}
+
+#[test]
 fn pressure_at_the_rim_after_a_single_update_is_told() {
     let bench = Bench::with_case(
         "[machine]\npreset = \"iso-18192-1-cervical-like\"\n[femur]\nshape = \"sphere\"\nradius_mm = 9.1002\n[insert]\n\
