@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Literal
 
+from .errors import CondyleError
+
 if TYPE_CHECKING:
     import numpy as np
     from numpy.typing import NDArray
@@ -24,10 +26,16 @@ def femur_points_at(result: Result, increment: int, cycle: Literal["first", "las
     """Vertices of the femur at the end of an increment, from 0, of one of the two cycles, mm: shape (vertices, 3).
 
     The vertices of the result, in the neutral pose, are converted to the femoral frame and then moved to R p + t.
+
+    Raises:
+        ValueError: another word for the cycle.
+        CondyleError: a joint other than the knee, whose runs have no neutral pose.
     """
     import numpy as np
 
     neutral = result.neutral_pose
+    if neutral is None:
+        raise CondyleError(f"a run of a {result.joint} has no neutral pose; femur_pose has the poses of the cycles")
     origin, rotation = np.array(neutral["femoral_origin_mm"]), np.array(neutral["rotation"])
     in_femoral_frame = (result.femur_points_mm - origin) @ rotation
     table = result.femur_pose

@@ -32,7 +32,7 @@ WRONG = [
     ('[machine.freedoms.is]\ndrive = "prescribed"', "machine.freedoms.is.drive"),
     ('[machine.freedoms.yaw]\ndrive = "locked"', "machine.freedoms"),
     ('[machine.flexion]\nwaveform = "iso"', "machine.flexion.waveform"),
-    ("[machine.flexion]\nscale = 2.0", "machine.flexion"),
+    ('[[activity]]\nname = "a"\nshare = 1.0\n[activity.flexion]\nscale = 2.0', "activity.0.flexion"),
     ('[machine.flexion]\nwaveform = "iso-like"\nknots_deg = [[0.0, 1.0]]', "machine.flexion"),
     ('[machine.flexion]\nwaveform = "iso-like"\ncolumn = "a"', "machine.flexion"),
     ("[march]\ncycles = 0", "march.cycles"),
@@ -53,6 +53,7 @@ WRONG = [
 
 # Unusual cases that are valid.
 RIGHT = [
+    "[machine.flexion]\nscale = 0.5",
     "",
     "[contact]\nfriction = 0",
     "[insert]\nlayers = 2.0",
