@@ -91,10 +91,7 @@ class Search:
         """
         if len(designs) != len(results):
             raise ValueError(f"there are {len(designs)} designs and {len(results)} results; tell one result for each design")
-        for design, result in zip(designs, results):
-            if isinstance(result, Result) and result.inputs_blake3 != self.case(design).inputs_blake3:
-                raise BadInput(f"the result is not that of the case of its design, {dict(design)}")
-        found = [(self._values(design), self._found(result)) for design, result in zip(designs, results)]
+        found = [(self._values(design), self._found(design, result)) for design, result in zip(designs, results)]
         self._held.tell(self._study._raw, found)
         told = [dict(design) for design in designs]
         self._pending = [design for design in self._pending if design not in told]
@@ -119,12 +116,14 @@ class Search:
             raise BadInput(f"a design has the inputs {', '.join(keys)}, and this one has {', '.join(design) or 'none'}")
         return [float(design[key]) for key in keys]
 
-    def _found(self, result: Result | Mapping[str, float] | str | Exception) -> tuple[list[float], str] | str:
+    def _found(self, design: Design, result: Result | Mapping[str, float] | str | Exception) -> tuple[list[float], str] | str:
         if isinstance(result, (str, Exception)):
             return str(result).partition("\n")[0].strip() or type(result).__name__
         raw, doubts = self._study._raw, ""
         known = raw.results
         if isinstance(result, Result):
+            if result.inputs_blake3 != self.case(design).inputs_blake3:
+                raise BadInput(f"the result is not that of the case of its design, {dict(design)}")
             doubts = " ".join(doubt["check"] for doubt in result.plausibility)
             result = {key: result.summary[key] for key in known if result.summary.get(key) is not None}
         for key in result:

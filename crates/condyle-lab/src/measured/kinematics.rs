@@ -99,12 +99,23 @@ pub(crate) fn compare(
 }
 
 fn column_of<'a>(run: &'a Table, column: &str) -> Result<&'a [f64], CompareError> {
-    run.column(column).ok_or_else(|| {
-        CompareError::NotComparable(format!(
-            "the run has no column `{column}` to compare with; remove it, or name it one of {}",
-            run.names()[2..].join(", ")
-        ))
-    })
+    run.column(column)
+        .ok_or_else(|| CompareError::no_column(column))
+}
+
+/// Returns the error for a measured column that the run does not have.
+fn unknown(column: &str, run: &Table) -> CompareError {
+    let is_motion = |name: &&String| !["cycles", "percent"].contains(&name.as_str());
+    let names: Vec<&str> = run
+        .names()
+        .iter()
+        .filter(is_motion)
+        .map(String::as_str)
+        .collect();
+    CompareError::NotComparable(format!(
+        "the run has no column `{column}` to compare with; remove it, or name it one of {}",
+        names.join(", ")
+    ))
 }
 
 fn column(
@@ -113,7 +124,8 @@ fn column(
     run: &Table,
     rows: &[usize],
 ) -> Result<ColumnComparison, CompareError> {
-    let (percents, values) = (column_of(run, "percent")?, column_of(run, &curve.column)?);
+    let (percents, values) = (column_of(run, "percent")?, run.column(&curve.column));
+    let values = values.ok_or_else(|| unknown(&curve.column, run))?;
     let gap = measured.keys.largest_gap_percent;
     let point = |&row: &usize| {
         let measured = value_at(&curve.samples, percents[row], gap)?;
