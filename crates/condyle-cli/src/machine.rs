@@ -37,7 +37,7 @@ fn check(file: &Path) -> Done {
     row("tests", format!("{}{results}", rig.keys.tests.name()));
     row("frequency", format!("{} Hz", rig.keys.frequency_hz));
     for joint in &rig.joints {
-        row(&joint.keys.name, described(joint));
+        row(&joint.keys.name, described(joint, rig.keys.scale_of(joint)));
     }
     for spring in &rig.springs {
         let (along, about) = (&spring.along, &spring.about);
@@ -58,14 +58,14 @@ fn check(file: &Path) -> Done {
     output::print(lines.text())
 }
 
-/// Describes kind, axis and drive of a joint, with the range of its waveform.
-fn described(joint: &RigJoint) -> String {
+/// Describes kind, axis and drive of a joint, with the range of its waveform times `scale`.
+fn described(joint: &RigJoint, scale: f64) -> String {
     let keys = &joint.keys;
     let [x, y, z] = keys.axis;
     let (kind, drive) = (format!("{:?}", keys.kind).to_lowercase(), keys.drive.word());
     let range = match (&joint.waveform, keys.turns_per_cycle) {
         (Some(waveform), _) => {
-            let values = || waveform.knots().iter().map(|knot| knot.value);
+            let values = || waveform.knots().iter().map(|knot| knot.value * scale);
             let least = values().fold(f64::INFINITY, f64::min);
             let most = values().fold(f64::NEG_INFINITY, f64::max);
             format!(" {least} to {most} {}", joint.unit())

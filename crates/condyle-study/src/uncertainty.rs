@@ -2,7 +2,7 @@
 
 use std::{collections::BTreeMap, ops::ControlFlow, path::Path};
 
-use condyle::{evolve::March, geometry::TriangleMesh, machine::TestedJoint, parameter::unit_of};
+use condyle::{evolve::March, geometry::TriangleMesh, parameter::unit_of};
 use condyle_case::{
     cache::Cache,
     case::Case,
@@ -30,15 +30,16 @@ use crate::{
 /// Largest deviation from the mean, in standard deviations: parts and set-ups beyond it are rejected.
 const MAX_DEVIATIONS: f64 = 3.0;
 
-/// All inputs that scatter. Columns: the name; the joints that have it, or `any`; the keys, which move together and of which a case may have some; one
-/// standard deviation as a part of the value or as a step in the unit of the key; its source. The source of a
-/// deviation that was not measured states the assumption.
+/// All inputs that scatter. Columns: the name; the cases that have it: the joint, `any`, `by-joints` for machines by joints, or
+/// `activities` for knee simulators with several; the keys, which move together and of which a case may have some; one standard
+/// deviation as a part of the value or as a step in the unit of the key; its source. The source of a deviation that was not
+/// measured states the assumption.
 const SCATTERS: &str = include_str!("scatters.csv");
 
 /// An input that scatters from test to test.
 struct Scatter {
     name: &'static str,
-    joints: &'static str,
+    cases: &'static str,
     keys: Vec<&'static str>,
     is_part: bool,
     deviation: f64,
@@ -46,9 +47,9 @@ struct Scatter {
 }
 
 fn scatters() -> impl Iterator<Item = Scatter> {
-    records(SCATTERS).map(|[name, joints, keys, by, deviation, source]| Scatter {
+    records(SCATTERS).map(|[name, cases, keys, by, deviation, source]| Scatter {
         name,
-        joints,
+        cases,
         keys: keys.split(' ').collect(),
         is_part: by == "part",
         deviation: deviation.parse().expect("a number"),
@@ -67,9 +68,15 @@ pub(crate) fn records<const N: usize>(
 }
 
 impl Scatter {
-    fn is_of(&self, joint: TestedJoint) -> bool {
-        let mut joints = self.joints.split(' ');
-        joints.any(|name| name == "any" || name == joint.name())
+    fn is_of(&self, case: &Case) -> bool {
+        let is_by_joints = case.machine.rig.is_some();
+        self.cases.split(' ').any(|word| match word {
+            "any" => true,
+            "by-joints" => is_by_joints,
+            // The waveforms of activities have no keys of their own.
+            "activities" => !is_by_joints && !case.activities.is_empty(),
+            joint => joint == case.tested_joint().name(),
+        })
     }
 
     /// One standard deviation in words, such as `2 %` or `0.5 mm`.
@@ -183,8 +190,7 @@ pub fn uncertainty(
     let mut study = Study::of_case(case_path, sample)?;
     let as_given = with_error(&study.case)?;
     let (mut kept, mut left_out) = (Vec::new(), Vec::new());
-    let joint = study.case.tested_joint();
-    for scatter in scatters().filter(|scatter| scatter.is_of(joint)) {
+    for scatter in scatters().filter(|scatter| scatter.is_of(&study.case)) {
         let input = scatter.input(&study.case);
         // A key with a value may still belong to another machine, shape or law than the case's, which refuses any other value.
         let is_refused = |deviations: &f64| {

@@ -3,7 +3,7 @@
 use condyle::machine::{Waveform, knee};
 
 use super::machine::{Freedoms, Machine, Waveforms, report_keys_of_knee};
-use super::rig::Rig;
+use super::rig::{Rig, report_idle, report_keys_of_rig};
 use super::waveform::waveform_items;
 use crate::config::*;
 
@@ -101,6 +101,8 @@ impl Activity {
         freedoms: Option<&Freedoms>,
         log: &mut Log<'_>,
     ) -> Option<Self> {
+        report_keys_of_rig(&["frequency_hz"], section, log);
+        report_idle(["file"], "a machine by joints", section, log);
         let keys = ActivityKeys::read(section, log);
         let name = keys.as_ref().map_or("", |keys| keys.name.as_str());
         let waveforms = freedoms.and_then(|freedoms| {
@@ -148,10 +150,13 @@ impl Activity {
     fn read_on(machine: &Rig, section: &Section<'_>, log: &mut Log<'_>) -> Option<Self> {
         let mut keys = ActivityKeys::read(section, log)?;
         let file = keys.file.take();
-        let base = match &file {
+        let mut base = match &file {
             Some(file) => Rig::in_file(file, section, log)?,
             None => machine.clone(),
         };
+        if file.is_none() {
+            (base.keys.load_scale, base.keys.motion_scale) = (1.0, 1.0);
+        }
         let rig = base.changed_by(section, log)?;
         keys.frequency_hz = None;
         if let Some(difference) = rig.difference_from(machine) {

@@ -9,7 +9,7 @@ use toml::de::DeTable;
 
 use super::drive::DriveWord;
 use super::ligament::Ligament;
-use super::rig::Rig;
+use super::rig::{Rig, report_idle, report_keys_of_rig};
 use super::waveform::{self, waveform_items};
 use crate::config::*;
 
@@ -56,6 +56,8 @@ settings! {
         file: Option<DataFile> = None;
         /// Cycles a second.
         frequency_hz: f64 = 1.1, in within(0.001, 100.0);
+        /// Factor on every load and torque of every activity.
+        load_scale: f64 = 1.0, in within(0.01, 100.0);
         /// Added to the flexion waveform: -7 sets the femur 7 degrees towards hyperextension.
         flexion_offset_deg: f64 = -7.0, in within(-45.0, 45.0);
         /// Factor on the AP force, 1 or -1: laboratories disagree on its direction.
@@ -408,7 +410,7 @@ impl Machine {
         let rig = Rig::read_from(section, preset, file.as_ref(), log)?;
         if rig.is_some() {
             let own = MachineSettings::keys();
-            let shared = ["preset", "file", "frequency_hz"];
+            let shared = ["preset", "file", "frequency_hz", "load_scale"];
             let own = own.iter().map(|key| key.name);
             let own = own.filter(|key| !shared.contains(key));
             let of_knee: Vec<&str> = own.chain(["springs", "freedoms"]).collect();
@@ -421,11 +423,8 @@ impl Machine {
 /// Reports the waveforms of the knee simulator, and those of `keys`, that `section` of a machine by joints gives.
 pub(super) fn report_keys_of_knee(section: &Section<'_>, keys: &[&'static str], log: &mut Log<'_>) {
     let channels = KNEE.channels.iter().map(|channel| channel.name);
-    let given = keys.iter().copied().chain(channels);
-    for key in given.filter(|key| section.value(key).is_some()) {
-        let needs = "a knee simulator, such as preset = \"stanmore-force\"";
-        log.problem(section.key_span(key), idle(key, needs));
-    }
+    let needs = "a knee simulator, such as preset = \"stanmore-force\"";
+    report_idle(keys.iter().copied().chain(channels), needs, section, log);
 }
 
 impl Settings for Machine {
@@ -458,6 +457,9 @@ impl Settings for Machine {
                 ..unused
             });
         }
+        let mut own: Vec<&str> = names(&MachineSettings::keys()).collect();
+        own.push("ligaments");
+        report_keys_of_rig(&own, &section, log);
         if root.tables("activity").is_empty() {
             return Self::read(&section, log);
         }

@@ -38,8 +38,23 @@ settings! {
         tests: TestedJoint;
         /// Cycles a second.
         frequency_hz: f64 = 1.0, in within(0.001, 100.0);
+        /// Factor on every load and torque; that of an activity multiplies that of the machine.
+        load_scale: f64 = 1.0, in within(0.01, 100.0);
+        /// Factor on every motion along a waveform; that of an activity multiplies that of the machine.
+        motion_scale: f64 = 1.0, in within(0.0, 100.0);
         /// Names of all joints from the bearing to the counterface; that of the file if not given.
         order: Option<Names> = None;
+    }
+}
+
+impl RigKeys {
+    /// Returns the factor on the waveform of a joint.
+    pub fn scale_of(&self, joint: &RigJoint) -> f64 {
+        match joint.keys.drive {
+            DriveWord::Loaded => self.load_scale,
+            DriveWord::Prescribed => self.motion_scale,
+            DriveWord::Locked => 1.0,
+        }
     }
 }
 
@@ -65,6 +80,33 @@ fn replace_by_name<T>(all: &mut Vec<T>, changes: Vec<T>, name: impl Fn(&T) -> &s
             None => all.push(change),
         }
     }
+}
+
+/// Reports each of `keys` that `section` has: without what they need, they have no effect.
+pub(super) fn report_idle(
+    keys: impl IntoIterator<Item = &'static str>,
+    needs: &str,
+    section: &Section<'_>,
+    log: &mut Log<'_>,
+) {
+    for key in keys.into_iter().filter(|key| section.value(key).is_some()) {
+        log.problem(section.key_span(key), idle(key, needs));
+    }
+}
+
+/// Reports the keys of a machine by joints that `section` of a knee simulator has, except those in `own`.
+pub(super) fn report_keys_of_rig(own: &[&str], section: &Section<'_>, log: &mut Log<'_>) {
+    let items = Rig::items();
+    let others = items
+        .iter()
+        .filter_map(Item::name)
+        .filter(|key| !own.contains(key));
+    report_idle(
+        others,
+        "a machine by joints, such as that of a hip",
+        section,
+        log,
+    );
 }
 
 impl Rig {
@@ -140,15 +182,22 @@ impl Rig {
         replace_by_name(&mut self.springs, springs, |spring| &spring.name);
         let ligaments = Ligament::read_list(section, "ligaments", log)?;
         replace_by_name(&mut self.ligaments, ligaments, |ligament| &ligament.name);
+        let keys = &mut self.keys;
         for key in RigKeys::keys() {
-            let keys = &mut self.keys;
-            match key.name {
-                "tests" => keys.tests = section.setting(&key, Some(keys.tests), log)?,
-                "frequency_hz" => {
-                    keys.frequency_hz = section.setting(&key, Some(keys.frequency_hz), log)?;
+            let number = match key.name {
+                "tests" => {
+                    keys.tests = section.setting(&key, Some(keys.tests), log)?;
+                    continue;
                 }
-                _ => keys.order = section.setting(&key, Some(keys.order.take()), log)?,
-            }
+                "order" => {
+                    keys.order = section.setting(&key, Some(keys.order.take()), log)?;
+                    continue;
+                }
+                "frequency_hz" => &mut keys.frequency_hz,
+                "load_scale" => &mut keys.load_scale,
+                _ => &mut keys.motion_scale,
+            };
+            *number = section.setting(&key, Some(*number), log)?;
         }
         self.ordered(section, log)
     }
@@ -294,7 +343,7 @@ impl Rig {
         for (joint, index) in self.joints.iter().zip(JointIndex::ALL) {
             machine.springs.extend(joint.spring(index));
             let built = machine.joint_mut(index);
-            built.drive = joint.driven();
+            built.drive = joint.driven(self.keys.scale_of(joint));
             (built.inertia, built.damping) = joint.inertia_and_damping();
             built.axis_point_mm = joint.axis_point_mm(low_point_mm);
         }

@@ -412,12 +412,12 @@ impl RigJoint {
         })
     }
 
-    /// Returns the drive in mm, rad, N or N mm.
-    pub(super) fn driven(&self) -> Drive {
+    /// Returns the drive in mm, rad, N or N mm, with its waveform times `scale`.
+    pub(super) fn driven(&self, scale: f64) -> Drive {
         let keys = &self.keys;
         let channel = channel_of(keys.kind, keys.drive);
         let waveform = || {
-            let factor = channel.map_or(1.0, Channel::factor);
+            let factor = channel.map_or(1.0, Channel::factor) * scale;
             let given = self.waveform.clone();
             given.map_or(Waveform::constant(0.0), |waveform| waveform.scaled(factor))
         };

@@ -69,6 +69,36 @@ fn verify_the_mass_scatters_with_the_wear_factor_and_the_depth_with_it() {
 }
 
 #[test]
+fn verify_the_loads_of_hips_and_of_activities_scatter() {
+    let names = |text: &str| {
+        let one = found(text, &["--runs", "3"]);
+        let inputs = one["inputs"].as_array().unwrap();
+        let names = inputs
+            .iter()
+            .map(|input| input["name"].as_str().unwrap().to_owned());
+        names.collect::<Vec<_>>()
+    };
+    let hip = "[femur]\nshape = \"sphere\"\nradius_mm = 14\n[insert]\nshape = \"cup\"\nedge_mm = 3.0\n[machine]\npreset = \"iso-14242-1-like\"\n";
+    let of_hip = names(&format!(
+        "{hip}[march]\nupdates = 2\n[time]\nincrements = 40\n"
+    ));
+    for name in ["loads", "motions", "inclination"] {
+        assert!(of_hip.iter().any(|own| own == name), "{of_hip:?}");
+    }
+    let activity = TINY.replace("[machine.", "[activity.");
+    let (before, tables) = activity.split_once("[activity.").unwrap();
+    let flexion = "[activity.flexion]\nwaveform = \"iso-like\"\n";
+    let of_activity = names(&format!(
+        "{before}[[activity]]\nname = \"a\"\nshare = 1.0\n[activity.{tables}{flexion}"
+    ));
+    assert!(
+        of_activity.iter().any(|own| own == "loads"),
+        "{of_activity:?}"
+    );
+    assert!(!names(TINY).iter().any(|own| own == "loads"));
+}
+
+#[test]
 fn the_tables_say_what_the_numbers_hang_on_and_from_where() {
     let said = Bench::with_case(TINY).say(&["uncertainty", "case.toml", "--runs", "5"]);
     assert_eq!(said.code, Some(0), "{}", said.err);

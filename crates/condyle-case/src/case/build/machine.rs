@@ -21,7 +21,7 @@ impl case::Machine {
         }
         let settings = &self.settings;
         let mut rig = settings.preset.machine().clone();
-        rig.keys.frequency_hz = settings.frequency_hz;
+        (rig.keys.frequency_hz, rig.keys.load_scale) = (settings.frequency_hz, settings.load_scale);
         for (joint, index) in rig.joints.iter_mut().zip(JointIndex::ALL) {
             let freedom = self.freedoms.get(index);
             freedom.set(&mut joint.keys);
@@ -115,6 +115,10 @@ impl Case {
         let built = activities.map(|(activity, share)| {
             let (mut machine, keys) = (self.machine.clone(), &activity.keys);
             machine.rig.clone_from(&activity.rig);
+            if let (Some(own), Some(all)) = (&mut machine.rig, &self.machine.rig) {
+                own.keys.load_scale *= all.keys.load_scale;
+                own.keys.motion_scale *= all.keys.motion_scale;
+            }
             machine.waveforms = activity.waveforms.clone();
             let own = &mut machine.settings;
             own.frequency_hz = keys.frequency_hz.unwrap_or(own.frequency_hz);

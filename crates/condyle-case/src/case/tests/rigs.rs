@@ -347,6 +347,61 @@ fn activities_of_a_machine_by_joints_have_their_own_drives() {
 }
 
 #[test]
+fn scales_of_machine_and_activity_multiply_every_load_and_motion() {
+    let scales = |table: &str| format!("{table}\nload_scale = 1.5\nmotion_scale = 0.5\n");
+    let text = with_activities("[[0, 3000]]", "[[0, 3500]]")
+        .replace("[machine]\n", &scales("[machine]"))
+        .replace("share = 0.25\n", "share = 0.25\nload_scale = 2.0\n");
+    let case = Case::parse(&text, "case.toml", Path::new("")).unwrap();
+    let driven = |number: usize, joint: usize| {
+        let activity = &case.built_activities(Vec3::zeros())[number];
+        let joint = condyle::machine::JointIndex::ALL[joint];
+        match &activity.machine.joint(joint).drive {
+            condyle::machine::Drive::Loaded(waveform)
+            | condyle::machine::Drive::Prescribed(waveform) => waveform.at(0.0).0,
+            condyle::machine::Drive::Locked(at) => *at,
+        }
+    };
+    assert_eq!((driven(0, 0), driven(1, 0)), (4500.0, 10_500.0));
+    assert_eq!(driven(0, 1), driven(1, 1));
+    assert!((driven(0, 1).to_degrees() - 10.0).abs() < 1e-12);
+    let knee = "[machine]\nload_scale = 1.5\n[machine.axial_force]\nknots_n = [[0, 1000]]\n";
+    let machine = machine_of(knee);
+    let press = &machine.joint(condyle::machine::knee::IS).drive;
+    let condyle::machine::Drive::Loaded(load) = press else {
+        panic!("{press:?}")
+    };
+    assert_eq!(load.at(0.0).0.abs(), 1500.0);
+}
+
+#[test]
+fn keys_of_machines_by_joints_are_refused_on_a_knee_simulator() {
+    let loads = ["axial_force", "flexion", "ap_force", "ie_torque"];
+    let loads = loads.map(|table| format!("[activity.{table}]\nwaveform = \"iso-like\"\n"));
+    let loads = loads.concat();
+    let spring = "name = \"a\"\nalong = \"ap\"\nabout = \"ie\"\noffset_mm = 9\nstiffness_n_per_mm = [9, 9]\n";
+    let activity = |keys: &str| format!("[[activity]]\nname = \"a\"\nshare = 1\n{keys}{loads}");
+    for (key, text) in [
+        ("order", "[machine]\norder = [\"a\"]\n".to_owned()),
+        ("tests", "[machine]\ntests = \"hip\"\n".to_owned()),
+        ("motion_scale", "[machine]\nmotion_scale = 2\n".to_owned()),
+        (
+            "offset_springs",
+            format!("[[machine.offset_springs]]\n{spring}"),
+        ),
+        ("load_scale", activity("load_scale = 2\n")),
+        ("file", activity("file = \"stairs.toml\"\n")),
+        ("order", activity("order = [\"a\"]\n")),
+    ] {
+        let (place, said) = refusal(&text);
+        assert!(
+            place.ends_with(key) && said.contains("a machine by joints"),
+            "{place}: {said}"
+        );
+    }
+}
+
+#[test]
 fn a_joint_may_be_loaded_in_one_activity_and_prescribed_in_another() {
     let aside = "[[JOINTS]]\nname = \"aside\"\nkind = \"translation\"\naxis = [1, 0, 0]\n";
     let loaded = aside.replace("JOINTS", "machine.joints") + "drive = \"loaded\"\n";
