@@ -2,7 +2,7 @@
 
 use std::borrow::Cow;
 
-use condyle_results::Directions;
+use condyle_results::{Directions, MotionColumn};
 
 use crate::charts::Channel;
 use crate::figure::{
@@ -11,11 +11,16 @@ use crate::figure::{
 use crate::results::SurfaceFields;
 
 /// Draws an SVG file with a row for each column of kinematics.csv: the curves on the left, predicted minus measured on the
-/// right. The points of a column are (percent of the cycle, predicted, measured), in rising percent.
-pub fn compared_kinematics_svg(title: &str, columns: &[(&str, &[[f64; 3]])]) -> String {
+/// right. The points of a column are (percent of the cycle, predicted, measured), in rising percent; `motions` are the joints of the
+/// machine.
+pub fn compared_kinematics_svg(
+    title: &str,
+    columns: &[(&str, &[[f64; 3]])],
+    motions: &[MotionColumn],
+) -> String {
     const SIZE: (f64, f64) = (430.0, 226.0);
     let row = |&(column, points): &(&str, &[[f64; 3]])| {
-        let channel = Channel::find(column, &[])?;
+        let channel = Channel::find(column, motions)?;
         let line = |class, value: fn(&[f64; 3]) -> f64| Curve::new(class, with_gaps(points, value));
         let panel = |curves| Panel {
             size: SIZE,

@@ -14,7 +14,7 @@ use std::path::Path;
 
 use condyle_case::measured::Measured;
 use condyle_report::Results;
-use condyle_results::Directions;
+use condyle_results::{Directions, MotionColumn};
 use serde::Serialize;
 
 pub use error::{CalibrateError, CompareError};
@@ -42,6 +42,9 @@ pub struct Comparison {
     /// The joint and its side.
     #[serde(skip)]
     pub directions: Directions,
+    /// The joints of the machine.
+    #[serde(skip)]
+    pub motions: Vec<MotionColumn>,
 }
 
 /// Compares the run in `results` with the measured data of the file `measured`.
@@ -79,5 +82,6 @@ pub fn compare(results: &Path, measured: &Path) -> Result<Comparison, CompareErr
         gravimetric,
         surface: surface.transpose()?,
         directions: run.directions(),
+        motions: run.motions().to_vec(),
     })
 }

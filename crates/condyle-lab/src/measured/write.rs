@@ -4,7 +4,9 @@ use condyle_report::{
     SurfaceFields,
     measured::{compared_kinematics_svg, compared_surface_svg, compared_wear_svg},
 };
-use condyle_results::{COMPARED_KINEMATICS, COMPARED_NUMBERS, COMPARED_SURFACE, COMPARED_WEAR};
+use condyle_results::{
+    COMPARED_KINEMATICS, COMPARED_NUMBERS, COMPARED_SURFACE, COMPARED_WEAR, MotionColumn,
+};
 
 use crate::measured::{
     Comparison, gravimetric::GravimetricComparison, kinematics::KinematicsComparison,
@@ -22,7 +24,7 @@ impl Comparison {
     pub fn files(&self) -> Vec<(&'static str, &'static str, String)> {
         let mut files = vec![(COMPARED_NUMBERS, "json", self.json())];
         if let Some(kinematics) = &self.kinematics {
-            files.push((COMPARED_KINEMATICS, "svg", kinematics.svg()));
+            files.push((COMPARED_KINEMATICS, "svg", kinematics.svg(&self.motions)));
             files.push((COMPARED_KINEMATICS, "csv", kinematics.csv()));
         }
         if let Some(gravimetric) = &self.gravimetric {
@@ -39,11 +41,11 @@ impl Comparison {
 }
 
 impl KinematicsComparison {
-    fn svg(&self) -> String {
+    fn svg(&self, motions: &[MotionColumn]) -> String {
         let columns = self.columns.iter();
         let columns = columns.map(|column| (column.column.as_str(), column.points.as_slice()));
         let title = format!("Motion in the {} cycle, measured and predicted", self.cycle);
-        compared_kinematics_svg(&title, &columns.collect::<Vec<_>>())
+        compared_kinematics_svg(&title, &columns.collect::<Vec<_>>(), motions)
     }
 
     /// Returns the aligned measurement, a row for each instant of the run's cycle and a column for each measured one;

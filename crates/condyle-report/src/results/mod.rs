@@ -145,7 +145,7 @@ impl Results {
     }
 
     /// Returns the joints of the machine as columns; none in results of an older version.
-    pub(crate) fn motions(&self) -> &[MotionColumn] {
+    pub fn motions(&self) -> &[MotionColumn] {
         let summary = self.summary.as_ref();
         summary.map_or(&[], |summary| &summary.motions)
     }
