@@ -98,8 +98,10 @@ class Plots:
         colours = axes.tripcolor(from_above, result.fields[field][update], shading="gouraud", cmap="magma_r", vmin=0.0)
         axes.get_figure().colorbar(colours, ax=axes, label=label, shrink=0.7)
         label_x, label_z = "x, mm", "z, mm"
-        if result.joint == "knee":
-            left, right = ("lateral", "medial") if result.case["side"] == "left" else ("medial", "lateral")
+        if result.joint in ("knee", "hip", "ankle"):
+            # Hips and ankles stand upside down in their machines: a left one has lateral at +z.
+            lateral_at = "right" if result.joint == "knee" else "left"
+            left, right = ("medial", "lateral") if result.case["side"] == lateral_at else ("lateral", "medial")
             label_x, label_z = "x, anterior up, mm", f"{left}  <  z, mm  >  {right}"
         axes.set(xlabel=label_z, ylabel=label_x, aspect="equal")
         axes.set_title(f"after {result.update_cycles[update] / 1e6:g} million cycles", fontsize="medium")

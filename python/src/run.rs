@@ -36,7 +36,7 @@ pub fn run<'py>(
     let (wear_law, raised) = wear_law.map(law_of).unzip();
     let mut listener = Listener::new(progress, raised);
     let mut recorder = Recorder {
-        side: case.heading.side,
+        side: case.side_in_frame(),
         keeps_fields,
         record: Record {
             case: case.to_toml(),

@@ -117,13 +117,13 @@ impl Preview {
     pub fn directions(&self) -> Directions {
         Directions {
             joint: self.joint,
-            side: self.case.heading.side,
+            side: self.case.side_in_frame(),
         }
     }
 
     /// Both bodies from three sides, as the text of an SVG file.
     pub fn picture_svg(&self) -> String {
-        let (march, at_rest, side) = (&self.march, &self.at_rest, self.case.heading.side);
+        let (march, at_rest, side) = (&self.march, &self.at_rest, self.case.side_in_frame());
         let insert = march.test().insert.mesh();
         let on_insert = |vertex: &Vec3| at_rest.pose.to_insert(vertex);
         let femur = self.femur_triangles.clone().mapped(on_insert);

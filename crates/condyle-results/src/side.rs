@@ -1,4 +1,4 @@
-//! Left knees are mirrored in z on the way in and out: every run computes a right one.
+//! Left knees are mirrored in z on the way in and out, as are right hips and ankles: every run computes +z as lateral.
 
 use condyle::machine::{
     TestedJoint,
@@ -50,6 +50,15 @@ impl Side {
         }
     }
 
+    /// Returns the side of the knee whose frame has +z on the same side of the body. Hips and ankles stand upside down in
+    /// their machines: with x anterior and y inferior, z of a right-handed frame points to the left.
+    pub fn in_frame_of(self, joint: TestedJoint) -> Self {
+        match joint {
+            TestedJoint::Hip | TestedJoint::Ankle => self.other(),
+            TestedJoint::Knee | TestedJoint::Disc | TestedJoint::Specimen => self,
+        }
+    }
+
     /// Names of the regions at -z and at +z.
     pub fn regions(self) -> [&'static str; 2] {
         let [medial, lateral] = [MEDIAL, LATERAL].map(|region| KNEE.regions[region].label);
@@ -65,7 +74,7 @@ impl Side {
 pub struct Directions {
     /// The joint of the body.
     pub joint: TestedJoint,
-    /// Its side.
+    /// Its side in the frame of its machine (see [`Side::in_frame_of`]).
     pub side: Side,
 }
 
@@ -93,7 +102,8 @@ impl Directions {
     }
 }
 
-pub(super) fn point_on_side(point: &Vec3, side: Side) -> Vec3 {
+/// Returns a place of the computed frame in the frame of `side`, and back.
+pub fn point_on_side(point: &Vec3, side: Side) -> Vec3 {
     match side {
         Side::Right => *point,
         Side::Left => Vec3::new(point.x, point.y, -point.z),

@@ -122,8 +122,8 @@ impl<'a> PressedCase<'a> {
 }
 
 fn note(case: &Case, row: &CycleRow) -> String {
-    let mirrored = if case.heading.side == Side::Left {
-        "\nThe case is a left knee: this is its mirror image."
+    let mirrored = if case.side_in_frame() == Side::Left {
+        "\nThis is the mirror image of the case, with z reversed."
     } else {
         ""
     };

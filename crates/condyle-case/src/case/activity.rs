@@ -21,7 +21,7 @@ settings! {
         cycles_in_sequence: Option<u64> = None, in within(1.0, 1e9);
         /// Machine file of the activity on a machine by joints, relative to the case file: the joints of `[machine]` with other drives, waveforms and springs; `[machine]` itself if not given. Joints that stand here replace those of the same name.
         file: Option<DataFile> = None;
-        /// Cycles a second; that of `[machine]` if not given.
+        /// Cycles a second; if not given, that of its machine file, and without a file that of `[machine]`.
         frequency_hz: Option<f64> = None, in within(0.001, 100.0);
         /// Added to the flexion waveform; that of `[machine]` if not given.
         flexion_offset_deg: Option<f64> = None, in within(-45.0, 45.0);
@@ -165,7 +165,7 @@ impl Activity {
             let message = format!(
                 "the machine of the activity \"{name}\" is not that of [machine]: {difference}"
             );
-            let advice = "give both the same joints in the same order; drives, waveforms and springs may differ";
+            let advice = "give both the same joints in the same order and ligaments of the same names; drives, waveforms and springs may differ";
             return log.reject(section.key_span(key), Fault::new(message, advice));
         }
         let of_knee = ["flexion_offset_deg", "ap_force_sign", "ie_torque_sign"];

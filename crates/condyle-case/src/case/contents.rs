@@ -12,7 +12,7 @@ use super::activity::Activity;
 use super::build::BuildWarning;
 use super::contact::Contact;
 use super::femur::{Femur, FemurShape};
-use super::frame::{Heading, check_axes};
+use super::frame::{Heading, Side, check_axes};
 use super::insert::{Insert, InsertShape};
 use super::machine::Machine;
 use super::material::{Creep, Material};
@@ -71,7 +71,7 @@ impl Case {
     }
 
     fn check(&self, root: &Section<'_>, log: &mut Log<'_>) {
-        let side = self.heading.side;
+        let side = self.side_in_frame();
         if let FemurShape::Mesh(mesh) = &self.femur.shape {
             check_axes(&mesh.axes, side, root.part("femur").value_span("axes"), log);
         }
@@ -79,12 +79,21 @@ impl Case {
             check_axes(axes, side, root.part("insert").value_span("axes"), log);
         }
         self.check_round_bearing(&root.part("insert"), log);
+        if self.tested_joint() == TestedJoint::Disc && self.heading.side == Side::Left {
+            let fault = Fault::new("a disc has no side", "remove `side`");
+            log.problem(root.value_span("side"), fault);
+        }
     }
 
     /// Returns the joint whose replacement the machine tests.
     pub fn tested_joint(&self) -> TestedJoint {
         let tested = |rig: &Rig| rig.keys.tests;
         self.machine.rig.as_ref().map_or(TestedJoint::Knee, tested)
+    }
+
+    /// Returns the side of the body in the frame of the machine, which decides whether shapes are mirrored.
+    pub fn side_in_frame(&self) -> Side {
+        self.heading.side.in_frame_of(self.tested_joint())
     }
 
     /// Returns whether the machine tests knees, whose bodies are recognised by their shapes.

@@ -20,7 +20,7 @@ settings! {
     Heading {
         /// Title of the case, one line.
         title: String = "Untitled".to_owned();
-        /// Side of the body; a left one is mirrored on input and output.
+        /// Side of the body. Left knees are mirrored on input and output, as are right hips and ankles, which stand upside down in their machines; a disc has no side.
         side: Side = Side::Right;
     }
 }

@@ -9,9 +9,9 @@ use crate::config::*;
 settings! {
     /// A ligament: a straight line that carries tension only, with a toe region. It does not act while the machine settles.
     Ligament [check] {
-        /// Its name in messages.
+        /// Its name in messages and results: small letters, digits and hyphens.
         name: String;
-        /// Attachment to the bearing, [x, y, z] in the insert frame; z points to the right on both sides of a knee.
+        /// Attachment to the bearing, [x, y, z] in the insert frame; z points to the right on both sides of a knee, and to the left of a hip or ankle.
         on_bearing_mm: [f64; 3], in within(-300.0, 300.0);
         /// Attachment to the counterface, [x, y, z] in its own frame, with the same z.
         on_counterface_mm: [f64; 3], in within(-300.0, 300.0);
@@ -21,13 +21,23 @@ settings! {
         toe_strain: f64 = 0.03, in within(1e-4, 0.3);
         /// Length without force.
         slack_length_mm: Option<f64> = None, in within(0.1, 500.0);
-        /// In place of `slack_length_mm`: strain with the machine at zero, where the bodies have settled; negative if slack there.
+        /// In place of `slack_length_mm`: strain with all joints of the machine at zero, which for flexion is not where it starts; negative if slack there.
         strain_at_zero: Option<f64> = None, in within(-0.5, 0.3);
     }
 }
 
+/// Names whose columns `kinematics.csv` has without ligaments.
+const NAMES_OF_LOADS: [&str; 3] = ["axial-force", "medial-force", "lateral-force"];
+
 impl Ligament {
     fn check(&self, section: &Section<'_>, log: &mut Log<'_>) {
+        let name = &self.name;
+        if !is_name(name) || NAMES_OF_LOADS.contains(&name.as_str()) {
+            let message = format!("a ligament cannot be called \"{name}\"");
+            let advice =
+                "use small letters, digits and hyphens, and no name of a load of the joint";
+            log.problem(section.value_span("name"), Fault::new(message, advice));
+        }
         if self.slack_length_mm.is_some() == self.strain_at_zero.is_some() {
             let message = format!(
                 "the ligament \"{}\" needs one of `slack_length_mm` and `strain_at_zero`",

@@ -308,8 +308,8 @@ impl Rig {
         found.map(|(one, other)| (one.name(), other.name()))
     }
 
-    /// Returns the first difference of the motions that this machine and another permit; none if activities of one test
-    /// may run on both.
+    /// Returns the first difference of the motions that this machine and another permit, or of the names of their ligaments,
+    /// which are those of one joint; none if activities of one test may run on both.
     pub(super) fn difference_from(&self, other: &Self) -> Option<String> {
         if self.keys.tests != other.keys.tests {
             return Some("it tests another joint of the body".to_owned());
@@ -317,6 +317,14 @@ impl Rig {
         if self.joints.len() != other.joints.len() {
             let (own, others) = (self.joints.len(), other.joints.len());
             return Some(format!("it has {own} joints in place of {others}"));
+        }
+        let [own, others] = [self, other].map(|rig| {
+            let mut names: Vec<&str> = rig.ligaments.iter().map(|one| one.name.as_str()).collect();
+            names.sort_unstable();
+            names.join(", ")
+        });
+        if own != others {
+            return Some(format!("its ligaments are ({own}) in place of ({others})"));
         }
         let pairs = self.joints.iter().zip(&other.joints);
         let mut differ = pairs.filter_map(|(joint, other)| {

@@ -51,7 +51,7 @@ settings! {
         positive: Option<String> = None;
         /// Motion: a rotation or a translation.
         kind: JointKind;
-        /// Direction of its axis in the bearing frame: the load acts along y, and the counterface lies above the bearing. z points to the right of a right joint, and to the left of a left one.
+        /// Direction of its axis in the bearing frame: the load acts along y, and the counterface lies above the bearing. z points laterally, and for a disc to the right.
         axis: [f64; 3], in within(-1.0, 1.0);
         /// Body that it moves, which determines the sign.
         moves: MovedBody = MovedBody::Counterface;

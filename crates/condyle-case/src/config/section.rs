@@ -1,6 +1,7 @@
 //! Tables of a file: finding keys, reporting those that are not known, and changes of a parsed file before it is read.
 
 use std::borrow::Cow;
+use std::collections::BTreeSet;
 use std::ops::Range;
 
 use toml::Spanned;
@@ -83,6 +84,22 @@ impl<'a> Section<'a> {
         let tables = self.list(name, log)?;
         let read: Vec<Option<T>> = tables.iter().map(|table| read(table, log)).collect();
         read.into_iter().collect()
+    }
+
+    /// Reports the first table of a list that has the `name` of another.
+    pub(crate) fn check_names_differ(&self, list: &str, log: &mut Log<'_>) -> Option<()> {
+        let mut names = BTreeSet::new();
+        for table in self.tables(list) {
+            let name = table.value("name").and_then(|name| name.get_ref().as_str());
+            if let Some(name) = name.filter(|name| !names.insert(name.to_string())) {
+                let fault = Fault::new(
+                    format!("two of [[{list}]] are called \"{name}\""),
+                    "give each its own name",
+                );
+                return log.reject(table.value_span("name"), fault);
+            }
+        }
+        Some(())
     }
 
     /// Returns every table called `name`: none, one, or those of a list.

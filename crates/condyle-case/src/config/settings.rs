@@ -35,7 +35,9 @@ pub(crate) trait Settings: Sized {
 
     /// Reads the parts of the list `name`; returns none if one of them has a problem.
     fn read_list(above: &Section<'_>, name: &str, log: &mut Log<'_>) -> Option<Vec<Self>> {
-        above.read_list(name, log, Self::read)
+        let all = above.read_list(name, log, Self::read)?;
+        above.check_names_differ(name, log)?;
+        Some(all)
     }
 
     /// Reads the part from `section`, and reports every key that it does not have.

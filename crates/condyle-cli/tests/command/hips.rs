@@ -337,7 +337,9 @@ fn a_hip_is_described_in_its_own_words() {
         "measured.toml",
         "[kinematics]\nfile = \"motion.csv\"\nlargest_gap_percent = 50\n",
     );
-    let compared = bench.say(&["compare", "hip", "measured.toml", "--out", "."]).out;
+    let compared = bench
+        .say(&["compare", "hip", "measured.toml", "--out", "."])
+        .out;
     assert!(compared.contains("abduction_deg"), "{compared}");
     let picture = std::fs::read_to_string(bench.path("compare_kinematics.svg"));
     assert!(picture.expect("it is drawn").contains("+ abduction"));

@@ -12,6 +12,7 @@ use condyle_results::{
         BACKSIDE_LIFT_MM, MAX_DEPTH_MM, MAX_PLASTIC_STRAIN, PEAK_CONTACT_AREA_MM2,
         PEAK_PRESSURE_CYCLE, PEAK_PRESSURE_MPA,
     },
+    point_on_side,
 };
 
 use super::finished::{Finished, SolvedCycle, percent_of, warning};
@@ -104,7 +105,7 @@ pub(crate) fn pressure_at_rim(finished: &Finished<'_>) -> Option<PlausibilityWar
             is_at_rim.then_some((from_rim_mm, highest, node, cycle))
         });
     let (from_rim_mm, highest, node, cycle) = at_rim.min_by(|a, b| a.0.total_cmp(&b.0))?;
-    let place = finished.surface.positions[node];
+    let place = point_on_side(&finished.surface.positions[node], finished.side);
     let message = format!(
         "the {cycle} cycle's highest pressure, {highest:.1} MPa, is {from_rim_mm:.2} mm from the rim, at x {:.1} mm, z \
              {:.1} mm",

@@ -9,7 +9,7 @@ use condyle::{
 };
 use condyle_case::case::BuildWarning;
 use condyle_mesh::repair::border_sides;
-use condyle_results::{PlausibilityWarning, Summary};
+use condyle_results::{PlausibilityWarning, Side, Summary};
 
 /// Returns the warning of the check called `check`, of a value beyond its limit, in their unit.
 pub(super) fn warning(
@@ -31,6 +31,8 @@ pub(super) fn warning(
 pub(crate) struct Finished<'a> {
     pub march: &'a March,
     pub summary: &'a Summary,
+    /// The side in whose frame places are stated.
+    pub side: Side,
     /// The remarks on the bodies as they were built.
     pub of_build: &'a [BuildWarning],
     pub surface: ArticulatingSurface,
@@ -59,7 +61,12 @@ impl SolvedCycle<'_> {
 }
 
 impl<'a> Finished<'a> {
-    pub fn new(march: &'a March, summary: &'a Summary, of_build: &'a [BuildWarning]) -> Self {
+    pub fn new(
+        march: &'a March,
+        summary: &'a Summary,
+        side: Side,
+        of_build: &'a [BuildWarning],
+    ) -> Self {
         let surface = march.insert().surface();
         let rim = rim_of(march.insert());
         Self {
@@ -67,6 +74,7 @@ impl<'a> Finished<'a> {
             rim,
             march,
             summary,
+            side,
             of_build,
             surface,
         }

@@ -11,7 +11,7 @@ pub(crate) mod loads;
 use condyle::evolve::March;
 use condyle_case::case::BuildWarning;
 use condyle_results::{
-    MAX_FACTOR_OF_RUN, PlausibilityWarning, Summary,
+    MAX_FACTOR_OF_RUN, PlausibilityWarning, Side, Summary,
     catalogue::{
         ADDED_INERTIA, CYCLES_NOT_REPEATING, MASS_LOSS_MG, MAX_DEPTH_MM, PEAK_PRESSURE_MPA, Scalar,
         VOLUME_LOSS_MESH_MM3, VOLUME_LOSS_MM3, WORST_QUALITY,
@@ -58,15 +58,16 @@ const NOTES: [Check; 2] = [bodies::pressure_beyond_yield, bodies::thin_polyethyl
 
 /// Findings that make the numbers of a finished march doubtful, the worst first, and remarks that do not.
 ///
-/// In a batch, the gaps of the nodes over the cycle are not examined, since this would take a large
+/// Places are stated in the frame of `side`. In a batch, the gaps of the nodes over the cycle are not examined, since this would take a large
 /// part of the time of a run.
 pub(crate) fn warnings(
     march: &March,
     summary: &Summary,
+    side: Side,
     of_build: &[BuildWarning],
     is_batch: bool,
 ) -> (Vec<PlausibilityWarning>, Vec<PlausibilityWarning>) {
-    let finished = Finished::new(march, summary, of_build);
+    let finished = Finished::new(march, summary, side, of_build);
     let one = |check: &Check| check(&finished);
     let mut warnings = Vec::new();
     warnings.extend(bodies::wear_at_rim(&finished));

@@ -147,7 +147,7 @@ impl WrittenRun {
             // Done before the folder is created, so that a femur that cannot be drawn leaves no folder.
             let femur = run.femur_triangles(FEMUR_TRIANGLES)?;
             written.start(run.case, options)?;
-            let side = run.case.heading.side;
+            let side = run.case.side_in_frame();
             written.folder.write_femur(&run.march, &femur, side)?;
             written.write_update(run)?;
         }
@@ -169,7 +169,7 @@ impl WrittenRun {
     }
 
     fn write_update(&self, run: &Run<'_>) -> Result<(), RunError> {
-        let side = run.case.heading.side;
+        let side = run.case.side_in_frame();
         if let Some(femur) = &self.in_frames {
             self.folder.write_cycles(&run.march, femur, side)?;
         }

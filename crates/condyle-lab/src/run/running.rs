@@ -173,8 +173,9 @@ impl<'a> Run<'a> {
         }
         // After the error of the discretisation, which widens the interval.
         summary.prediction = self.prediction(summary.error.as_ref());
+        let side = self.case.side_in_frame();
         (summary.plausibility, summary.notes) =
-            crate::plausibility::warnings(&self.march, &summary, &self.warnings, false);
+            crate::plausibility::warnings(&self.march, &summary, side, &self.warnings, false);
         ControlFlow::Continue(summary)
     }
 
@@ -189,7 +190,7 @@ impl<'a> Run<'a> {
             Summary::new(&self.march, facts).expect("a march that is done has an update");
         summary.inputs_blake3.clone_from(&self.inputs_blake3);
         summary.warnings = self.warnings.iter().map(ToString::to_string).collect();
-        summary.neutral_pose = NeutralPose::of(&self.march, self.case.heading.side);
+        summary.neutral_pose = NeutralPose::of(&self.march, self.case.side_in_frame());
         summary.wear_laws = self.wear_laws();
         summary
     }
@@ -242,8 +243,13 @@ impl<'a> Run<'a> {
 /// estimate.
 pub fn batch_run(case: &Case, cache: &Cache, bodies: &SharedBodies) -> Result<Summary, RunError> {
     let (run, mut summary) = march_watched(case, cache, bodies, &mut |_| ())?;
-    (summary.plausibility, summary.notes) =
-        crate::plausibility::warnings(&run.march, &summary, &run.warnings, true);
+    (summary.plausibility, summary.notes) = crate::plausibility::warnings(
+        &run.march,
+        &summary,
+        case.side_in_frame(),
+        &run.warnings,
+        true,
+    );
     Ok(summary)
 }
 

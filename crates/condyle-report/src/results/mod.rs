@@ -100,8 +100,10 @@ impl Results {
         }
         let case = part(case(&folder.join("case.toml")), on_damage)?;
         let summary = part(summary(&folder.join("summary.json")), on_damage)?;
-        let mut joints = summary.iter().map(|summary| summary.joint);
-        let is_cup = joints.any(|joint| joint == TestedJoint::Hip);
+        let joint = summary.as_ref().map(|summary| summary.joint);
+        let joint = joint.unwrap_or_default();
+        let is_cup = joint == TestedJoint::Hip;
+        let side = case.as_deref().map_or_else(Side::default, case::side);
         let mut activities = Vec::new();
         for activity in summary
             .iter()
@@ -117,7 +119,7 @@ impl Results {
         let mut table = |name: &str| part(table(&folder.join(name)), on_damage);
         let compared = |name| format!("{}/{name}.csv", COMPARED.folder);
         Ok(Self {
-            side: case.as_deref().map_or_else(Side::default, case::side),
+            side: side.in_frame_of(joint),
             case,
             summary,
             activities,

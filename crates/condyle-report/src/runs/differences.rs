@@ -74,6 +74,9 @@ impl Run {
 
     /// Returns the reason why the maps of two runs cannot be subtracted; none if they can.
     pub(super) fn maps_obstacle(&self, other: &Self) -> Option<String> {
+        if self.results.directions() != other.results.directions() {
+            return Some("they are of different joints or sides".to_owned());
+        }
         if self.results.surface.is_none() || other.results.surface.is_none() {
             return Some("one of the runs has no last mesh".to_owned());
         }
@@ -215,8 +218,9 @@ fn notes(first: &Run, second: &Run) -> Vec<String> {
             "Maps of {one} and {two} cannot be subtracted: {why}."
         ));
     }
-    if first.results.side != second.results.side {
-        let sides = "One is a right knee and the other a left one: medial is on opposite sides.";
+    let [one, two] = [first, second].map(|run| run.results.directions());
+    if one.joint == two.joint && one.side != two.side {
+        let sides = "One is a right joint and the other a left one: medial is on opposite sides.";
         notes.push(sides.to_owned());
     }
     let version = |run: &Run| Some(run.results.summary.as_ref()?.version.clone());

@@ -53,7 +53,7 @@ impl Case {
         keep: &dyn Keep,
         warnings: &mut Vec<BuildWarning>,
     ) -> Result<BuiltFemur, BuildError> {
-        let (side, placement) = (self.heading.side, &self.femur.placement);
+        let (side, placement) = (self.side_in_frame(), &self.femur.placement);
         let at_origin = |surface, start_mm: Option<[f64; 2]>, default_mm| BuiltFemur {
             surface: Arc::new(surface),
             flexion_axis_mm: (0.0, 0.0),
@@ -101,7 +101,7 @@ impl Case {
         keep: &dyn Keep,
         warnings: &mut Vec<BuildWarning>,
     ) -> Result<BuiltFemur, BuildError> {
-        let (side, placement) = (self.heading.side, &self.femur.placement);
+        let (side, placement) = (self.side_in_frame(), &self.femur.placement);
         let placing = femur.placing(side)?;
         let PreparedFemur { shell, field } =
             femur.prepared((joint, placement), &placing, &self.limits, threads, keep)?;
@@ -268,7 +268,7 @@ impl Case {
     pub fn femur_triangles(&self, test: &WearTest, about: f64) -> Result<TriangleMesh, BuildError> {
         match (&self.femur.shape, test.counterface.as_ref()) {
             (FemurShape::Mesh(femur), _) => {
-                let placing = femur.placing(self.heading.side)?;
+                let placing = femur.placing(self.side_in_frame())?;
                 let checks = checks_of(Body::Femur, None);
                 let shell = shell(&femur.file, &placing, checks, &mut Vec::new())?;
                 let joint = test.machine().mechanism.tests;

@@ -64,7 +64,7 @@ impl Case {
         };
         let path = insert.file.path();
         let bytes = surface_bytes(insert.file.files(), path).ok()?;
-        let placing = insert.placing(self.heading.side).ok()?;
+        let placing = insert.placing(self.side_in_frame()).ok()?;
         Some(placing.mesh(parse_surface(path, &bytes).ok()?))
     }
 
@@ -133,7 +133,7 @@ impl Case {
         warnings: &mut Vec<BuildWarning>,
     ) -> Result<geometry::Insert, BuildError> {
         let file = &insert.file;
-        let placing = insert.placing(self.heading.side)?;
+        let placing = insert.placing(self.side_in_frame())?;
         let checks = checks_of(Body::Insert, insert.clip_below_mm);
         let mut shell = shell(file, &placing, checks, warnings)?;
         if shell.closed && insert.thickness_mm.is_some() {
@@ -222,7 +222,7 @@ impl Case {
         of: &Insert,
         warnings: &mut Vec<BuildWarning>,
     ) -> Result<geometry::Insert, BuildError> {
-        let placing = insert.placing(self.heading.side)?;
+        let placing = insert.placing(self.side_in_frame())?;
         let path = insert.file.path();
         let mut file = read_hexahedra(insert.file.files(), path)?;
         for node in &mut file.mesh.nodes {

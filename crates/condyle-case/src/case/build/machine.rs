@@ -106,7 +106,7 @@ pub(super) fn start_flexion_rad(machine: &Machine) -> f64 {
 
 impl Case {
     pub(in crate::case) fn built_activities(&self, low_point_mm: Vec3) -> Vec<Activity> {
-        let build = |rig: Rig| rig.build(low_point_mm, self.heading.side);
+        let build = |rig: Rig| rig.build(low_point_mm, self.side_in_frame());
         if self.activities.is_empty() {
             let machine = build(self.machine.by_joints());
             return vec![Activity::only("gait", machine)];

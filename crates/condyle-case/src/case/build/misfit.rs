@@ -60,7 +60,7 @@ impl Case {
         let FemurShape::Mesh(femur) = &self.femur.shape else {
             return None;
         };
-        let placing = femur.placing(self.heading.side).ok()?;
+        let placing = femur.placing(self.side_in_frame()).ok()?;
         Placed::read(Body::Femur, &femur.file, placing)
     }
 
@@ -68,7 +68,7 @@ impl Case {
         let InsertShape::Mesh(insert) = &self.insert.shape else {
             return None;
         };
-        let placing = insert.placing(self.heading.side).ok()?;
+        let placing = insert.placing(self.side_in_frame()).ok()?;
         Placed::read(Body::Insert, &insert.file, placing)
     }
 }

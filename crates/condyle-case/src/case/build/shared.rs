@@ -89,7 +89,11 @@ const WHAT: &str = "compliance";
 
 impl Case {
     pub(super) fn insert_inputs(&self) -> InsertInputs {
-        (self.insert.clone(), self.heading.side, self.limits.clone())
+        (
+            self.insert.clone(),
+            self.side_in_frame(),
+            self.limits.clone(),
+        )
     }
 
     /// Loads the kept compliance of an insert into a law without one.
