@@ -45,3 +45,35 @@ test("a missing key is added to its table, after values of several lines, or wit
   const friction = withValue(CASE, { table: "contact", key: "friction" }, "0.1");
   assert.equal(friction, `${CASE.trimEnd()}\n\n[contact]\nfriction = 0.1\n`);
 });
+
+test("values are found and changed in every form of TOML", () => {
+  const radius = { table: "femur", key: "distal_radius_mm" };
+  for (const form of [
+    "femur.distal_radius_mm = 45.0",
+    'femur = { shape = "generic", distal_radius_mm = 45.0 }',
+    '["femur"]\ndistal_radius_mm = 45.0',
+    '[ femur ]\n"distal_radius_mm"=45.0# of both',
+  ]) {
+    assert.equal(numberOf(form, radius), 45, form);
+    assert.equal(withValue(form, radius, "50.0"), form.replace("45.0", "50.0"), form);
+  }
+  assert.equal(numberOf('[machine]\npreset = "a" # [x]\naxial_force.scale = 0.8\n', scale), 0.8);
+});
+
+test("a missing key is added in the form of its table", () => {
+  for (const [form, wanted] of [
+    ["[machine]\naxial_force.offset = 2 # N\n[wear]\nk = 1\n", "[machine]\naxial_force.offset = 2 # N\naxial_force.scale = 1.2\n[wear]\nk = 1\n"],
+    ['machine = { preset = "a" }\n', 'machine = { preset = "a", axial_force.scale = 1.2 }\n'],
+    ["[machine]\naxial_force = {}", "[machine]\naxial_force = { scale = 1.2 }"],
+    ["[ machine . axial_force ] # load\n", "[ machine . axial_force ] # load\nscale = 1.2\n"],
+    ["machine.axial_force.offset = 2", "machine.axial_force.offset = 2\nmachine.axial_force.scale = 1.2"],
+    ['[machine]\npreset = "a"\n', '[machine]\npreset = "a"\n\n[machine.axial_force]\nscale = 1.2\n'],
+  ] as const) {
+    assert.equal(withValue(form, scale, "1.2"), wanted, form);
+  }
+});
+
+test("text that is no TOML is read to its end", () => {
+  for (const text of ["[", "a = [1, 2", "= 3\nb = 4", '"', "x = {", "]]\n}}"]) valueAt(text, thickness);
+  assert.equal(numberOf("= 3\n[insert]\nthickness_mm = 4", thickness), 4);
+});

@@ -1,7 +1,7 @@
 import assert from "node:assert/strict";
 import test from "node:test";
 import { fill } from "../src/difference_map";
-import { changed } from "../src/page/case_text";
+import { changed, inWords } from "../src/page/case_text";
 
 test("the settings that differ are listed by table and key", () => {
   const before = 'title = "A"\n[femur]\nradius_mm = 24.0 # of a condyle\n[[laws]]\nk = 1\n[[laws]]\nk = 2\n';
@@ -12,6 +12,22 @@ test("the settings that differ are listed by table and key", () => {
     ["femur.spacing_mm", undefined, "46"],
   ]);
   assert.deepEqual(changed(before, before), []);
+});
+
+test("settings of several lines differ by all of their numbers", () => {
+  const load = (peak: number) => `[machine.axial_force]\nknots_n = [\n    [0.0, 167.6], [3.0, 1887.3], [7.0, 1174.6],\n    [13.0, ${peak}],\n]\n`;
+  const [key, before, after] = changed(load(2600.3), load(4160.48))[0]!;
+  assert.equal(key, "machine.axial_force.knots_n");
+  assert.equal(inWords(before, after), "other points");
+  assert.deepEqual(changed(load(2600.3), load(2600.3)), []);
+  const [, , only] = changed("", load(1))[0]!;
+  assert.equal(inWords(undefined, only), "not given → points");
+  assert.equal(inWords("[0, 1]", "[0, 2]"), "[0, 1] → [0, 2]");
+});
+
+test("tables below a list have its number", () => {
+  const joints = (peak: number) => `[[joints]]\nname = "a"\n[joints.load]\nscale = 1\n[[joints]]\nname = "b"\n[joints.load]\nscale = ${peak}\n`;
+  assert.deepEqual(changed(joints(1), joints(2)), [["joints 2.load.scale", "1", "2"]]);
 });
 
 test("a triangle has the linear field of its corners, whichever way it turns", () => {

@@ -1,5 +1,7 @@
 // Finds and changes numbers in the text of a case; the rest of the text stays as it is.
 
+import { joined, placesOf, type Entry, type Places } from "./toml_places";
+
 export interface Place {
   // The table by its name, such as `machine.axial_force`.
   table: string;
@@ -24,11 +26,8 @@ export function tableAt(lines: string[], line: number): string {
 
 // The text of a value, without quotes around it.
 export function valueAt(text: string, place: Place): string | undefined {
-  const lines = text.split("\n");
-  const line = lineOf(lines, place);
-  if (line === undefined) return undefined;
-  const { value } = parts(lines[line]!);
-  return value.replace(/^"(.*)"$/, "$1");
+  const found = entryOf(placesOf(text), place);
+  return found && text.slice(found.from, found.to).replace(/^(["'])(.*)\1$/, "$2");
 }
 
 export function numberOf(text: string, place: Place): number | undefined {
@@ -36,22 +35,26 @@ export function numberOf(text: string, place: Place): number | undefined {
   return Number.isFinite(value) ? value : undefined;
 }
 
-// The text with a value replaced, or added to its table.
-export function withValue(text: string, place: Place, value: string): string {
-  const lines = text.split("\n");
-  const line = lineOf(lines, place);
-  if (line !== undefined) {
-    const { before, value: old, after } = parts(lines[line]!);
-    // A comment after it stays in its column.
-    const gap = Math.max(1, /^\s*/.exec(after)![0].length + old.length - value.length);
-    lines[line] = before + value + (after.trim() ? " ".repeat(gap) + after.trim() : "");
-    return lines.join("\n");
+// The text with a value replaced, or added to its table in the form that this has.
+export function withValue(text: string, { table, key }: Place, value: string): string {
+  const places = placesOf(text);
+  const path = joined(table, key);
+  const found = entryOf(places, { table, key });
+  if (found) return replaced(text, found, value);
+  const braces = places.entries.filter(({ path: outer, from }) => text[from] === "{" && path.startsWith(`${outer}.`)).at(-1);
+  if (braces) {
+    const inside = text.slice(braces.from + 1, braces.to - 1).trim();
+    const added = `${path.slice(braces.path.length + 1)} = ${value}`;
+    return replaced(text, braces, `{ ${inside ? `${inside}, ` : ""}${added} }`);
   }
-  const added = `${place.key} = ${value}`;
-  const heading = lines.findIndex((found) => headingOf(found) === place.table);
-  if (heading < 0) return `${text.trimEnd()}\n\n[${place.table}]\n${added}\n`;
-  lines.splice(endOfTable(lines, heading), 0, added);
-  return lines.join("\n");
+  // The last value of the table, below its heading or with dotted keys below that of an outer one.
+  const isOfTable = (entry: Entry) => !entry.isInBraces && entry.path.startsWith(`${table}.`) && path.startsWith(joined(entry.section, ""));
+  const last = places.entries.filter(isOfTable).at(-1);
+  const from = last?.to ?? places.headings.get(table);
+  if (from === undefined) return `${text.trimEnd()}\n\n[${table}]\n${key} = ${value}\n`;
+  const end = text.indexOf("\n", from);
+  const at = end < 0 ? text.length : end;
+  return `${text.slice(0, at)}\n${last ? path.slice(joined(last.section, "").length) : key} = ${value}${text.slice(at)}`;
 }
 
 // The values that differ between two cases, by table and key; a list of tables has numbers.
@@ -62,43 +65,31 @@ export function changed(before: string, after: string): [key: string, before?: s
 }
 
 function valuesOf(text: string): Map<string, string> {
-  const [values, seen] = [new Map<string, string>(), new Map<string, number>()];
-  let table = "";
-  for (const line of text.split("\n")) {
-    const heading = headingOf(line);
-    if (heading !== undefined) {
-      const count = (seen.get(heading) ?? 0) + 1;
-      seen.set(heading, count);
-      table = `${heading}${count > 1 ? ` ${count}` : ""}.`;
-    }
-    const key = keyOf(line);
-    if (key !== undefined) values.set(table + key, VALUE.exec(line)?.[2] ?? "");
-  }
-  return values;
+  const plain = placesOf(text).entries.filter(({ from }) => text[from] !== "{");
+  return new Map(plain.map(({ path, from, to }) => [path, text.slice(from, to).replaceAll(/\s+/g, " ")]));
 }
 
-function lineOf(lines: string[], { table, key }: Place): number | undefined {
-  const found = lines.findIndex((line, index) => keyOf(line) === key && tableAt(lines, index) === table);
-  return found < 0 ? undefined : found;
+// A key that differs in words; long lists have none of their numbers.
+export function inWords(before?: string, after?: string): string {
+  const isLong = (value?: string) => value?.startsWith("[") && value.length > LONG;
+  if (isLong(before) && isLong(after)) return "other points";
+  const words = (value?: string) => (value === undefined ? "not given" : isLong(value) ? "points" : value);
+  return `${words(before)} → ${words(after)}`;
+}
+
+// Letters of a list that is read at a glance.
+const LONG = 40;
+
+function entryOf({ entries }: Places, { table, key }: Place): Entry | undefined {
+  return entries.find(({ path }) => path === joined(table, key));
+}
+
+function replaced(text: string, { from, to }: Entry, value: string): string {
+  // A comment after it stays in its column.
+  const after = text.slice(to).replace(/^[ \t]+(?=#)/, (gap) => " ".repeat(Math.max(1, gap.length + to - from - value.length)));
+  return text.slice(0, from) + value + after;
 }
 
 export function keyOf(line: string): string | undefined {
   return /^\s*([A-Za-z0-9_-]+)\s*=/.exec(line)?.[1];
-}
-
-// A number or a word has no `#` in it.
-const VALUE = /^(\s*[A-Za-z0-9_-]+\s*=\s*)("[^"]*"|[^#]*?)(\s*(?:#.*)?)$/;
-
-function parts(line: string): { before: string; value: string; after: string } {
-  const [, before, value, after] = VALUE.exec(line)!;
-  return { before: before!, value: value!, after: after! };
-}
-
-// After the last line of a table that is neither empty nor a comment.
-function endOfTable(lines: string[], heading: number): number {
-  let last = heading;
-  for (let i = heading + 1; i < lines.length && headingOf(lines[i]!) === undefined; i++) {
-    if (/^\s*[^\s#]/.test(lines[i]!)) last = i;
-  }
-  return last + 1;
 }

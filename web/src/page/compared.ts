@@ -6,7 +6,7 @@ import { linked } from "../linked";
 import { Plot } from "../plots";
 import type { Scene } from "../scene";
 import { Viewer } from "../viewer";
-import { changed } from "./case_text";
+import { changed, inWords } from "./case_text";
 import { comparison, verdict } from "./numbers";
 import type { Found } from "./shown_run";
 
@@ -73,7 +73,7 @@ export class Compared {
 function settings(kept: string, now: string): HTMLElement {
   const all = changed(kept, now);
   if (!all.length) return element("p", { class: "note" }, "Both runs have the same settings.");
-  const rows = all.map(([key, before, after]) => element("li", {}, element("code", {}, key), `: ${before ?? "not given"} → ${after ?? "not given"}`));
+  const rows = all.map(([key, before, after]) => element("li", {}, element("code", {}, key), `: ${inWords(before, after)}`));
   return element("ul", { class: "settings", "aria-label": "Changed settings" }, ...rows);
 }
 
