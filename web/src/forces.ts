@@ -1,27 +1,28 @@
-// The forces of the two sides of the knee, from the pressures of an instant.
+// The vertical forces on the surface, from the pressures of an instant.
 
 import { Vector3 } from "three";
 import type { Pressed } from "./scene";
 import type { Force } from "./stage";
 
-// The share of each node of the surface, mm²: a quarter of each face around it.
+// The share of each node of the surface as it is seen from above, mm²: a quarter of each face around it, by which a slope presses
+// downwards.
 export function shares(places: Float32Array, quads: ArrayLike<number>): Float32Array {
   const share = new Float32Array(places.length / 3);
   const at = (node: number) => new Vector3().fromArray(places, 3 * node);
   for (let i = 0; i < quads.length; i += 4) {
     const corners = [0, 1, 2, 3].map((corner) => quads[i + corner]!);
     const [a, b, c, d] = corners.map(at);
-    const area = c!.sub(a!).cross(d!.sub(b!)).length() / 2;
+    const area = c!.sub(a!).cross(d!.sub(b!)).y / 2;
     for (const node of corners) share[node]! += area / 4;
   }
   return share;
 }
 
-// The force of each side at its centre of pressure, left (z below 0) and right; MPa times mm² is N.
-export function forces({ nodes, pressures }: Pressed, places: Float32Array, share: Float32Array): Force[] {
+// The force of each side at its centre of pressure, left (z below 0) and right, or that of the whole surface; MPa times mm² is N.
+export function forces({ nodes, pressures }: Pressed, places: Float32Array, share: Float32Array, hasSides: boolean): Force[] {
   const sides = [new Side(), new Side()];
   nodes.forEach((node, index) => {
-    const side = sides[places[3 * node + 2]! < 0 ? 0 : 1]!;
+    const side = sides[hasSides && places[3 * node + 2]! < 0 ? 0 : 1]!;
     side.add(pressures[index]! * share[node]!, new Vector3().fromArray(places, 3 * node));
   });
   return sides.filter((side) => side.newtons > 0).map((side) => side.force());

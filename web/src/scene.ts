@@ -27,6 +27,8 @@ interface Facts {
   title: string;
   // Names of +x, -x, -z and +z.
   directions: string[];
+  // Whether the surface has one side at z below 0 and one above, as that of a knee.
+  has_sides: boolean;
   // JSON has no NaN: an update whose cycles are not known has none.
   updates: (number | null)[];
   fields: Field[];

@@ -135,7 +135,7 @@ export class Viewer {
     const pressed = cycle.pressed?.[instant];
     this.stage.moveFemur(matrixOf(cycle.poses.subarray(12 * instant, 12 * instant + 12)));
     if (pressed) {
-      const found = forces(pressed, this.surface, this.share);
+      const found = forces(pressed, this.surface, this.share, this.scene.facts.has_sides);
       this.stage.press(found);
       if (isRead) this.describe(cycle, instant, found);
     }

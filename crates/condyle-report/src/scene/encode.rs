@@ -43,6 +43,7 @@ impl Scene {
         arrays.to_bytes(&json!({
             "title": self.title,
             "directions": directions,
+            "has_sides": self.directions.is_knee(),
             "updates": updates,
             "fields": fields,
             "cycles": cycles,
