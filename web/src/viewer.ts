@@ -37,9 +37,10 @@ const VIEWS: [View, string][] = [
 
 // What is shown; absent parts stay as they are.
 export interface Chosen {
-  update?: number;
+  // Cycles before the update.
+  cycles?: number;
   field?: string;
-  instant?: number;
+  percent?: number;
 }
 
 interface Cycle {
@@ -168,9 +169,9 @@ export class Viewer {
   }
 
   // Takes what was chosen in another viewer.
-  choose({ update, field, instant }: Chosen): void {
-    if (update !== undefined && update < this.scene.facts.updates.length) this.showUpdate(update);
-    if (instant !== undefined) this.showInstant(Math.min(instant, (this.cycle?.percents.length ?? 1) - 1));
+  choose({ cycles, field, percent }: Chosen): void {
+    if (cycles !== undefined) this.showUpdate(updateAfter(this.scene, cycles));
+    if (percent !== undefined) this.showPercent(percent);
     if (field === undefined || ![...this.fields.options].some(({ value }) => value === field)) return;
     this.fields.value = field;
     this.colourBy(field);
@@ -278,12 +279,13 @@ export class Viewer {
 
   private chooseUpdate(update: number): void {
     this.showUpdate(update);
-    this.onChoose({ update });
+    const cycles = this.scene.facts.updates[update] ?? undefined;
+    this.onChoose({ cycles });
   }
 
   private chooseInstant(instant: number): void {
     this.showInstant(instant);
-    this.onChoose({ instant });
+    this.onChoose({ percent: this.cycle?.percents[instant] });
   }
 
   private chooseField(field: string): void {
