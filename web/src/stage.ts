@@ -23,6 +23,7 @@ import {
   WebGLRenderer,
 } from "three";
 import { OrbitControls } from "three/addons/controls/OrbitControls.js";
+import { sharedNodes } from "./border";
 import type { ColourMap, Range } from "./colours";
 import { element } from "./dom";
 import { FlatStage } from "./flat_stage";
@@ -100,6 +101,8 @@ export class Stage {
   private readonly arrows: ArrowHelper[] = [];
   private grips: Grips | undefined;
   private readonly unworn: Float32Array;
+  // Vertices of the skin, and the nodes of the surface that they follow.
+  private readonly shared: [vertex: number, node: number][];
   private readonly neutral = new Matrix4();
   private readonly isSlow: boolean;
   private paper = new Color();
@@ -122,6 +125,7 @@ export class Stage {
     this.colours = new Float32Array(this.unworn.length);
     this.surface = new Mesh(surfaceGeometry(scene, this.colours), new Matter({ side: FrontSide }));
     const skin = (this.skin = new Mesh(bodyGeometry(scene, "skin"), new Matter({ colour: SKIN, side: FrontSide })));
+    this.shared = sharedNodes(scene.values("skin.nodes"), this.unworn, scene.whole("surface.quads"));
     this.inside = [this.surface, skin].map((mesh) => new Mesh(mesh.geometry, this.cutFace));
     for (const mesh of this.inside) mesh.visible = false;
     this.world.add(this.surface, skin, ...this.inside);
@@ -165,6 +169,10 @@ export class Stage {
     }
     places.needsUpdate = true;
     this.surface.geometry.computeVertexNormals();
+    const walls = this.skin.geometry.getAttribute("position") as BufferAttribute;
+    for (const [vertex, node] of this.shared) walls.copyAt(vertex, places, node);
+    walls.needsUpdate = true;
+    this.skin.geometry.computeVertexNormals();
     this.ask();
   }
 
