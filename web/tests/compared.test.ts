@@ -1,7 +1,8 @@
 import assert from "node:assert/strict";
 import test from "node:test";
-import { fill } from "../src/difference_map";
+import { fill, obstacle } from "../src/difference_map";
 import { changed, inWords } from "../src/page/case_text";
+import { headlinesOf } from "../src/page/numbers";
 
 test("the settings that differ are listed by table and key", () => {
   const before = 'title = "A"\n[femur]\nradius_mm = 24.0 # of a condyle\n[[laws]]\nk = 1\n[[laws]]\nk = 2\n';
@@ -28,6 +29,33 @@ test("settings of several lines differ by all of their numbers", () => {
 test("tables below a list have its number", () => {
   const joints = (peak: number) => `[[joints]]\nname = "a"\n[joints.load]\nscale = 1\n[[joints]]\nname = "b"\n[joints.load]\nscale = ${peak}\n`;
   assert.deepEqual(changed(joints(1), joints(2)), [["joints 2.load.scale", "1", "2"]]);
+});
+
+test("only runs on the same surface of the same side are subtracted", () => {
+  const surface = (directions: string[], quads: number[], nodes: number[]) => ({
+    facts: { directions },
+    whole: () => quads,
+    values: () => Float32Array.from(nodes),
+  });
+  const right = surface(["Anterior", "Posterior", "Medial", "Lateral"], [0, 1, 2, 3], [0, 0, 0, 1, 0, 0]);
+  const left = surface(["Anterior", "Posterior", "Lateral", "Medial"], [0, 1, 2, 3], [0, 0, 0, 1, 0, 0]);
+  const { directions } = right.facts;
+  assert.equal(obstacle(right, right), undefined);
+  assert.match(obstacle(right, left)!, /a right joint and the other a left one/);
+  assert.match(obstacle(right, surface(directions, [0, 1, 2, 3], [0, 0, 0, 1.1, 0, 0]))!, /different shapes/);
+  assert.match(obstacle(right, surface(directions, [0, 1, 2, 4], [0, 0, 0, 1, 0, 0, 2, 0, 0]))!, /different meshes \(2 and 3 nodes\)/);
+});
+
+test("numbers that neither run has are left out", () => {
+  const hip = { mass_loss_mg: 101.8, ap_range_mm: null as unknown as number };
+  assert.deepEqual(
+    headlinesOf(hip).map(({ key }) => key),
+    ["mass_loss_mg"],
+  );
+  assert.deepEqual(
+    headlinesOf(hip, { ap_range_mm: 5 }).map(({ key }) => key),
+    ["mass_loss_mg", "ap_range_mm"],
+  );
 });
 
 test("a triangle has the linear field of its corners, whichever way it turns", () => {

@@ -1,6 +1,6 @@
 // Two designs live: the run that was kept beside the present one, in one view, with their differences.
 
-import { differenceMap } from "../difference_map";
+import { differenceMap, obstacle } from "../difference_map";
 import { button, element } from "../dom";
 import { linked } from "../linked";
 import { Plot } from "../plots";
@@ -41,8 +41,7 @@ export class Compared {
     linked([kept.viewer, present].filter((viewer) => viewer !== undefined));
     this.plots.forEach((plot) => plot.dispose());
     this.plots = CHARTS.flatMap((id) => sideBySide(kept.found.scene, now.scene, id));
-    const field = now.scene.facts.fields.find(({ name }) => name === "wear_depth_mm");
-    const map = field && differenceMap(kept.found.scene, now.scene, field);
+    const map = mapOf(kept.found, now);
     const key = element("p", { class: "note" }, "Thick and yellow: the kept run; thin and blue: this run.");
     const curves = element("div", {}, ...this.plots.map((plot) => plot.box), key);
     const box = element("div", { class: "compared" }, ...(map ? [map] : []), curves);
@@ -75,6 +74,15 @@ function settings(kept: string, now: string): HTMLElement {
   if (!all.length) return element("p", { class: "note" }, "Both runs have the same settings.");
   const rows = all.map(([key, before, after]) => element("li", {}, element("code", {}, key), `: ${inWords(before, after)}`));
   return element("ul", { class: "settings", "aria-label": "Changed settings" }, ...rows);
+}
+
+// The map of the difference in wear depth, or a sentence why there is none; neither without wear depths.
+function mapOf(kept: Found, now: Found): HTMLElement | undefined {
+  const field = now.scene.facts.fields.find(({ name }) => name === "wear_depth_mm");
+  if (!field || !kept.scene.facts.updates.length) return undefined;
+  const [before, after] = [kept, now].map(({ summary }) => summary.joint);
+  const why = before === after ? obstacle(kept.scene, now.scene) : `they are of different joints (${before} and ${after})`;
+  return why ? element("p", { class: "note" }, `Wear depths cannot be subtracted: ${why}.`) : differenceMap(kept.scene, now.scene, field);
 }
 
 // A chart of two runs; none where one of them lacks it.

@@ -18,6 +18,7 @@ interface Prediction {
 }
 
 export interface Summary extends Numbers {
+  joint: string;
   error: ({ wall_s: number } & Record<string, { total: number } | number>) | null;
   plausibility: { message: string; advice: string }[];
   notes: { message: string; advice: string }[];
@@ -28,6 +29,11 @@ export interface Summary extends Numbers {
 function shownValue(summary: Summary, { key, isShare }: Headline): number {
   const value = summary[key] ?? NaN;
   return isShare ? 100 * value : value;
+}
+
+// The numbers that one of the runs has: other joints than the knee lack some.
+export function headlinesOf(...summaries: Partial<Numbers>[]): Headline[] {
+  return HEADLINES.filter(({ key }) => summaries.some((summary) => (summary[key] ?? null) !== null));
 }
 
 function errorOf(summary: Summary, name: string): number | undefined {
@@ -45,7 +51,7 @@ function capital(label: string): string {
 
 // Each number in large type, with its discretisation error where one was estimated.
 export function tiles(summary: Summary): HTMLElement[] {
-  return HEADLINES.map((headline) => {
+  return headlinesOf(summary).map((headline) => {
     const { key, label, unit } = headline;
     const shown = inDigits(shownValue(summary, headline));
     const value = element("dd", { "data-number": key }, shown, element("span", {}, ` ${printed(unit)}`));
@@ -76,11 +82,11 @@ export function notes(summary: Summary): HTMLElement[] {
 export function comparison(kept: Summary, now: Summary): HTMLTableElement {
   const cells = (tag: "th" | "td", words: string[]) => words.map((text) => element(tag, {}, text));
   const head = element("tr", {}, ...cells("th", ["", "kept", "this run", "difference", "of the errors"]));
-  const rows = HEADLINES.map((headline) => {
+  const rows = headlinesOf(kept, now).map((headline) => {
     const [before, after] = [shownValue(kept, headline), shownValue(now, headline)];
     const [first, second] = [kept, now].map((summary) => errorOf(summary, headline.key));
     const withError = (value: number, error?: number) => (error === undefined ? inDigits(value) : `${inDigits(value)} ± ${Number(error.toPrecision(2))}`);
-    const change = before === 0 ? "–" : signed(100 * (after / before - 1), "%");
+    const change = before === 0 || !Number.isFinite(after / before) ? "–" : signed(100 * (after / before - 1), "%");
     const named = element("th", { scope: "row" }, `${capital(headline.label)}, ${printed(headline.unit)}`);
     return element("tr", {}, named, ...cells("td", [withError(before, first), withError(after, second), change, times(after - before, first, second)]));
   });
