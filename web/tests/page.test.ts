@@ -1,7 +1,7 @@
 import assert from "node:assert/strict";
 import test from "node:test";
 import { femurByName } from "../src/page/dropped";
-import { packed, unpacked } from "../src/page/memory";
+import { Memory, packed, unpacked } from "../src/page/memory";
 import { CaseSchema } from "../src/page/schema";
 import { zip } from "../src/page/zip";
 
@@ -39,6 +39,46 @@ test("a case comes back from its address", async () => {
   assert.equal(await unpacked(letters), text);
   assert.equal(await unpacked(letters.slice(5)), undefined);
   assert.equal(await unpacked("%"), undefined);
+});
+
+// The browser's address and its history, and what it stores.
+function browser(hash: string) {
+  const location = { hash, pathname: "/page/", search: "" };
+  const pushed: { state: { text: string } | null; address: string }[] = [];
+  const stored = new Map<string, string>();
+  const listeners: ((event: { state: unknown }) => void)[] = [];
+  const history = { pushState: (state: { text: string } | null, _: string, address: string) => pushed.push({ state, address }) };
+  const localStorage = { getItem: (key: string) => stored.get(key) ?? null, setItem: (key: string, text: string) => stored.set(key, text) };
+  const addEventListener = (_: string, listener: (event: { state: unknown }) => void) => listeners.push(listener);
+  Object.assign(globalThis, { location, history, localStorage, addEventListener });
+  return { location, pushed, stored, goTo: (state: unknown) => listeners.forEach((listener) => listener({ state })) };
+}
+
+test("the address has no case while meshes are shown, and that of the next case after them", async () => {
+  const { location, pushed, stored, goTo } = browser("");
+  const memory = new Memory("generic");
+  assert.equal(await memory.recalled(), "generic");
+  await memory.remember("knee", true);
+  await memory.remember("of meshes", false);
+  await memory.remember("hip", true);
+  assert.deepEqual(
+    pushed.map(({ address }) => address),
+    [`#case=${await packed("knee")}`, "/page/", `#case=${await packed("hip")}`],
+  );
+  assert.deepEqual([...stored.values()], ["hip"]);
+  // Back to the meshes, which this visit still has.
+  location.hash = "";
+  const returned = new Promise((done) => memory.onReturn(done));
+  goTo(pushed[1]!.state);
+  assert.equal(await returned, "of meshes");
+});
+
+test("a damaged address has no case, not even that of the last visit", async () => {
+  const whole = `#case=${await packed("[contact]\nfriction = 0.1\n".repeat(9))}`;
+  for (const hash of [whole.slice(0, -4), "#case=%%%"]) {
+    browser(hash).stored.set("condyle.case", "of the last visit");
+    assert.equal(await new Memory("generic").recalled(), undefined, hash);
+  }
 });
 
 test("the same files give the same zip", async () => {

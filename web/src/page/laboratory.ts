@@ -107,11 +107,6 @@ export class Laboratory {
     return this.folder[REPORT] && this.folder;
   }
 
-  // The meshes that the case names.
-  get meshes(): Files {
-    return this.bodies;
-  }
-
   // The files of the case; a worker gets copies of them.
   private files(): Files {
     const text = new TextEncoder().encode(this.text);

@@ -27,41 +27,46 @@ export async function unpacked(letters: string): Promise<string | undefined> {
 }
 
 export class Memory {
-  private shown: string;
+  private shown: string | undefined;
 
   // `silent`: the case of an address without one.
   constructor(private readonly silent: string) {
     this.shown = silent;
   }
 
-  // The case of the address, or else the one of the last visit; undefined without either, or with a damaged address.
+  // The case of the address, or else the one of the last visit, or that of an address without one; undefined if the address is damaged.
   async recalled(): Promise<string | undefined> {
-    const { hash } = location;
-    const text = hash.startsWith(MARK) ? await unpacked(hash.slice(MARK.length)) : stored();
-    if (text !== undefined) this.shown = text;
-    return text;
+    this.shown = await ofAddress(() => stored() ?? this.silent);
+    return this.shown;
   }
 
-  // Remembers a case that was solved. The address before it is one step back.
-  async remember(text: string): Promise<void> {
-    store(text);
+  // Remembers a case that was solved. The address before it is one step back. An address has no meshes: a case that names some is kept
+  // for this visit only, with an address without a case.
+  async remember(text: string, isWhole: boolean): Promise<void> {
+    if (isWhole) store(text);
     if (text === this.shown) return;
     this.shown = text;
-    const address = text === this.silent ? location.pathname + location.search : MARK + (await packed(text));
-    history.pushState(null, "", address);
+    const bare = location.pathname + location.search;
+    if (isWhole) history.pushState(null, "", text === this.silent ? bare : MARK + (await packed(text)));
+    else history.pushState({ text }, "", bare);
   }
 
-  // Calls with the case of an address that was gone back or forward to.
-  onReturn(returned: (text: string) => void): void {
-    const show = async () => {
-      const { hash } = location;
-      const text = hash.startsWith(MARK) ? await unpacked(hash.slice(MARK.length)) : this.silent;
-      if (text === undefined || text === this.shown) return;
+  // Calls with the case of an address that was gone back or forward to; undefined if that is damaged.
+  onReturn(returned: (text: string | undefined) => void): void {
+    const show = async (kept: { text: string } | null) => {
+      const text = await ofAddress(() => kept?.text ?? this.silent);
+      if (text === this.shown) return;
       this.shown = text;
       returned(text);
     };
-    addEventListener("popstate", () => void show());
+    addEventListener("popstate", ({ state }) => void show(state as { text: string } | null));
   }
+}
+
+// The case of the address, or `otherwise` without one; undefined if it is damaged.
+async function ofAddress(otherwise: () => string): Promise<string | undefined> {
+  const { hash } = location;
+  return hash.startsWith(MARK) ? unpacked(hash.slice(MARK.length)) : otherwise();
 }
 
 // Without permission to store, the page remembers nothing.

@@ -6,6 +6,7 @@ import { inDigits } from "../digits";
 import { save, saveText } from "../save";
 import viewStyle from "../style.css";
 import schema from "../../../cases/condyle.schema.json";
+import { valueAt } from "./case_text";
 import { Compared } from "./compared";
 import { gripsOf } from "./dimensions";
 import { take, takeDropped, type Bodies } from "./dropped";
@@ -23,8 +24,15 @@ import { zip } from "./zip";
 
 const NOTHING_TO_SAVE = "There is no finished run to save: change the case, and let its run end";
 
+const DAMAGED = "error: the address is damaged: its case cannot be read\n\nCopy the whole link, ask for it again, or choose an example.";
+
 function byId(id: string): HTMLElement {
   return document.getElementById(id)!;
+}
+
+// Meshes are in no address: a case that names them would not run elsewhere.
+function namesMeshes(text: string): boolean {
+  return ["femur", "insert"].some((table) => valueAt(text, { table, key: "file" }) !== undefined);
 }
 
 // Waits until the page is painted; the time after it is that of another task.
@@ -67,11 +75,13 @@ class Page {
     this.nameExample(text);
     this.buttons();
     this.takeFiles();
-    memory.onReturn((text) => this.open(text));
+    memory.onReturn((text) => (text === undefined ? this.refuse(DAMAGED) : this.open(text)));
   }
 
-  begin(): Promise<void> {
-    return this.laboratory.run();
+  // Runs its case; `isDamaged`: the address has a case that cannot be read.
+  async begin(isDamaged: boolean): Promise<void> {
+    if (isDamaged) this.refuse(DAMAGED);
+    else await this.laboratory.run();
   }
 
   private buttons(): void {
@@ -102,7 +112,7 @@ class Page {
     const listener = {
       bodies: (bodies: Bodies) => void this.draft(bodies),
       caseText: (text: string) => this.open(text),
-      refused: (why: string) => this.fail({ message: why, problems: [] }),
+      refused: (why: string) => this.refuse(why),
     };
     takeDropped(listener);
     const input = byId("files") as HTMLInputElement;
@@ -181,17 +191,20 @@ class Page {
     this.shown.showCharts();
     await painted();
     this.compared.show(found, this.shown.viewer);
-    // Meshes are in no address: with them, the case would not run elsewhere.
-    if (Object.keys(this.laboratory.meshes).length === 0) void this.memory.remember(this.laboratory.text);
+    void this.memory.remember(this.laboratory.text, !namesMeshes(found.text));
     document.documentElement.dataset["ready"] = "yes";
     document.documentElement.dataset["runs"] = String(++this.runs);
+  }
+
+  private refuse(message: string): void {
+    this.fail({ message, problems: [] });
   }
 
   private fail(failure: Failure | null): void {
     this.editor.tell(failure);
     byId("failure").hidden = !failure;
     byId("failure").textContent = failure?.message ?? "";
-    if (failure) this.say("This case does not run; the previous run is shown.");
+    if (failure) this.say(this.now ? "This case does not run; the previous run is shown." : "This case does not run.");
   }
 
   private cancel(): void {
@@ -235,8 +248,8 @@ async function start(): Promise<void> {
   const generic = EXAMPLES[0]![1];
   const memory = new Memory(generic);
   const [module, recalled] = await Promise.all([compiled(), memory.recalled()]);
-  const page = new Page(module, recalled ?? generic, memory);
-  await page.begin();
+  const page = new Page(module, recalled ?? "", memory);
+  await page.begin(recalled === undefined);
   // Refused in a frame of another site, where the page works with the network only.
   if ("serviceWorker" in navigator) await navigator.serviceWorker.register("service_worker.js").catch(() => undefined);
 }
