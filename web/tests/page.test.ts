@@ -1,8 +1,10 @@
 import assert from "node:assert/strict";
 import test from "node:test";
 import { femurByName } from "../src/page/dropped";
+import { valuesOf } from "../src/page/case_text";
 import { Memory, packed, unpacked } from "../src/page/memory";
 import { CaseSchema } from "../src/page/schema";
+import { shownAt } from "../src/page/sliders";
 import { zip } from "../src/page/zip";
 
 test("the femur is the file whose name fits, if only one way fits", () => {
@@ -79,6 +81,27 @@ test("a damaged address has no case, not even that of the last visit", async () 
     browser(hash).stored.set("condyle.case", "of the last visit");
     assert.equal(await new Memory("generic").recalled(), undefined, hash);
   }
+});
+
+test("a slider has the number of the case, its default, or why it has none", () => {
+  const varus = { table: "femur", key: "varus_deg", shapes: ["generic", "mesh"] };
+  const load = { table: "machine.axial_force", key: "scale", isFactor: true };
+  const friction = { table: "contact", key: "friction" };
+  const knee = {
+    joint: "knee",
+    values: valuesOf('[femur]\nshape = "generic"\nvarus_deg = 0.0\n[contact]\nfriction = 0.07\n[machine.axial_force]\nknots_n = [[0, 1]]\n'),
+  };
+  const hip = { joint: "hip", values: valuesOf('[femur]\nshape = "sphere"\nvarus_deg = 0.0\n[contact]\nfriction = 0.05\n') };
+  const shown = (moved: typeof friction, text: string, of?: typeof knee) => shownAt(moved, valuesOf(text), of);
+  assert.equal(shown(varus, "femur.varus_deg = 2", knee), 2);
+  assert.equal(shown(varus, "", knee), 0);
+  assert.equal(shown(varus, "", hip), "not of this joint");
+  assert.equal(shown({ ...varus, key: "distal_radius_mm", shapes: ["generic"] } as typeof varus, '[femur]\nshape = "mesh"', knee), "not of this shape");
+  assert.equal(shown(load, "[machine]\naxial_force.scale = 0.8", knee), 0.8);
+  assert.equal(shown(load, "", knee), 1);
+  assert.equal(shown(load, "", hip), "not of this joint");
+  assert.equal(shown(friction, "", hip), 0.05);
+  assert.equal(shown(friction, ""), "–");
 });
 
 test("the same files give the same zip", async () => {

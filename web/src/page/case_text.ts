@@ -27,11 +27,19 @@ export function tableAt(lines: string[], line: number): string {
 // The text of a value, without quotes around it.
 export function valueAt(text: string, place: Place): string | undefined {
   const found = entryOf(placesOf(text), place);
-  return found && text.slice(found.from, found.to).replace(/^(["'])(.*)\1$/, "$2");
+  return found && unquoted(text.slice(found.from, found.to));
+}
+
+export function unquoted(value: string): string {
+  return value.replace(/^(["'])(.*)\1$/, "$2");
 }
 
 export function numberOf(text: string, place: Place): number | undefined {
-  const value = Number(valueAt(text, place)?.replaceAll("_", ""));
+  return numberIn(valueAt(text, place));
+}
+
+export function numberIn(words: string | undefined): number | undefined {
+  const value = Number(words?.replaceAll("_", ""));
   return Number.isFinite(value) ? value : undefined;
 }
 
@@ -64,7 +72,8 @@ export function changed(before: string, after: string): [key: string, before?: s
   return keys.filter((key) => first.get(key) !== second.get(key)).map((key) => [key, first.get(key), second.get(key)]);
 }
 
-function valuesOf(text: string): Map<string, string> {
+// The values of a case as they are written, by table and key.
+export function valuesOf(text: string): Map<string, string> {
   const plain = placesOf(text).entries.filter(({ from }) => text[from] !== "{");
   return new Map(plain.map(({ path, from, to }) => [path, text.slice(from, to).replaceAll(/\s+/g, " ")]));
 }

@@ -6,7 +6,7 @@ import { inDigits } from "../digits";
 import { save, saveText } from "../save";
 import viewStyle from "../style.css";
 import schema from "../../../cases/condyle.schema.json";
-import { valueAt } from "./case_text";
+import { valueAt, valuesOf } from "./case_text";
 import { Compared } from "./compared";
 import { gripsOf } from "./dimensions";
 import { take, takeDropped, type Bodies } from "./dropped";
@@ -127,7 +127,7 @@ class Page {
 
   private open(text: string): void {
     this.change(text);
-    this.sliders.show();
+    this.sliders.showDefaults();
   }
 
   private change(text: string): void {
@@ -180,6 +180,7 @@ class Page {
   private async find(found: Found): Promise<void> {
     const { summary } = found;
     this.now = found;
+    this.sliders.showDefaults({ joint: summary.joint, values: valuesOf(found.text) });
     this.showNumbers(summary, false);
     const solved = summary.wall_s + (summary.error?.wall_s ?? 0);
     this.say(`${inDigits(summary.cycles / 1e6)} million cycles, solved in ${inDigits(solved)} s on this machine`);

@@ -2,7 +2,7 @@
 
 import { element, Slider } from "../dom";
 import { inDigits } from "../digits";
-import { numberOf, valueAt, withValue, type Place } from "./case_text";
+import { numberIn, unquoted, valuesOf, withValue, type Place } from "./case_text";
 
 export interface Limits {
   label: string;
@@ -13,20 +13,22 @@ export interface Limits {
 
 interface Moved extends Place, Limits {
   unit: string;
-  // The default of condyle where the case has no value.
-  silent: number;
-  // The shape of the body that has the key; absent where every shape has it.
-  shape?: string;
+  // The shapes of the body that have the key; absent where every shape has it.
+  shapes?: string[];
+  // A factor on values of its table. The case with every default has their products instead, and no factor.
+  isFactor?: boolean;
   // Factor from the number shown to that of the case.
   times?: number;
 }
 
+const GENERIC = ["generic"];
+const OF_KNEES = ["generic", "mesh"];
 const GROUPS: [heading: string, moved: Moved[]][] = [
   [
     "Femur",
     [
-      { table: "femur", key: "distal_radius_mm", label: "Distal radius", unit: "mm", least: 25, most: 60, step: 0.5, silent: 38, shape: "generic" },
-      { table: "femur", key: "posterior_radius_mm", label: "Posterior radius", unit: "mm", least: 15, most: 30, step: 0.5, silent: 22, shape: "generic" },
+      { table: "femur", key: "distal_radius_mm", label: "Distal radius", unit: "mm", least: 25, most: 60, step: 0.5, shapes: GENERIC },
+      { table: "femur", key: "posterior_radius_mm", label: "Posterior radius", unit: "mm", least: 15, most: 30, step: 0.5, shapes: GENERIC },
       {
         table: "femur",
         key: "coronal_radius_mm",
@@ -35,8 +37,7 @@ const GROUPS: [heading: string, moved: Moved[]][] = [
         least: 15,
         most: 29,
         step: 0.5,
-        silent: 24,
-        shape: "generic",
+        shapes: GENERIC,
       },
     ],
   ],
@@ -51,8 +52,7 @@ const GROUPS: [heading: string, moved: Moved[]][] = [
         least: 42,
         most: 120,
         step: 1,
-        silent: 55,
-        shape: "generic",
+        shapes: GENERIC,
       },
       {
         table: "insert",
@@ -62,26 +62,25 @@ const GROUPS: [heading: string, moved: Moved[]][] = [
         least: 25,
         most: 100,
         step: 1,
-        silent: 30,
-        shape: "generic",
+        shapes: GENERIC,
       },
-      { table: "insert", key: "thickness_mm", label: "Thickness", unit: "mm", least: 4, most: 15, step: 0.5, silent: 9, shape: "generic" },
+      { table: "insert", key: "thickness_mm", label: "Thickness", unit: "mm", least: 4, most: 15, step: 0.5, shapes: GENERIC },
     ],
   ],
   [
     "Placement",
     [
-      { table: "femur", key: "varus_deg", label: "Varus of the femur", unit: "°", least: -4, most: 4, step: 0.25, silent: 0 },
-      { table: "femur", key: "external_rotation_deg", label: "External rotation of the femur", unit: "°", least: -8, most: 8, step: 0.5, silent: 0 },
-      { table: "insert", key: "posterior_slope_deg", label: "Posterior slope of the insert", unit: "°", least: -4, most: 10, step: 0.5, silent: 0 },
+      { table: "femur", key: "varus_deg", label: "Varus of the femur", unit: "°", least: -4, most: 4, step: 0.25, shapes: OF_KNEES },
+      { table: "femur", key: "external_rotation_deg", label: "External rotation of the femur", unit: "°", least: -8, most: 8, step: 0.5, shapes: OF_KNEES },
+      { table: "insert", key: "posterior_slope_deg", label: "Posterior slope of the insert", unit: "°", least: -4, most: 10, step: 0.5, shapes: OF_KNEES },
     ],
   ],
   [
     "Test",
     [
-      { table: "machine.axial_force", key: "scale", label: "Load, relative to the waveform", unit: "", least: 0.4, most: 1.6, step: 0.05, silent: 1 },
-      { table: "contact", key: "friction", label: "Friction", unit: "", least: 0, most: 0.2, step: 0.01, silent: 0.07 },
-      { table: "march", key: "cycles", label: "Cycles", unit: "million", least: 0.5, most: 20, step: 0.5, silent: 5, times: 1e6 },
+      { table: "machine.axial_force", key: "scale", label: "Load, relative to the waveform", unit: "", least: 0.4, most: 1.6, step: 0.05, isFactor: true },
+      { table: "contact", key: "friction", label: "Friction", unit: "", least: 0, most: 0.2, step: 0.01 },
+      { table: "march", key: "cycles", label: "Cycles", unit: "million", least: 0.5, most: 20, step: 0.5, times: 1e6 },
     ],
   ],
 ];
@@ -93,9 +92,28 @@ export function movedAt({ table, key }: Place): Limits {
   return found;
 }
 
+// What the run of a case has told: its joint, and the values of the case with every default.
+export interface Defaults {
+  joint: string;
+  values: Map<string, string>;
+}
+
+// The number of the case for a slider, or why it has none.
+export function shownAt({ table, key, shapes, isFactor }: Place & Partial<Moved>, values: Map<string, string>, defaults?: Defaults): number | string {
+  const at = (name: string) => values.get(`${table}.${name}`) ?? defaults?.values.get(`${table}.${name}`);
+  const shape = unquoted(at("shape") ?? "");
+  if (shapes && shape && !shapes.includes(shape)) return OF_KNEES.includes(shape) ? "not of this shape" : "not of this joint";
+  const written = numberIn(at(key));
+  if (written !== undefined) return written;
+  if (!defaults) return "–";
+  if (isFactor && [...defaults.values.keys()].some((path) => path.startsWith(`${table}.`))) return 1;
+  return defaults.joint === "knee" ? "not of this case" : "not of this joint";
+}
+
 export class Sliders {
   readonly box = element("div", { class: "sliders" });
   private readonly rows: { moved: Moved; slider: Slider }[] = [];
+  private defaults: Defaults | undefined;
 
   constructor(
     private readonly text: () => string,
@@ -110,19 +128,26 @@ export class Sliders {
 
   // Shows the numbers of the present case.
   show(): void {
-    const text = this.text();
+    const values = valuesOf(this.text());
     for (const { moved, slider } of this.rows) {
       const { input } = slider;
-      const times = moved.times ?? 1;
-      const value = numberOf(text, moved);
-      const found = value === undefined ? moved.silent : value / times;
-      input.disabled = moved.shape !== undefined && (valueAt(text, { table: moved.table, key: "shape" }) ?? "generic") !== moved.shape;
-      // A number outside of the slider widens its range.
-      input.min = String(Math.min(moved.least, found));
-      input.max = String(Math.max(moved.most, found));
-      slider.value = found;
-      if (input.disabled) slider.say("not of this shape");
+      const value = shownAt(moved, values, this.defaults);
+      input.disabled = typeof value === "string";
+      if (typeof value === "string") slider.say(value);
+      else {
+        const shown = value / (moved.times ?? 1);
+        // A number outside of the slider widens its range.
+        input.min = String(Math.min(moved.least, shown));
+        input.max = String(Math.max(moved.most, shown));
+        slider.value = shown;
+      }
     }
+  }
+
+  // Shows the defaults of a run; without them, sliders whose number is not in the text wait, since defaults depend on the joint.
+  showDefaults(defaults?: Defaults): void {
+    this.defaults = defaults;
+    this.show();
   }
 
   private row(moved: Moved): HTMLElement {
