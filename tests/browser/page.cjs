@@ -33,7 +33,7 @@ async function open(context, url, heard) {
   return { page, ready_ms: Date.now() - began };
 }
 
-const runs = (page) => page.evaluate(() => Number(document.documentElement.dataset.runs));
+const runs = (page) => page.evaluate(() => Number(document.documentElement.dataset.runs ?? 0));
 const state = (page) => page.locator("#state").innerText();
 const number = (page, name) => page.locator(`[data-number=${name}]`).innerText();
 const write = (page, text) => page.locator("#case-text").fill(text);
@@ -42,7 +42,7 @@ const write = (page, text) => page.locator("#case-text").fill(text);
 async function ran(page, act) {
   const before = await runs(page);
   await act();
-  await page.waitForFunction((count) => Number(document.documentElement.dataset.runs) > count, before);
+  await page.waitForFunction((count) => Number(document.documentElement.dataset.runs ?? 0) > count, before);
   return page;
 }
 
@@ -193,7 +193,11 @@ async function remembered(page) {
 async function examples(page) {
   await ran(page, () => page.getByLabel("Example").selectOption("Pin on disc"));
   assert.match(await page.locator("#case-text").inputValue(), /preset = "pin-on-disc"/);
-  assert(await page.getByLabel("Distal radius").isDisabled(), "a pin has a distal radius");
+  for (const name of ["Distal radius", "Varus of the femur", "Load, relative to the waveform"]) {
+    assert(await page.getByLabel(name).isDisabled(), `a pin has a slider for ${name}`);
+    assert.strictEqual(await page.getByLabel(name).getAttribute("aria-valuetext"), "not of this joint");
+  }
+  assert.strictEqual(await page.locator("[data-number=ap_range_mm]").count(), 0, "a pin has an AP range");
   await ran(page, () => page.getByLabel("Friction").fill("0.05"));
   assert.strictEqual(await page.getByLabel("Example").inputValue(), "");
   await ran(page, () => page.getByLabel("Example").selectOption("Knee, Stanmore simulator"));
@@ -227,6 +231,51 @@ async function comparing(page) {
   await keep(page, "comparison");
   await page.getByRole("button", { name: "Stop comparing" }).click();
   assert.strictEqual(await page.locator(".stage canvas").count(), 1);
+}
+
+// Other loads are a changed setting, other sides have no map, and both views show one instant and the nearest update.
+async function comparingOthers(page) {
+  const told = () => page.locator("#comparison").innerText();
+  const knee = (more) => `[insert]\nedge_mm = 3.0\nlayers = 1\n${more}`;
+  await ran(page, () => write(page, knee("[march]\nupdates = 4\n[time]\nincrements = 80\n")));
+  await page.getByRole("button", { name: "Keep this run" }).click();
+  await ran(page, () => page.getByLabel("Load, relative to the waveform").fill("1.2"));
+  assert.match(await told(), /machine\.axial_force\.knots_n: other points/);
+  assert.strictEqual(await page.locator(".difference canvas").count(), 1);
+  await ran(page, () => write(page, `side = "left"\n${knee("")}`));
+  assert.match(await told(), /cannot be subtracted: one is a right joint and the other a left one/);
+  assert.strictEqual(await page.locator(".difference canvas").count(), 0);
+  await ran(page, () => write(page, knee("[march]\nupdates = 4\ncycles = 10000000\n[time]\nincrements = 40\n")));
+  const status = (of) => page.locator(`${of} .status`).innerText();
+  await page.locator("#present").getByRole("slider", { name: "After update" }).fill("2");
+  assert.deepStrictEqual([await status("#present"), await status("#kept")], Array(2).fill("After 5 million cycles"));
+  await page.locator("#present").getByRole("slider", { name: "Through the cycle" }).fill("19");
+  for (const of of ["#present", "#kept"]) assert.match(await status(of), /^50 % of the last cycle/);
+  await page.getByRole("button", { name: "Stop comparing" }).click();
+}
+
+// A key that the case has in braces is moved there.
+async function otherForms(page) {
+  const text = 'contact = { friction = 0.05 }\n[insert]\nedge_mm = 3.0\nlayers = 1\n[machine]\npreset = "stanmore-force"\naxial_force.scale = 0.8\n';
+  await ran(page, () => write(page, text));
+  assert.strictEqual(await page.getByLabel("Load, relative to the waveform").inputValue(), "0.8");
+  await ran(page, () => page.getByLabel("Load, relative to the waveform").fill("0.9"));
+  await ran(page, () => page.getByLabel("Friction").fill("0.06"));
+  assert.strictEqual(await page.locator("#case-text").inputValue(), text.replace("0.8", "0.9").replace("0.05", "0.06"));
+}
+
+// A link that was cut shows a message and no other case.
+async function cutLink(browser, url, address) {
+  const page = await (await browser.newContext()).newPage();
+  await page.goto(url + new URL(address).hash.slice(0, -20));
+  await page.waitForSelector("#failure:not([hidden])", { timeout: PATIENCE_MS });
+  assert.match(await page.locator("#failure").innerText(), /the address is damaged/);
+  assert.strictEqual(await page.locator("#case-text").inputValue(), "");
+  await page.setViewportSize({ width: 1280, height: 900 });
+  await keep(page, "damaged");
+  await ran(page, () => page.getByLabel("Example").selectOption("Pin on disc"));
+  assert(await page.locator("#failure").isHidden(), "the message stays");
+  await page.context().close();
 }
 
 async function textWithFaults(page) {
@@ -272,6 +321,7 @@ async function dropped(page) {
   const coarse = drafted.replace(/edge_mm = [\d.]+/, "edge_mm = 2.0").replace(/updates = 10 /, "updates = 2 ").replace(/increments = 200/, "increments = 60");
   await ran(page, () => write(page, coarse));
   assert(await page.getByLabel("Distal radius").isDisabled(), "a mesh has a radius");
+  assert.strictEqual(new URL(page.url()).hash, "", "the address has another case than that of the meshes");
   await picture(page);
   await keep(page, "dropped");
 }
@@ -288,6 +338,8 @@ async function drop(page, files) {
 
 async function saved(page) {
   await ran(page, () => write(page, QUICK));
+  // After meshes, a case is in the address again.
+  await page.waitForURL(/#case=/);
   // The time of the run that is shown must be that in the saved folder: the run is not solved again.
   fs.writeFileSync(path.join(made, "state.txt"), await state(page));
   for (const [name, file] of [["Save the results folder", "results.zip"], ["Save the report", "report.html"], ["Save the case", "case.toml"]]) {
@@ -362,6 +414,9 @@ async function main() {
     await remembered(page);
     await examples(page);
     await comparing(page);
+    await comparingOthers(page);
+    await otherForms(page);
+    await cutLink(browser, url, page.url());
     await textWithFaults(page);
     await cancelled(page);
     await dropped(page);
