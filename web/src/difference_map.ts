@@ -1,4 +1,4 @@
-// The difference of a field between two runs on the same surface, seen from above.
+// The difference of a field between two runs, seen from above; their meshes may differ.
 
 import { barMarks } from "./colours";
 import { inDigits } from "./digits";
@@ -15,13 +15,6 @@ const [FIRST, EQUAL, SECOND]: [Rgb, Rgb, Rgb] = [
   [178, 24, 43],
 ];
 
-// What is compared of two scenes.
-interface Surface {
-  facts: Pick<Scene["facts"], "directions">;
-  whole(name: string): ArrayLike<number>;
-  values(name: string): Float32Array;
-}
-
 // Values in squares; NaN beyond the surface.
 interface Grid {
   values: Float32Array;
@@ -36,32 +29,19 @@ interface Frame {
   height: number;
 }
 
-// Distance up to which nodes are at the same place, mm: above the resolution of the scene, below the length of any edge.
-const SAME_PLACE_MM = 0.005;
-
-// Why the surfaces of two runs of the same joint cannot be subtracted; undefined if they can.
-export function obstacle(first: Surface, second: Surface): string | undefined {
+// Why the maps of two runs of a joint cannot be subtracted; undefined if they can. Those of a right and a left joint are mirror images.
+export function obstacle(first: Pick<Scene, "facts">, second: Pick<Scene, "facts">): string | undefined {
   const [left, right] = [first, second].map(({ facts }) => facts.directions.join());
-  if (left !== right) return "one is a right joint and the other a left one: medial is on opposite sides";
-  const isSame = (one: ArrayLike<number>, two: ArrayLike<number>, within: number) =>
-    one.length === two.length && Array.prototype.every.call(one, (value: number, index: number) => Math.abs(value - two[index]!) <= within);
-  if (!isSame(first.whole("surface.quads"), second.whole("surface.quads"), 0)) {
-    const [here, there] = [first, second].map((scene) => scene.values("surface.nodes").length / 3);
-    return `the inserts have different meshes (${here} and ${there} nodes)`;
-  }
-  return isSame(first.values("surface.nodes"), second.values("surface.nodes"), SAME_PLACE_MM) ? undefined : "the inserts have different shapes";
+  return left === right ? undefined : "one is a right joint and the other a left one: medial is on opposite sides";
 }
 
-// The map of `field` after the last update of two runs that have no obstacle; undefined if one of them lacks it.
+// The map of `field` after the last update of both runs; undefined if one of them lacks it.
 export function differenceMap(first: Scene, second: Scene, { name, label, unit }: Field): HTMLElement | undefined {
-  if (![first, second].every(({ facts }) => facts.fields.some((field) => field.name === name))) return undefined;
-  const frame = frameOf(second);
-  const [before, after] = [first, second].map((scene) => scene.field(name, scene.facts.updates.length - 1)) as [Float32Array, Float32Array];
-  const differences = sampled(
-    second,
-    after.map((value, node) => value - before[node]!),
-    frame,
-  ).values;
+  const runs = [first, second];
+  if (runs.some(({ facts }) => !facts.updates.length || !facts.fields.some((field) => field.name === name))) return undefined;
+  const frame = frameOf(runs);
+  const [before, after] = runs.map((scene) => sampled(scene, name, frame)) as [Grid, Grid];
+  const differences = after.values.map((value, square) => value - before.values[square]!);
   const largest = differences.reduce((most, value) => Math.max(most, Math.abs(value) || 0), 0);
   const canvas = element("canvas", { width: frame.width, height: frame.height, role: "img", "aria-label": `Difference of ${label} seen from above` });
   const picture = new ImageData(frame.width, frame.height);
@@ -69,7 +49,7 @@ export function differenceMap(first: Scene, second: Scene, { name, label, unit }
     if (Number.isFinite(value)) picture.data.set([...colour(largest ? value / largest : 0), 255], 4 * square);
   });
   canvas.getContext("2d")!.putImageData(picture, 0, 0);
-  const [front, back, left, right] = second.facts.directions;
+  const [front, back, left, right] = first.facts.directions;
   const around = (words: string | undefined, side: string) => element("span", { class: `side ${side}` }, words ?? "");
   const box = element("div", { class: "flat" }, around(front, "front"), around(left, "left"), canvas, around(right, "right"), around(back, "back"));
   const bar = element("div", { class: "bar" });
@@ -85,20 +65,21 @@ function colour(part: number): Rgb {
   return EQUAL.map((from, index) => from + (end[index]! - from) * Math.abs(part)) as Rgb;
 }
 
-// The rectangle around the surface.
-function frameOf(scene: Scene): Frame {
-  const ends = [0, 2].map((axis) => {
-    const all = scene.values("surface.nodes").filter((_, index) => index % 3 === axis);
-    return [all.reduce((a, b) => Math.min(a, b), Infinity), all.reduce((a, b) => Math.max(a, b), -Infinity)];
-  });
-  const [[xLow, xHigh], [zLow, zHigh]] = ends as [[number, number], [number, number]];
+// The rectangle around both surfaces.
+function frameOf(scenes: Scene[]): Frame {
+  const [x, z] = [0, 2].map((axis) => {
+    const all = scenes.map((scene) => scene.values("surface.nodes").filter((_, index) => index % 3 === axis));
+    return [all.flatMap((one) => one.reduce((a, b) => Math.min(a, b), Infinity)), all.flatMap((one) => one.reduce((a, b) => Math.max(a, b), -Infinity))];
+  }) as [[number[], number[]], [number[], number[]]];
+  const [xLow, xHigh, zLow, zHigh] = [Math.min(...x[0]), Math.max(...x[1]), Math.min(...z[0]), Math.max(...z[1])];
   return { zLow, xHigh, width: Math.ceil((zHigh - zLow) * SQUARES_A_MM), height: Math.ceil((xHigh - xLow) * SQUARES_A_MM) };
 }
 
-function sampled(scene: Scene, field: Float32Array, frame: Frame): Grid {
+function sampled(scene: Scene, name: string, frame: Frame): Grid {
   const { width, height } = frame;
   const grid = { values: new Float32Array(width * height).fill(NaN), width, height };
   const [nodes, quads] = [scene.values("surface.nodes"), scene.whole("surface.quads")];
+  const field = scene.field(name, scene.facts.updates.length - 1);
   const at = (node: number): Corner => ({
     across: (nodes[3 * node + 2]! - frame.zLow) * SQUARES_A_MM,
     down: (frame.xHigh - nodes[3 * node]!) * SQUARES_A_MM,

@@ -351,3 +351,32 @@ fn a_hip_is_described_in_its_own_words() {
     assert!(page.contains("Deepest: <tspan") && !page.contains("Deepest medial"));
     assert!(page.contains("Wear by activity") && !page.contains("AP range"));
 }
+
+#[test]
+fn verify_lateral_is_at_plus_z_in_a_left_hip_and_at_minus_z_in_a_right_one() {
+    // The frame is right-handed with x anterior and y inferior: z points to the left of the body. The head bears on the lateral
+    // rim of a steep cup.
+    let place = |side: &str| {
+        let bench = Bench::with_case(&format!(
+            "side = \"{side}\"\n[femur]\nshape = \"sphere\"\nradius_mm = 18.0\n[insert]\nshape = \"cup\"\nradius_mm = 18.1\n\
+             inclination_deg = 45.0\nedge_mm = 3.0\n[machine]\npreset = \"iso-14242-4-like\"\n[march]\nupdates = 2\n\
+             [accuracy]\nestimate = false\n"
+        ));
+        bench.run_into("hip");
+        let summary = bench.summary("hip");
+        let at_rim = summary
+            .plausibility
+            .iter()
+            .find(|one| one.check == "pressure_at_rim");
+        let message = &at_rim.expect("the rim is pressed").message;
+        let z_mm = message.rsplit("z ").next().unwrap().trim_end_matches(" mm");
+        let picture = std::fs::read_to_string(bench.path("hip/report.html")).unwrap();
+        let [medial, lateral] =
+            ["Medial", "Lateral"].map(|word| picture.find(&format!(">{word}<")));
+        (z_mm.parse::<f64>().unwrap(), medial < lateral)
+    };
+    let (left, right) = (place("left"), place("right"));
+    assert!(left.0 > 10.0 && right.0 == -left.0, "{left:?} {right:?}");
+    // Maps have -z on the left, whose label comes first.
+    assert_eq!((left.1, right.1), (true, false));
+}

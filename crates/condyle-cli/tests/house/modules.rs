@@ -294,6 +294,7 @@ const MAY_USE: &[(&str, &[&str])] = &[
     (
         "condyle_report::measured",
         &[
+            "condyle_results::parts",
             "condyle_results::side",
             "condyle_report::charts",
             "condyle_report::figure",

@@ -279,6 +279,56 @@ fn ligaments_are_written_and_read_back_on_any_machine() {
 }
 
 #[test]
+fn ligaments_need_names_that_differ_and_fit_a_column() {
+    for (name, message) in [
+        ("mcl, deep", "cannot be called \"mcl, deep\""),
+        ("", "cannot be called \"\""),
+        ("medial-force", "cannot be called \"medial-force\""),
+    ] {
+        let (key, said) = refusal(&LIGAMENT.replace("pcl", name));
+        assert!(
+            key.ends_with("name") && said.contains(message),
+            "{key}: {said}"
+        );
+    }
+    for bodies in ["", HIP] {
+        let (key, said) = refusal(&format!("{bodies}{LIGAMENT}{LIGAMENT}"));
+        assert!(
+            key.ends_with("name") && said.contains("are called \"pcl\""),
+            "{key}: {said}"
+        );
+    }
+}
+
+#[test]
+fn activities_share_the_ligaments_of_the_machine() {
+    let text = with_activities("[[0, 3000]]", "[[0, 3500]]");
+    let (machine, activities) = text.split_once("[[activity]]").unwrap();
+    let of_all = format!("{machine}{LIGAMENT}[[activity]]{activities}");
+    assert!(Case::parse(&of_all, "case.toml", Path::new("")).is_ok());
+    let own = LIGAMENT
+        .replace("machine.", "activity.")
+        .replace("pcl", "acl");
+    let (_, said) = refusal(&format!("{of_all}{own}"));
+    assert!(
+        said.contains("its ligaments are (acl, pcl) in place of (pcl)"),
+        "{said}"
+    );
+}
+
+#[test]
+fn a_disc_has_no_side() {
+    let (key, said) = refusal(&format!(
+        "side = \"left\"\n{}",
+        HIP.replace("\"hip\"", "\"disc\"")
+    ));
+    assert!(
+        key.ends_with("side") && said.contains("a disc has no side"),
+        "{key}: {said}"
+    );
+}
+
+#[test]
 fn ligaments_without_a_length_are_refused() {
     let none = LIGAMENT.replace("slack_length_mm = 30\n", "");
     let both = format!("{LIGAMENT}strain_at_zero = 0.0\n");
