@@ -5,7 +5,11 @@
 
 use std::{borrow::Cow, sync::LazyLock};
 
-use condyle_results::{CycleQuantity, JointKind, KNEE, MotionColumn, split_unit};
+use condyle_results::{
+    CycleQuantity, JointKind, KNEE, MotionColumn,
+    catalogue::{LAST_CYCLE_CONTACT_AREA_MM2, LAST_CYCLE_PEAK_PRESSURE_MPA},
+    split_unit,
+};
 
 use crate::figure::{Axis, Curve, MEASURED, Panel};
 use crate::number::{cycles_in_words, first_letter_large, printed_unit, significant};
@@ -254,6 +258,35 @@ pub(crate) fn cycles_of(results: &Results) -> f64 {
     cycles.copied().fold(0.0, f64::max)
 }
 
+/// Returns the points of a column of `wear.csv` in cycles, from the first cycle on; none if the table lacks it.
+fn points_of(results: &Results, column: &str) -> Option<Vec<(f64, f64)>> {
+    let table = results.wear.as_ref()?;
+    let (ends, values) = (table.column("cycles")?, table.column(column)?);
+    let last = match column {
+        "peak_pressure_mpa" => &LAST_CYCLE_PEAK_PRESSURE_MPA,
+        "peak_contact_area_mm2" => &LAST_CYCLE_CONTACT_AREA_MM2,
+        _ => {
+            // Wear is 0 before the first cycle.
+            let is_later = ends.first().is_some_and(|end| *end > 0.0);
+            let rows = ends.iter().copied().zip(values.iter().copied());
+            return Some(
+                is_later
+                    .then_some((0.0, 0.0))
+                    .into_iter()
+                    .chain(rows)
+                    .collect(),
+            );
+        }
+    };
+    // An update solves its cycle on the surface before it; only the summary has that of the last surface.
+    let summary = results.summary.as_ref().filter(|_| !ends.is_empty());
+    let last = summary
+        .map(|summary| summary[last])
+        .filter(|last| last.is_finite());
+    let places = [0.0].into_iter().chain(ends.iter().copied());
+    Some(places.zip(values.iter().copied().chain(last)).collect())
+}
+
 /// [`wear`] with an axis that ends at `cycles`.
 pub(crate) fn wear_up_to(results: &Results, cycles: f64) -> Vec<Panel> {
     let (cycles_per_x, x_title) = match cycles {
@@ -262,14 +295,9 @@ pub(crate) fn wear_up_to(results: &Results, cycles: f64) -> Vec<Panel> {
         _ => (1.0, "cycles"),
     };
     let panel = |(column, title): (&'static str, &str)| {
-        let table = results.wear.as_ref()?;
         let unit = printed_unit(column);
-        let (ends, values) = (table.column("cycles")?, table.column(column)?);
-        let mut points = in_unit(ends, values, cycles_per_x);
-        // Wear is 0 before the first cycle; peaks are not known there.
-        if !column.starts_with("peak") && points.first().is_some_and(|point| point.0 > 0.0) {
-            points.insert(0, (0.0, 0.0));
-        }
+        let points = points_of(results, column)?.into_iter();
+        let points: Vec<_> = points.map(|(x, y)| (x / cycles_per_x, y)).collect();
         let end = format!("{}\u{a0}{unit}", significant(points.last()?.1, 3));
         let desc = format!(
             "{title} in {unit} against cycles, {} points; it ends at {end}.",

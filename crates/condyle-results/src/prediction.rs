@@ -18,6 +18,9 @@ pub const CALIBRATED_LAW: &str = "power-law";
 /// Deviation of the logarithm of the mass due to the scatter of a simulator's inputs: that of the default knee, by
 /// `condyle uncertainty`, as the book states it.
 const INPUTS_LOG_SD: f64 = 0.08;
+/// Deviation of the logarithm of the wear of cross-linked over conventional polyethylene, from [haider2012]: 0.14 to 0.27 in knees
+/// of two designs, taken as two deviations.
+const CROSS_LINKING_LOG_SD: f64 = 0.16;
 /// Factor by which the logistic function is within 0.01 of the normal distribution.
 const LOGISTIC: f64 = 1.702;
 /// The wear of conventional inserts in force-controlled knee simulators [haider-garvin2008]; [reinders2014] found 8.0 +/- 0.9.
@@ -32,6 +35,8 @@ const REFERENCE_PRESSURE_MPA: f64 = 1.1;
 pub const MAX_FACTOR_OF_RUN: f64 = 2.5;
 /// The [`Source`] that is the same for every run.
 const LABORATORY: &str = "laboratory";
+/// The [`Source`] that only cross-linked polyethylene has.
+const CROSS_LINKING: &str = "cross-linking";
 /// The [`Source`] that only runs with an estimate of their error have.
 const DISCRETISATION: &str = "discretisation";
 
@@ -92,7 +97,7 @@ pub struct Interval {
 /// A reason why laboratories find something else than the median.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Source {
-    /// `law`, `laboratory`, `inputs` or `discretisation`.
+    /// `law`, `laboratory`, `inputs`, `cross-linking` or `discretisation`.
     pub source: String,
     /// 90 % of laboratories are within this factor, either way, by this reason alone.
     pub factor: f64,
@@ -107,7 +112,7 @@ pub struct Prediction {
     pub mass_loss_mg: Interval,
     /// Deepest wear, mm.
     pub max_depth_mm: Interval,
-    /// Rates that laboratories have weighed on joints of this kind, in words; none if none are known.
+    /// Rates that laboratories have weighed on conventional joints of this kind, in words; none for others, and if none are known.
     #[serde(skip_serializing_if = "Option::is_none", default)]
     pub measured: Option<String>,
     /// Contributions to the interval of the mass, the largest first.
@@ -143,6 +148,12 @@ impl Prediction {
             let error_log = (0.01 * error_percent(&MASS_LOSS_MG)).ln_1p();
             sources.push(Source::new(DISCRETISATION, error_log));
         }
+        // Conventional polyethylene wears exactly once as much as itself.
+        let is_cross_linked = times != 1.0;
+        let cross_linking_log = DEVIATIONS_OF_90_PERCENT * CROSS_LINKING_LOG_SD;
+        if is_cross_linked {
+            sources.push(Source::new(CROSS_LINKING, cross_linking_log));
+        }
         sources.sort_by(|a, b| b.factor.total_cmp(&a.factor));
         let interval = |values: &[f64], scalar| {
             let both: Vec<f64> = values
@@ -150,11 +161,19 @@ impl Prediction {
                 .zip(&laboratories)
                 .map(|(a, b)| a * b)
                 .collect();
-            Interval::of(&both, (0.01 * error_percent(scalar)).ln_1p())
+            let error_log = (0.01 * error_percent(scalar)).ln_1p();
+            let material_log = if is_cross_linked {
+                cross_linking_log
+            } else {
+                0.0
+            };
+            Interval::of(&both, error_log.hypot(material_log))
         };
         Some(Self {
             is_of_run,
             measured: match march.test().machine().mechanism.tests {
+                // All of these were conventional.
+                _ if is_cross_linked => None,
                 TestedJoint::Knee => Some(MEASURED_KNEES.to_owned()),
                 TestedJoint::Hip => Some(MEASURED_HIPS.to_owned()),
                 _ => None,
@@ -183,20 +202,29 @@ impl Prediction {
     }
 
     /// Returns the part of laboratories in which this design wears less than another, 0 to 1: the same draws of the law for
-    /// both, with the laboratory's factor cancelled, and the scatter of inputs between their tests. None if the draws differ in
-    /// number.
+    /// both, with the laboratory's factor cancelled, and the scatter of inputs between their tests and of cross-linking if only one
+    /// has it. None if the draws differ in number.
     pub fn part_below(&self, other: &Self) -> Option<f64> {
         let pairs = self.mass_loss_mg_by_draw.iter();
         let pairs = pairs.zip(&other.mass_loss_mg_by_draw);
+        let log_sd = if self.is_cross_linked() == other.is_cross_linked() {
+            INPUTS_LOG_SD
+        } else {
+            INPUTS_LOG_SD.hypot(CROSS_LINKING_LOG_SD)
+        };
         let below = pairs.map(|(own, other)| {
             // Half of the variance of inputs is that of set-ups and differs between the two tests; the rest is that of the
             // machine and cancels. So the difference of the two has the variance of one.
-            let deviations = (other / own).ln() / INPUTS_LOG_SD;
+            let deviations = (other / own).ln() / log_sd;
             1.0 / (1.0 + (-LOGISTIC * deviations).exp())
         });
         let count = self.mass_loss_mg_by_draw.len();
         (count == other.mass_loss_mg_by_draw.len() && count > 0)
             .then(|| below.sum::<f64>() / count as f64)
+    }
+
+    fn is_cross_linked(&self) -> bool {
+        self.sources.iter().any(|own| own.source == CROSS_LINKING)
     }
 
     /// Returns the sources of the interval and their factors in words, after the sign `times`. A run without an estimate of its
@@ -263,11 +291,11 @@ impl Source {
 }
 
 impl Interval {
-    /// Returns the interval of these values of laboratories, widened by the scatter of inputs and a discretisation error,
-    /// which are independent of them: half-widths in the logarithm add as squares.
-    fn of(values: &[f64], discretisation_log: f64) -> Self {
+    /// Returns the interval of these values of laboratories, widened by the scatter of inputs and by that of material and
+    /// discretisation, which are independent of them: half-widths in the logarithm add as squares.
+    fn of(values: &[f64], other_log: f64) -> Self {
         let [low, median, high] = quantiles(values);
-        let own = (DEVIATIONS_OF_90_PERCENT * INPUTS_LOG_SD).hypot(discretisation_log);
+        let own = (DEVIATIONS_OF_90_PERCENT * INPUTS_LOG_SD).hypot(other_log);
         let widened = |end: f64| (end / median).ln().hypot(own).exp();
         Self {
             low: median / widened(low),
@@ -340,6 +368,16 @@ mod tests {
         let part = prediction(&[1.0]).part_below(&prediction(&[INPUTS_LOG_SD.exp()]));
         assert!((part.unwrap() - 0.841).abs() < 0.01);
         assert_eq!(one.part_below(&prediction(&[1.0])), None);
+        // The factor of cross-linking cancels between two such inserts only.
+        let cross_linked = |masses| Prediction {
+            sources: vec![Source::new(CROSS_LINKING, CROSS_LINKING_LOG_SD)],
+            ..prediction(masses)
+        };
+        let both_log = INPUTS_LOG_SD.hypot(CROSS_LINKING_LOG_SD);
+        let part = cross_linked(&[1.0]).part_below(&prediction(&[both_log.exp()]));
+        assert!((part.unwrap() - 0.841).abs() < 0.01);
+        let part = cross_linked(&[1.0]).part_below(&cross_linked(&[INPUTS_LOG_SD.exp()]));
+        assert!((part.unwrap() - 0.841).abs() < 0.01);
     }
 
     #[test]

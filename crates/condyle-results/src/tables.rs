@@ -53,7 +53,7 @@ described! {
     volume_loss_mm3 = Value::OfUpdate(|row| row.volume_loss_mm3);
     /// Deepest wear.
     max_depth_mm = Value::OfUpdate(|row| row.max_depth_mm);
-    /// Highest pressure in the cycle that the update solved.
+    /// Highest pressure in the cycle that the update solved, on the surface before it.
     peak_pressure_mpa = Value::OfUpdate(|row| row.peaks.peak_pressure_mpa);
     /// Largest contact area in that cycle.
     peak_contact_area_mm2 = Value::OfUpdate(|row| row.peaks.contact_area_mm2);

@@ -120,6 +120,12 @@ fn peaks_say_of_which_cycle_they_are() {
         ),
     ] {
         assert_eq!(cycles[0].1, summary[first]);
+        let report = fs::read_to_string(bench.path("out/report.html")).unwrap();
+        // A chart has all of them, the last one in three digits.
+        let (count, last) = (cycles.len(), cycles[cycles.len() - 1].1);
+        let decimals = usize::from(last < 100.0);
+        let points = format!("{count} points; it ends at {last:.decimals$}");
+        assert!(report.contains(&points), "{points}");
         assert!(cycles.contains(&(summary[cycle], summary[peak])));
         assert!(cycles.iter().all(|(_, value)| *value <= summary[peak]));
     }

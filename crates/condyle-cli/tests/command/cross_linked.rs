@@ -22,6 +22,14 @@ fn verify_a_cross_linked_insert_wears_less_by_every_law_and_everything_says_so()
     let [conventional, own] = ["conventional", "linked"].map(summary);
     assert_eq!(own["wear_over_conventional"], 0.2);
     assert_eq!(conventional.get("wear_over_conventional"), None);
+    // The factor widens the interval, and measured rates are those of conventional inserts.
+    let has_source = |summary: &Value| {
+        let mut sources = summary["prediction"]["sources"].as_array().unwrap().iter();
+        sources.any(|one| one["source"] == "cross-linking")
+    };
+    assert!(has_source(&own) && !has_source(&conventional));
+    let measured = [&own, &conventional].map(|run| run["prediction"].get("measured").is_some());
+    assert_eq!(measured, [false, true]);
     let masses = |summary: &Value| -> Vec<f64> {
         let laws = summary["wear_laws"].as_array().unwrap().iter();
         laws.map(|law| law["mass_loss_mg"].as_f64().unwrap())
