@@ -86,7 +86,7 @@ export class Plot {
 
   private saves(): HTMLElement {
     const { chart } = this;
-    const name = slug(chart.title);
+    const name = slug(`${chart.title} ${activityOf(chart)}`.trim());
     const svg = this.options.svg ?? (() => chartSvg(chart));
     return element(
       "div",
@@ -149,9 +149,14 @@ function settings(chart: Chart): Omit<uPlot.Options, "width" | "height"> {
   };
 }
 
+// The activity of a chart over its cycle; empty for the only one.
+export function activityOf({ group }: Pick<Chart, "group">): string {
+  return /^cycle(.+)/.exec(group)?.[1] ?? "";
+}
+
 export function csv(chart: Chart): string {
-  // The id of a chart is that of its column with a letter in front.
-  const column = slug(chart.id.replace(/^[a-z]-/, ""));
+  // The id of a chart is that of its column with a letter in front, and its activity behind.
+  const column = slug(chart.id.slice(0, chart.id.length - activityOf(chart).length).replace(/^[a-z]-/, ""));
   const names = chart.curves.map(({ name }) => (chart.curves.length > 1 ? `${column}_${slug(name)}` : column));
   const [at, ...all] = aligned(chart);
   const rows = Array.from(at, (x, index) => [x, ...all.map((values) => values[index] ?? "")]);

@@ -400,7 +400,8 @@ export class Viewer {
   // A slide of what is shown, with at least `height` pixels for the bodies.
   private slide(height: number, made?: HTMLCanvasElement): HTMLCanvasElement {
     const { title } = this.scene.facts;
-    const legend = { title, field: this.fieldInWords(), state: this.status.textContent ?? "", range: this.range(), map: this.map() };
+    const larger = this.exaggeration > 1 ? `; wear made ${this.exaggeration} times larger` : "";
+    const legend = { title, field: this.fieldInWords(), state: this.status.textContent + larger, range: this.range(), map: this.map() };
     return slide(this.stage.shot(height), legend, made);
   }
 

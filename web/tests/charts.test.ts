@@ -2,7 +2,7 @@ import assert from "node:assert/strict";
 import test from "node:test";
 import { chartSvg } from "../src/chart_svg";
 import { ColourMap, roundMarks } from "../src/colours";
-import { aligned, csv } from "../src/plots";
+import { activityOf, aligned, csv } from "../src/plots";
 import { cyclesInWords, inDigits } from "../src/digits";
 import { Scene, type Chart } from "../src/scene";
 
@@ -34,6 +34,13 @@ test("the CSV names the unit of its horizontal axis", () => {
   assert.equal(head, "million_cycles,mass_loss_mg_mass_loss,mass_loss_mg_specimen_1_weighed");
   assert.equal(half, "0.5,4,");
   assert.equal(later, "0.75,,6");
+});
+
+test("a chart of an activity has the column of that activity's table", () => {
+  const chart = { ...CHART, id: "k-flexion_degstairs", group: "cyclestairs", curves: CHART.curves.slice(0, 1) };
+  assert.equal(activityOf(chart), "stairs");
+  assert.equal(csv(chart).split("\n")[0], "million_cycles,flexion_deg");
+  assert.equal(activityOf({ group: "cycle" }), "");
 });
 
 test("a chart becomes an SVG file with escaped text", () => {

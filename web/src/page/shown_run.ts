@@ -1,8 +1,9 @@
 // The run that the page shows: bodies and charts as in the report, in the previous view.
 
 import { element } from "../dom";
+import { activityOf } from "../plots";
 import { RunView } from "../run_view";
-import type { Scene } from "../scene";
+import type { Chart, Scene } from "../scene";
 import type { Viewer } from "../viewer";
 import type { Summary } from "./numbers";
 
@@ -41,8 +42,14 @@ export class ShownRun {
     // A newer run may have been shown meanwhile.
     if (!view || view.plots.length) return;
     view.draw();
-    const boxes = (isWear: boolean) => view.plots.filter(({ chart }) => (chart.group === "wear") === isWear).map(({ box }) => box);
-    this.worn.replaceChildren(element("div", { class: "worn" }, ...boxes(true), view.history));
-    this.gait.replaceChildren(element("div", { class: "gait" }, ...boxes(false)));
+    const boxes = (isShown: (chart: Chart) => boolean) => view.plots.filter(({ chart }) => isShown(chart)).map(({ box }) => box);
+    const isWear = ({ group }: Chart) => group === "wear";
+    this.worn.replaceChildren(element("div", { class: "worn" }, ...boxes(isWear), view.history));
+    const activities = new Set(view.plots.filter(({ chart }) => !isWear(chart)).map(({ chart }) => activityOf(chart)));
+    const ofActivity = (name: string) => [
+      ...(name ? [element("h3", {}, `Cycle of ${name}`)] : []),
+      element("div", { class: "gait" }, ...boxes((chart) => !isWear(chart) && activityOf(chart) === name)),
+    ];
+    this.gait.replaceChildren(...[...activities].flatMap(ofActivity));
   }
 }
