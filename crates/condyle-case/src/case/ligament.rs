@@ -11,7 +11,7 @@ settings! {
     Ligament [check] {
         /// Its name in messages and results: small letters, digits and hyphens.
         name: String;
-        /// Attachment to the bearing, [x, y, z] in the insert frame; z points to the right on both sides of a knee, and to the left of a hip or ankle.
+        /// Attachment to the bearing, [x, y, z] in the insert frame; z points to the right on both sides, and for a hip or ankle to the left.
         on_bearing_mm: [f64; 3], in within(-300.0, 300.0);
         /// Attachment to the counterface, [x, y, z] in its own frame, with the same z.
         on_counterface_mm: [f64; 3], in within(-300.0, 300.0);
@@ -21,7 +21,7 @@ settings! {
         toe_strain: f64 = 0.03, in within(1e-4, 0.3);
         /// Length without force.
         slack_length_mm: Option<f64> = None, in within(0.1, 500.0);
-        /// In place of `slack_length_mm`: strain with all joints of the machine at zero, which for flexion is not where it starts; negative if slack there.
+        /// In place of `slack_length_mm`: strain with all joints of the machine at zero, though the cycle may start at another flexion; negative if slack there.
         strain_at_zero: Option<f64> = None, in within(-0.5, 0.3);
     }
 }

@@ -56,7 +56,7 @@ settings! {
         file: Option<DataFile> = None;
         /// Cycles a second.
         frequency_hz: f64 = 1.1, in within(0.001, 100.0);
-        /// Factor on every load and torque of every activity.
+        /// Factor on every load and torque, also of activities.
         load_scale: f64 = 1.0, in within(0.01, 100.0);
         /// Added to the flexion waveform: -7 sets the femur 7 degrees towards hyperextension.
         flexion_offset_deg: f64 = -7.0, in within(-45.0, 45.0);

@@ -38,9 +38,9 @@ settings! {
         tests: TestedJoint;
         /// Cycles a second.
         frequency_hz: f64 = 1.0, in within(0.001, 100.0);
-        /// Factor on every load and torque; that of an activity multiplies that of the machine.
+        /// Factor on every load and torque, 1 if not given; that of an activity multiplies that of the machine.
         load_scale: f64 = 1.0, in within(0.01, 100.0);
-        /// Factor on every motion along a waveform; that of an activity multiplies that of the machine.
+        /// Factor on every motion along a waveform, 1 if not given; that of an activity multiplies that of the machine.
         motion_scale: f64 = 1.0, in within(0.0, 100.0);
         /// Names of all joints from the bearing to the counterface; that of the file if not given.
         order: Option<Names> = None;

@@ -403,6 +403,8 @@ fn scales_of_machine_and_activity_multiply_every_load_and_motion() {
         .replace("[machine]\n", &scales("[machine]"))
         .replace("share = 0.25\n", "share = 0.25\nload_scale = 2.0\n");
     let case = Case::parse(&text, "case.toml", Path::new("")).unwrap();
+    let again = Case::parse(&case.to_toml(), "case.toml", Path::new("")).unwrap();
+    assert_eq!(case, again);
     let driven = |number: usize, joint: usize| {
         let activity = &case.built_activities(Vec3::zeros())[number];
         let joint = condyle::machine::JointIndex::ALL[joint];
