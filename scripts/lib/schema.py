@@ -97,6 +97,8 @@ def beyond(condyle: str, case: str, path: str, kind: dict) -> bool:
     chosen = [f"--set={table}." + words[0].replace(" ", "")] if words else []
     if path.startswith(("machine.ap_motion", "machine.ie_motion")):
         chosen.append("--set=machine.preset=stanmore-displacement")
+    if path == "machine.motion_scale":
+        chosen.append("--set=machine.preset=pin-on-disc")
     if path.startswith("contact.deformable."):
         chosen.append("--set=contact.model=deformable")
     value = int(kind["maximum"]) + 1 if kind["type"] == "integer" else kind["maximum"] * 1.01 + 1e-9

@@ -150,9 +150,10 @@ impl Prediction {
         }
         // Conventional polyethylene wears exactly once as much as itself.
         let is_cross_linked = times != 1.0;
-        let cross_linking_log = DEVIATIONS_OF_90_PERCENT * CROSS_LINKING_LOG_SD;
+        let log_sd = f64::from(is_cross_linked) * CROSS_LINKING_LOG_SD;
+        let material_log = DEVIATIONS_OF_90_PERCENT * log_sd;
         if is_cross_linked {
-            sources.push(Source::new(CROSS_LINKING, cross_linking_log));
+            sources.push(Source::new(CROSS_LINKING, material_log));
         }
         sources.sort_by(|a, b| b.factor.total_cmp(&a.factor));
         let interval = |values: &[f64], scalar| {
@@ -162,11 +163,6 @@ impl Prediction {
                 .map(|(a, b)| a * b)
                 .collect();
             let error_log = (0.01 * error_percent(scalar)).ln_1p();
-            let material_log = if is_cross_linked {
-                cross_linking_log
-            } else {
-                0.0
-            };
             Interval::of(&both, error_log.hypot(material_log))
         };
         Some(Self {
