@@ -92,7 +92,7 @@ export function movedAt({ table, key }: Place): Limits {
   return found;
 }
 
-// What the run of a case has told: its joint, and the values of the case with every default.
+// Facts from the run of a case: its joint, and the values of the case with every default.
 export interface Defaults {
   joint: string;
   values: Map<string, string>;

@@ -150,13 +150,15 @@ impl Activity {
     fn read_on(machine: &Rig, section: &Section<'_>, log: &mut Log<'_>) -> Option<Self> {
         let mut keys = ActivityKeys::read(section, log)?;
         let file = keys.file.take();
-        let mut base = match &file {
+        let base = match &file {
             Some(file) => Rig::in_file(file, section, log)?,
-            None => machine.clone(),
+            None => {
+                // The factors of the machine multiply those of the activity when both are built.
+                let mut own = machine.clone();
+                (own.keys.load_scale, own.keys.motion_scale) = (1.0, 1.0);
+                own
+            }
         };
-        if file.is_none() {
-            (base.keys.load_scale, base.keys.motion_scale) = (1.0, 1.0);
-        }
         let rig = base.changed_by(section, log)?;
         keys.frequency_hz = None;
         if let Some(difference) = rig.difference_from(machine) {

@@ -2,6 +2,7 @@
 
 use condyle::Vec3;
 use condyle::machine;
+use condyle_results::point_on_side;
 
 use super::frame::Side;
 use crate::config::*;
@@ -49,10 +50,7 @@ impl Ligament {
 
     /// Returns the ligament of a right joint.
     pub(super) fn build(&self, side: Side) -> machine::Ligament {
-        let on_the_right = |[x, y, z]: [f64; 3]| match side {
-            Side::Right => Vec3::new(x, y, z),
-            Side::Left => Vec3::new(x, y, -z),
-        };
+        let on_the_right = |place: [f64; 3]| point_on_side(&Vec3::from(place), side);
         machine::Ligament {
             name: self.name.clone(),
             on_bearing_mm: on_the_right(self.on_bearing_mm),

@@ -286,15 +286,7 @@ impl Settings for RigJoint {
             return log.reject(above.key_span(name), fault);
         }
         let joints = above.read_list(name, log, Self::read)?;
-        for (number, joint) in joints.iter().enumerate() {
-            let name = &joint.keys.name;
-            let mut before = joints[..number].iter();
-            if before.any(|other| other.keys.name == *name) {
-                let message = format!("two joints are called \"{name}\"");
-                let fault = Fault::new(message, "give each its own name");
-                return log.reject(sections[number].value_span("name"), fault);
-            }
-        }
+        above.check_names_differ(name, log)?;
         Some(joints)
     }
 

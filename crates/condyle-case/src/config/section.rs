@@ -93,7 +93,7 @@ impl<'a> Section<'a> {
             let name = table.value("name").and_then(|name| name.get_ref().as_str());
             if let Some(name) = name.filter(|name| !names.insert(name.to_string())) {
                 let fault = Fault::new(
-                    format!("two of [[{list}]] are called \"{name}\""),
+                    format!("two {list} are called \"{name}\""),
                     "give each its own name",
                 );
                 return log.reject(table.value_span("name"), fault);

@@ -58,8 +58,8 @@ const NOTES: [Check; 2] = [bodies::pressure_beyond_yield, bodies::thin_polyethyl
 
 /// Findings that make the numbers of a finished march doubtful, the worst first, and remarks that do not.
 ///
-/// Places are stated in the frame of `side`. In a batch, the gaps of the nodes over the cycle are not examined, since this would take a large
-/// part of the time of a run.
+/// Places are stated in the frame of `side`. In a batch, the gaps of the nodes over the cycle are not examined, since this
+/// would take a large part of the time of a run.
 pub(crate) fn warnings(
     march: &March,
     summary: &Summary,
