@@ -6,7 +6,9 @@ const SAME_PLACE_MM = 0.02;
 // Pairs of a vertex of the walls and the node of the surface at the same place.
 export function sharedNodes(walls: Float32Array, surface: Float32Array, quads: ArrayLike<number>): [vertex: number, node: number][] {
   const border = borderOf(quads);
-  const isAt = (vertex: number) => (node: number) => [0, 1, 2].every((axis) => Math.abs(walls[3 * vertex + axis]! - surface[3 * node + axis]!) < SAME_PLACE_MM);
+  // Most pairs differ in x: no array is made for each of a million.
+  const isNear = (vertex: number, node: number, axis: number) => Math.abs(walls[3 * vertex + axis]! - surface[3 * node + axis]!) < SAME_PLACE_MM;
+  const isAt = (vertex: number) => (node: number) => isNear(vertex, node, 0) && isNear(vertex, node, 1) && isNear(vertex, node, 2);
   return Array.from({ length: walls.length / 3 }, (_, vertex) => [vertex, border.find(isAt(vertex))] as const).filter(
     (pair): pair is [number, number] => pair[1] !== undefined,
   );
