@@ -20,7 +20,7 @@ use condyle_case::{
     config::DataFile,
 };
 use condyle_report::bodies::{BodiesPicture, MachineAxes, bodies_svg};
-use condyle_results::{Directions, TestedJoint};
+use condyle_results::{Directions, TestedJoint, point_on_side};
 use serde::Serialize;
 
 use crate::{
@@ -130,9 +130,8 @@ impl Preview {
         let insert = TriangleMesh::of_quads(insert.nodes.clone(), insert.boundary_quads());
         let bodies = [femur, insert, pressed(march, at_rest)];
         let [femur, insert, contact] = bodies.map(|mut body| {
-            // A left knee is computed as a right one.
             let vertices = body.vertices.iter_mut();
-            vertices.for_each(|vertex| vertex.z *= sign(side));
+            vertices.for_each(|vertex| *vertex = point_on_side(vertex, side));
             body
         });
         bodies_svg(&BodiesPicture {
@@ -400,21 +399,14 @@ fn pressed(march: &March, at_rest: &AtRest) -> TriangleMesh {
     TriangleMesh::of_quads(places, faces)
 }
 
-fn sign(side: Side) -> f64 {
-    match side {
-        Side::Right => 1.0,
-        Side::Left => -1.0,
-    }
-}
-
 fn axes(march: &March, at_rest: &AtRest, side: Side) -> MachineAxes {
     let machine = march.test().machine();
-    let (vv, ie) = (machine.joint(VV), machine.joint(IE));
+    let [vv, ie] = [VV, IE].map(|joint| point_on_side(&machine.joint(joint).axis_point_mm, side));
     let [x, y, _] = at_rest.flexion_axis_mm;
     MachineAxes {
         flexion_mm: (x, y),
-        vv_mm: (vv.axis_point_mm.y, sign(side) * vv.axis_point_mm.z),
-        ie_mm: (ie.axis_point_mm.x, sign(side) * ie.axis_point_mm.z),
+        vv_mm: (vv.y, vv.z),
+        ie_mm: (ie.x, ie.z),
         ap_zero_mm: x,
     }
 }

@@ -189,7 +189,10 @@ const DOT_PX: f64 = 2.2;
 fn slip_paths(table: &Table, map: &Map<'_>) -> Option<Vec<String>> {
     let column = |name| table.column(name);
     let (numbers, x, z) = (column("path")?, column("x_mm")?, column("z_mm")?);
-    let (anterior, right) = (column("slip_anterior_mm")?, column("slip_right_mm")?);
+    let either = |name, earlier| column(name).or_else(|| column(earlier));
+    // Earlier versions wrote the names of a knee's directions.
+    let slip_x = either("slip_x_mm", "slip_anterior_mm")?;
+    let slip_z = either("slip_z_mm", "slip_right_mm")?;
     let middle = |values: &mut dyn Iterator<Item = f64>| {
         finite_range(values).map_or(0.0, |(low, high)| f64::midpoint(low, high))
     };
@@ -206,10 +209,7 @@ fn slip_paths(table: &Table, map: &Map<'_>) -> Option<Vec<String>> {
         let mut at = (0.0, 0.0);
         let mut points = vec![at];
         for &row in rows {
-            at = (
-                at.0 + DRAWN[0] * anterior[row],
-                at.1 + DRAWN[1] * right[row],
-            );
+            at = (at.0 + DRAWN[0] * slip_x[row], at.1 + DRAWN[1] * slip_z[row]);
             points.push(at);
         }
         let across = middle(&mut points.iter().map(|point| point.0));
@@ -234,7 +234,7 @@ mod tests {
 
     #[test]
     fn rows_of_one_number_are_one_path() {
-        let text = "path,x_mm,z_mm,percent,pressure_mpa,slip_anterior_mm,slip_right_mm\n\
+        let text = "path,x_mm,z_mm,percent,pressure_mpa,slip_x_mm,slip_z_mm\n\
             1,2,3,0.5,4,1,0\n1,2,3,1,4,0,1\n2,5,6,1,4,-1,0\n";
         let table = Table::parse(text, "slip_paths.csv".as_ref()).unwrap();
         let corner = |at: f64| Vec3::new(at, 0.0, at);

@@ -11,26 +11,23 @@ const AROUND_MM: f64 = 6.0;
 /// around it, with one row per increment in which the place is under pressure; none before a march has solved a cycle.
 pub(super) fn slip_paths_csv(march: &March, side: Side) -> Option<String> {
     let cycle = march.last_cycle()?;
-    let mut text =
-        String::from("path,x_mm,z_mm,percent,pressure_mpa,slip_anterior_mm,slip_right_mm\n");
+    let mut text = String::from("path,x_mm,z_mm,percent,pressure_mpa,slip_x_mm,slip_z_mm\n");
     let depth_mm = &march.fields().wear_depth_mm;
     let nodes = places(&cycle.surface.positions, depth_mm, march.insert().regions());
     for (path, node) in nodes.into_iter().enumerate() {
-        let (path, place) = (
-            path + 1,
-            point_on_side(&cycle.surface.positions[node], side),
-        );
+        let path = path + 1;
+        let place = point_on_side(&cycle.surface.positions[node], side);
         for (increment, row) in cycle.rows.iter().enumerate() {
             let Some(moment) = cycle.moment(increment, node) else {
                 continue;
             };
-            let [anterior, lateral] = moment.slip_mm;
-            let right = match side {
-                Side::Right => lateral,
-                Side::Left => -lateral,
-            };
+            let [x, z] = moment.slip_mm;
+            let slip = point_on_side(&Vec3::new(x, 0.0, z), side);
             let (x, z, percent, pressure) = (place.x, place.z, row.percent, moment.pressure_mpa);
-            text += &format!("{path},{x},{z},{percent},{pressure},{anterior},{right}\n");
+            text += &format!(
+                "{path},{x},{z},{percent},{pressure},{},{}\n",
+                slip.x, slip.z
+            );
         }
     }
     Some(text)

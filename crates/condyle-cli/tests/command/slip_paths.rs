@@ -1,4 +1,4 @@
-//! The slip at a few places, held against what the whole surface says of itself.
+//! The slip at a few places, compared with the fields of the whole surface.
 
 use std::collections::BTreeMap;
 
@@ -22,7 +22,7 @@ fn places(bench: &Bench) -> Vec<Place> {
     for (row, path) in table["path"].iter().enumerate() {
         let at = |column: &str| table[column][row];
         let place = places.entry(*path as u64).or_default();
-        let [anterior, right] = [at("slip_anterior_mm"), at("slip_right_mm")];
+        let [anterior, right] = [at("slip_x_mm"), at("slip_z_mm")];
         let per_mm = at("pressure_mpa") / anterior.hypot(right).max(f64::MIN_POSITIVE);
         let parts = [anterior * anterior, anterior * right, right * right];
         for (sum, part) in place.work.iter_mut().zip(parts) {

@@ -13,6 +13,7 @@ use condyle::machine::TestedJoint;
 use condyle_mesh::formats::surface_bytes;
 use condyle_mesh::repair::CheckedMesh;
 use condyle_mesh::{FittedSphere, Roundness};
+use condyle_results::point_on_side;
 use serde::{Deserialize, Serialize};
 
 use super::checks::check_side;
@@ -233,10 +234,8 @@ fn ball(joint: TestedJoint, mesh: &TriangleMesh) -> Option<FittedSphere> {
 
 /// Mirrors a place [x, z] of the insert frame of a left knee.
 fn on_the_right([x, z]: [f64; 2], side: Side) -> (f64, f64) {
-    match side {
-        Side::Right => (x, z),
-        Side::Left => (x, -z),
-    }
+    let place = point_on_side(&Vec3::new(x, 0.0, z), side);
+    (place.x, place.z)
 }
 
 /// Returns the place of the frame for which the centre of the distal arc is over x = 0.
@@ -311,75 +310,36 @@ fn square() -> TriangleMesh {
 fn tube(radius_mm: f64) -> TriangleMesh {
     const HALF_LENGTH_MM: f64 = 60.0;
     const EDGE_MM: f64 = 1.5;
-    let around = (TAU * radius_mm / EDGE_MM).ceil() as u32;
     let along = (2.0 * HALF_LENGTH_MM / EDGE_MM).ceil() as u32;
-    let mut mesh = TriangleMesh::default();
-    for ring in 0..=along {
-        let z = HALF_LENGTH_MM * (2.0 * f64::from(ring) / f64::from(along) - 1.0);
-        for i in 0..around {
-            let (sine, cosine) = (TAU * f64::from(i) / f64::from(around)).sin_cos();
-            let place = Vec3::new(radius_mm * cosine, radius_mm * sine, z);
-            mesh.vertices.push(place);
-        }
-    }
-    for ring in 0..along {
-        for i in 0..around {
-            let (a, b) = (ring * around + i, ring * around + (i + 1) % around);
-            let (c, d) = (b + around, a + around);
-            mesh.triangles.extend([[a, b, c], [a, c, d]]);
-        }
-    }
-    mesh
+    let height_mm = |ring: u32| HALF_LENGTH_MM * (2.0 * f64::from(ring) / f64::from(along) - 1.0);
+    let profile = Vec::from_iter((0..=along).map(|ring| (radius_mm, height_mm(ring))));
+    let about_y = TriangleMesh::revolved(&profile, (TAU * radius_mm / EDGE_MM).ceil() as u32);
+    about_y.mapped(|at| Vec3::new(at.z, at.x, at.y))
 }
 
-/// Returns a ball about the origin by repeated subdivision of an icosahedron.
+/// Returns a ball about the origin by repeated subdivision of an octahedron.
 fn sphere(radius_mm: f64, about: f64) -> TriangleMesh {
-    const ICOSAHEDRON_FACES: f64 = 20.0;
+    const OCTAHEDRON: [[u32; 3]; 8] = [
+        [0, 1, 2],
+        [0, 2, 4],
+        [0, 4, 5],
+        [0, 5, 1],
+        [3, 2, 1],
+        [3, 4, 2],
+        [3, 5, 4],
+        [3, 1, 5],
+    ];
+    let axes = [Vec3::x(), Vec3::y(), Vec3::z()];
+    let mut ball = TriangleMesh {
+        vertices: axes.into_iter().chain(axes.map(|axis| -axis)).collect(),
+        triangles: OCTAHEDRON.to_vec(),
+    };
     // Each subdivision has four times the triangles of the one before.
-    let halvings = (about / ICOSAHEDRON_FACES).log(4.0).round() as usize;
-    let mut ball = icosahedron();
+    let halvings = (about / OCTAHEDRON.len() as f64).log(4.0).round() as usize;
     for _ in 0..halvings {
         ball = ball.in_four(|a, b| (a + b).normalize());
     }
-    ball.mapped(|vertex| vertex.normalize() * radius_mm)
-}
-
-fn icosahedron() -> TriangleMesh {
-    // The corners of an icosahedron are those of three golden rectangles.
-    let golden = f64::midpoint(1.0, 5f64.sqrt());
-    let mut vertices = Vec::new();
-    for (a, b) in [
-        (1.0, golden),
-        (-1.0, golden),
-        (1.0, -golden),
-        (-1.0, -golden),
-    ] {
-        vertices.extend([
-            Vec3::new(0.0, a, b),
-            Vec3::new(a, b, 0.0),
-            Vec3::new(b, 0.0, a),
-        ]);
-    }
-    let mut triangles = Vec::new();
-    for i in 0..12u32 {
-        for j in i + 1..12 {
-            for k in j + 1..12 {
-                let [a, b, c]: [Vec3; 3] = [i, j, k].map(|n| vertices[n as usize]);
-                // Neighbours are 2 apart.
-                let is_edge =
-                    // The edges are 2 long, and the tolerance is for round-off.
-                    |(one, other): (Vec3, Vec3)| ((one - other).norm() - 2.0).abs() < 1e-9;
-                if [(a, b), (b, c), (c, a)].into_iter().all(is_edge) {
-                    let outward = (b - a).cross(&(c - a)).dot(&a) > 0.0;
-                    triangles.push(if outward { [i, j, k] } else { [i, k, j] });
-                }
-            }
-        }
-    }
-    TriangleMesh {
-        vertices,
-        triangles,
-    }
+    ball.mapped(|vertex| vertex * radius_mm)
 }
 
 #[cfg(test)]
@@ -413,7 +373,7 @@ mod tests {
         let ball = sphere(24.0, 25_000.0);
         assert_eq!(
             (ball.triangles.len(), ball.vertices.len()),
-            (20_480, 10_242)
+            (32_768, 16_386)
         );
         let exact = 4.0 / 3.0 * PI * 24f64.powi(3);
         let volume = ball.signed_volume();
