@@ -85,11 +85,11 @@ test("a damaged address has no case, not even that of the last visit", async () 
 
 test("a slider has the number of the case, its default, or why it has none", () => {
   const varus = { table: "femur", key: "varus_deg", shapes: ["generic", "mesh"] };
-  const load = { table: "machine.axial_force", key: "scale", isFactor: true };
+  const load = { table: "machine", key: "load_scale" };
   const friction = { table: "contact", key: "friction" };
   const knee = {
     joint: "knee",
-    values: valuesOf('[femur]\nshape = "generic"\nvarus_deg = 0.0\n[contact]\nfriction = 0.07\n[machine.axial_force]\nknots_n = [[0, 1]]\n'),
+    values: valuesOf('[femur]\nshape = "generic"\nvarus_deg = 0.0\n[contact]\nfriction = 0.07\n[machine]\nload_scale = 1.0\n'),
   };
   const hip = { joint: "hip", values: valuesOf('[femur]\nshape = "sphere"\nvarus_deg = 0.0\n[contact]\nfriction = 0.05\n') };
   const shown = (moved: typeof friction, text: string, of?: typeof knee) => shownAt(moved, valuesOf(text), of);
@@ -97,9 +97,8 @@ test("a slider has the number of the case, its default, or why it has none", () 
   assert.equal(shown(varus, "", knee), 0);
   assert.equal(shown(varus, "", hip), "not of this joint");
   assert.equal(shown({ ...varus, key: "distal_radius_mm", shapes: ["generic"] } as typeof varus, '[femur]\nshape = "mesh"', knee), "not of this shape");
-  assert.equal(shown(load, "[machine]\naxial_force.scale = 0.8", knee), 0.8);
+  assert.equal(shown(load, "machine.load_scale = 0.8", knee), 0.8);
   assert.equal(shown(load, "", knee), 1);
-  assert.equal(shown(load, "", hip), "not of this joint");
   assert.equal(shown(friction, "", hip), 0.05);
   assert.equal(shown(friction, ""), "–");
 });

@@ -15,8 +15,6 @@ interface Moved extends Place, Limits {
   unit: string;
   // The shapes of the body that have the key; absent where every shape has it.
   shapes?: string[];
-  // A factor on values of its table. The case with every default has their products instead, and no factor.
-  isFactor?: boolean;
   // Factor from the number shown to that of the case.
   times?: number;
 }
@@ -78,7 +76,7 @@ const GROUPS: [heading: string, moved: Moved[]][] = [
   [
     "Test",
     [
-      { table: "machine.axial_force", key: "scale", label: "Load, relative to the waveform", unit: "", least: 0.4, most: 1.6, step: 0.05, isFactor: true },
+      { table: "machine", key: "load_scale", label: "Loads, relative to the waveforms", unit: "", least: 0.4, most: 1.6, step: 0.05 },
       { table: "contact", key: "friction", label: "Friction", unit: "", least: 0, most: 0.2, step: 0.01 },
       { table: "march", key: "cycles", label: "Cycles", unit: "million", least: 0.5, most: 20, step: 0.5, times: 1e6 },
     ],
@@ -99,14 +97,13 @@ export interface Defaults {
 }
 
 // The number of the case for a slider, or why it has none.
-export function shownAt({ table, key, shapes, isFactor }: Place & Partial<Moved>, values: Map<string, string>, defaults?: Defaults): number | string {
+export function shownAt({ table, key, shapes }: Place & Partial<Moved>, values: Map<string, string>, defaults?: Defaults): number | string {
   const at = (name: string) => values.get(`${table}.${name}`) ?? defaults?.values.get(`${table}.${name}`);
   const shape = unquoted(at("shape") ?? "");
   if (shapes && shape && !shapes.includes(shape)) return OF_KNEES.includes(shape) ? "not of this shape" : "not of this joint";
   const written = numberIn(at(key));
   if (written !== undefined) return written;
   if (!defaults) return "–";
-  if (isFactor && [...defaults.values.keys()].some((path) => path.startsWith(`${table}.`))) return 1;
   return defaults.joint === "knee" ? "not of this case" : "not of this joint";
 }
 
