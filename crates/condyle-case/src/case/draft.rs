@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use condyle::anatomy::{
     Likeness, Orientation, Recognition, Sureness, Upright, flange_lead_mm, start_over_the_dishes_mm,
 };
-use condyle::geometry::{GenericInsertShape, TriangleMesh, Underside, posterior_arc_centre_mm};
+use condyle::geometry::{FittedArc, GenericInsertShape, TriangleMesh, Underside};
 use condyle::{Mat3, Vec3};
 use condyle_mesh::files::Disk;
 use condyle_mesh::formats::{parse_surface, surface_bytes};
@@ -144,7 +144,7 @@ fn share_frame(femur: &mut Concluded<'_>, insert: &mut Concluded<'_>) {
 
 /// Moves the origin of a femur to its flexion axis, half-way between its sides; returns the remark.
 fn centre_femur(femur: &mut TriangleMesh, keys: &mut String) -> String {
-    let (x, y) = posterior_arc_centre_mm(femur);
+    let (x, y) = FittedArc::posterior(femur).centre_mm;
     let (low, high) = femur.bounds();
     // A tenth of a millimetre is enough for an origin; adding zero turns -0 into 0.
     let [x, y, z] = [x, y, f64::midpoint(low.z, high.z)].map(|at| (10.0 * at).round() / 10.0 + 0.0);

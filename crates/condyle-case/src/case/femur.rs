@@ -50,7 +50,7 @@ settings! {
         rotation_deg: Option<[f64; 3]> = None, in within(-180.0, 180.0);
         /// Point of the file that is the origin of the femoral frame, along its axes after `axes` and `rotation_deg`; the file's own if not given.
         origin_mm: Option<[f64; 3]> = None, in within(-100_000.0, 100_000.0);
-        /// Flexion axis [x, y] in the femoral frame; if not given, fitted to the posterior condyles of a knee, to the back of a talus,
+        /// Flexion axis [x, y] in the femoral frame; if not given, fitted to the posterior condyles of a knee, to the dome of a talus,
         /// to the ball or socket of other joints, and at the origin if there is none.
         flexion_axis_mm: Option<[f64; 2]> = None, in within(-200.0, 200.0);
         /// Start of the femoral frame in the insert frame, [x, z], before it settles; if not given, at the origin, or with its axis in the

@@ -1,6 +1,8 @@
 //! Landmarks of the bodies, from which the places of a machine are measured: the dishes of an insert and the posterior
 //! arc of a femur.
 
+use std::ops::RangeInclusive;
+
 use condyle_mesh::{TriangleMesh, bounds};
 
 use crate::{Mat3, Vec3};
@@ -99,29 +101,58 @@ fn lowest(points: &[&Vec3]) -> Option<(Vec3, bool)> {
     Some((place, count > PLATEAU * points.len() as f64))
 }
 
-/// Returns the centre (x, y) of the circle that fits the posterior condyles in the sagittal plane, mm.
-///
-/// The support h(d), the extent of the surface in direction d, is c . d + r for a circle of
-/// centre c and radius r, so a straight least-squares fit over the directions from 30 to
-/// 90 degrees behind straight down gives the centre.
-pub fn posterior_arc_centre_mm(femur: &TriangleMesh) -> (f64, f64) {
-    let mut normal_matrix = Mat3::zeros();
-    let mut right_side = Vec3::zeros();
-    // Distal of 30 degrees the larger distal radius begins, above 90 the condyle ends in many designs.
-    for behind_deg in (30..=90).step_by(2) {
-        let (sine, cosine) = f64::from(behind_deg).to_radians().sin_cos();
-        let (x, y) = (-sine, -cosine);
-        let reach = femur
-            .vertices
-            .iter()
-            .map(|v| v.x * x + v.y * y)
-            .fold(f64::NEG_INFINITY, f64::max);
-        let row = Vec3::new(x, y, 1.0);
-        normal_matrix += row * row.transpose();
-        right_side += row * reach;
+/// A circle in the sagittal plane that fits the outline of a surface.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct FittedArc {
+    /// Its centre (x, y), mm.
+    pub centre_mm: (f64, f64),
+    /// Largest distance of the outline from the circle along a direction of the fit, mm.
+    pub off_mm: f64,
+}
+
+impl FittedArc {
+    /// Fits the posterior condyles of a femur.
+    pub fn posterior(femur: &TriangleMesh) -> Self {
+        // Distal of 30 degrees the larger distal radius begins, above 90 the condyle ends in many designs.
+        Self::fitted(femur, 30..=90)
     }
-    let solved = normal_matrix.lu().solve(&right_side).unwrap_or_default();
-    (solved.x, solved.y)
+
+    /// Fits the dome of a talus around its lowest place.
+    pub fn of_dome(talus: &TriangleMesh) -> Self {
+        // Domes span 100 to 130 degrees, less by the position of the talus in its file.
+        Self::fitted(talus, -40..=40)
+    }
+
+    /// Fits the outline where it faces `behind_deg` behind straight down.
+    ///
+    /// The support h(d), the extent of the surface in direction d, is c . d + r for a circle of centre c and radius r, so a
+    /// straight least-squares fit gives the centre.
+    fn fitted(mesh: &TriangleMesh, behind_deg: RangeInclusive<i32>) -> Self {
+        let support = |behind_deg: i32| {
+            let (sine, cosine) = f64::from(behind_deg).to_radians().sin_cos();
+            let (x, y) = (-sine, -cosine);
+            let reaches = mesh.vertices.iter().map(|v| v.x * x + v.y * y);
+            (
+                Vec3::new(x, y, 1.0),
+                reaches.fold(f64::NEG_INFINITY, f64::max),
+            )
+        };
+        let supports = Vec::from_iter(behind_deg.step_by(2).map(support));
+        let mut normal_matrix = Mat3::zeros();
+        let mut right_side = Vec3::zeros();
+        for (row, reach) in &supports {
+            normal_matrix += row * row.transpose();
+            right_side += row * *reach;
+        }
+        let solved = normal_matrix.lu().solve(&right_side).unwrap_or_default();
+        let off = supports
+            .iter()
+            .map(|(row, reach)| (row.dot(&solved) - reach).abs());
+        Self {
+            centre_mm: (solved.x, solved.y),
+            off_mm: off.fold(0.0, f64::max),
+        }
+    }
 }
 
 #[cfg(test)]
@@ -189,7 +220,26 @@ mod tests {
     #[test]
     fn verify_posterior_arc_of_the_generic_femur_is_its_origin() {
         let mesh = GenericFemur::new(GenericFemurShape::default()).surface_mesh(0.5);
-        let (x, y) = posterior_arc_centre_mm(&mesh);
+        let (x, y) = FittedArc::posterior(&mesh).centre_mm;
         assert!(x.abs() < 0.05 && y.abs() < 0.05, "{x} {y}");
+    }
+
+    #[test]
+    fn verify_the_dome_of_a_talus_is_a_circle_though_its_back_is_not() {
+        let arc = |n: i32| {
+            let (sine, cosine) = f64::from(n).to_radians().sin_cos();
+            [-15.0, 15.0].map(|z| Vec3::new(3.0 + 24.0 * sine, 5.0 - 24.0 * cosine, z))
+        };
+        let talus = TriangleMesh {
+            vertices: (-60..=60).flat_map(arc).collect(),
+            triangles: Vec::new(),
+        };
+        let dome = FittedArc::of_dome(&talus);
+        let (x, y) = dome.centre_mm;
+        assert!(
+            (x - 3.0).hypot(y - 5.0) < 1e-3 && dome.off_mm < 1e-4,
+            "{dome:?}"
+        );
+        assert!(FittedArc::posterior(&talus).off_mm > 0.2);
     }
 }

@@ -47,7 +47,7 @@ pub use cup_mesh::UnrolledCup;
 pub use generic_femur::{GenericFemur, GenericFemurShape, PlacedFemur};
 pub use generic_insert::{GenericInsertShape, flat_insert};
 pub use insert::{Insert, InsertError, SurfaceRegions};
-pub use landmarks::{Dishes, posterior_arc_centre_mm};
+pub use landmarks::{Dishes, FittedArc};
 pub use round_bearing::{CupShape, TroughShape, cup_mounting, pin};
 pub use smooth_field::SmoothField;
 pub use surface_sample::{Curvature, SurfaceSample};

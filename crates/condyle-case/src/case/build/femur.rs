@@ -6,8 +6,8 @@ use std::sync::Arc;
 use condyle::Vec3;
 use condyle::evolve::WearTest;
 use condyle::geometry::{
-    Counterface, Cylinder, GenericFemur, GenericFemurShape, PlacedFemur, SmoothField, TriangleMesh,
-    posterior_arc_centre_mm,
+    Counterface, Cylinder, FittedArc, GenericFemur, GenericFemurShape, PlacedFemur, SmoothField,
+    TriangleMesh,
 };
 use condyle::machine::TestedJoint;
 use condyle_mesh::formats::surface_bytes;
@@ -114,6 +114,7 @@ impl Case {
         let ball = ball(joint, mesh);
         let flexion_axis_mm = femur.axis_mm(joint, mesh, ball.as_ref());
         warnings.extend(ball.as_ref().and_then(|ball| femur.off_axes(ball, side)));
+        warnings.extend(femur.not_round(joint, mesh));
         let (x, z) = on_the_right(femur.start_mm.unwrap_or_default(), side);
         Ok(BuiltFemur {
             surface: Arc::new(Counterface::Mesh(field)),
@@ -132,11 +133,30 @@ impl MeshFemur {
         mesh: &TriangleMesh,
         ball: Option<&FittedSphere>,
     ) -> (f64, f64) {
-        match (self.flexion_axis_mm, joint) {
-            (Some([x, y]), _) => (x, y),
-            (None, TestedJoint::Knee | TestedJoint::Ankle) => posterior_arc_centre_mm(mesh),
-            (None, _) => ball.map_or((0.0, 0.0), |ball| (ball.centre_mm.x, ball.centre_mm.y)),
+        if let Some([x, y]) = self.flexion_axis_mm {
+            return (x, y);
         }
+        match (arc(joint, mesh), ball) {
+            (Some(arc), _) => arc.centre_mm,
+            (None, Some(ball)) => (ball.centre_mm.x, ball.centre_mm.y),
+            (None, None) => (0.0, 0.0),
+        }
+    }
+
+    /// Returns a warning if no circle fits the arc whose centre is the flexion axis.
+    fn not_round(&self, joint: TestedJoint, mesh: &TriangleMesh) -> Option<BuildWarning> {
+        let off_mm = arc(joint, mesh)?.off_mm;
+        (self.flexion_axis_mm.is_none() && off_mm > MAX_OFF_ARC_MM).then(|| {
+            let place = match joint {
+                TestedJoint::Knee => "back, as where the condyles end below 90 degrees of flexion",
+                _ => "dome",
+            };
+            let remark = format!(
+                "its flexion axis is the centre of a circle that is {off_mm:.2} mm off the outline of its {place}: the axis may be \
+                 wrong by millimetres; write flexion_axis_mm"
+            );
+            BuildWarning::mesh(&self.file, remark)
+        })
     }
 
     /// Returns a warning if the axes of the machine miss the centre of a ball, of which only x and y are followed.
@@ -208,6 +228,19 @@ impl MeshFemur {
 
 /// Largest distance of a ball from the axes of the machine, mm: that of a drawing whose origin was meant to be in it.
 const MAX_OFF_AXES_MM: f64 = 0.1;
+
+/// Largest distance of an outline from the circle about its flexion axis, mm: the posterior condyles of real knees, of more than
+/// one radius, have up to 0.13, and an arc of 24 mm that ends at 79 degrees, with its axis 1 mm off, has this.
+const MAX_OFF_ARC_MM: f64 = 0.2;
+
+/// Returns the arc about the flexion axis of a joint that has one.
+fn arc(joint: TestedJoint, mesh: &TriangleMesh) -> Option<FittedArc> {
+    match joint {
+        TestedJoint::Knee => Some(FittedArc::posterior(mesh)),
+        TestedJoint::Ankle => Some(FittedArc::of_dome(mesh)),
+        TestedJoint::Hip | TestedJoint::Disc | TestedJoint::Specimen => None,
+    }
+}
 
 /// Cosine of 78 degrees, within which the normal of a triangle that faces the bearing lies from straight down.
 const MIN_DOWN: f64 = 0.2;

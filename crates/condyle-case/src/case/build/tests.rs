@@ -131,7 +131,7 @@ fn dm_cases_build_and_lie_the_right_way_round() {
     )
     .unwrap();
     let (low, high) = shell.mesh.bounds();
-    let (x, y) = condyle::geometry::posterior_arc_centre_mm(&shell.mesh);
+    let (x, y) = condyle::geometry::FittedArc::posterior(&shell.mesh).centre_mm;
     // The posterior condyles lie behind, and the flexion axis inside them.
     assert!(
         low.x < x && x < 0.0 && low.y < y && y < high.y,
