@@ -102,9 +102,11 @@ pub(crate) fn normal_share(deviations: f64) -> f64 {
 
 fn truncated_normal(keys: &TruncatedKeys, share: f64) -> f64 {
     let mean = keys.mean.unwrap_or_default();
-    let below = |value: f64| normal_share((value - mean) / keys.standard_deviation);
-    let (least, most) = (below(keys.low), below(keys.high));
-    let value = mean + keys.standard_deviation * normal_quantile(least + share * (most - least));
+    // Far above the mean, shares below a value round to 1; those above it are exact.
+    let sign = if keys.low > mean { -1.0 } else { 1.0 };
+    let deviation = sign * keys.standard_deviation;
+    let [from, to] = [keys.low, keys.high].map(|end| normal_share((end - mean) / deviation));
+    let value = mean + deviation * normal_quantile(from + share * (to - from));
     // Rounding may exceed the ends, and the case may reject such a value.
     value.clamp(keys.low, keys.high)
 }
@@ -208,6 +210,14 @@ mod tests {
             (truncated_normal(&cut, 0.0), truncated_normal(&cut, 1.0)),
             (0.0, 2.0)
         );
+        // Nine deviations above the mean, the tail falls off as exp(-9 t): its median is ln(2) / 9 above, by 1.2 %.
+        let far = TruncatedKeys {
+            low: 19.0,
+            high: 200.0,
+            ..cut
+        };
+        let median = (truncated_normal(&far, 0.5) - 19.0) / 2.0;
+        assert!((median / (2_f64.ln() / 9.0) - 1.0).abs() < 0.02, "{median}");
         let normal = Variation::Normal(NormalKeys {
             mean: Some(3.0),
             standard_deviation: 2.0,

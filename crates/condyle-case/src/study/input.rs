@@ -359,10 +359,13 @@ pub(super) fn read_rows(
     let input = |(place, key): (usize, &String)| {
         let levels = decisive(rows.iter().map(|row: &Vec<Level>| row[place].clone()));
         let levels = Levels(levels);
+        let path = case.path_of_key(key);
+        let path = path.as_ref().unwrap_or(key);
         Input {
-            is_whole: case.is_whole_number(key),
+            name: key.clone(),
+            is_whole: case.is_whole_number(path),
             span: span.clone(),
-            ..Input::new(key, Variation::Levels(LevelKeys { levels }))
+            ..Input::new(path, Variation::Levels(LevelKeys { levels }))
         }
     };
     let inputs = keys.iter().enumerate().map(input).collect();

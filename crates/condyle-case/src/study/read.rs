@@ -213,12 +213,42 @@ impl Study {
                 let fault = Fault::new(message, "rename one: answers name the designs");
                 log.problem(alternative.span.clone(), fault);
             }
+            if let Some(key) = self.varied_key(alternative) {
+                let message = format!(
+                    "the design `{}` sets `{key}`, which is also varied: the varied value would replace that of the design",
+                    alternative.name
+                );
+                let advice = "remove one of the two, or vary what scatters around the value of every design by another key";
+                log.problem(alternative.span.clone(), Fault::new(message, advice));
+            }
             if let Some((why, advice)) = self.refusal(&alternative.set) {
                 let message = format!("the case rejects the design `{}`: {why}", alternative.name);
                 let fault = Fault::new(message, advice);
                 log.problem(alternative.span.clone(), fault);
             }
         }
+    }
+
+    /// Returns a key that a design and an input both set, by itself or in a table.
+    fn varied_key(&self, alternative: &Alternative) -> Option<&str> {
+        let own = alternative.set.iter().filter_map(|set| {
+            let written = set.key();
+            self.case
+                .path_of_key(written)
+                .ok()
+                .or(Some(written.to_owned()))
+        });
+        let own: Vec<String> = own.collect();
+        let is_within = |inner: &str, outer: &str| {
+            let rest = inner.strip_prefix(outer);
+            rest.is_some_and(|rest| rest.is_empty() || rest.starts_with('.'))
+        };
+        let keys = self.inputs.iter().map(|input| input.key.as_str());
+        let mut both = keys.filter(|key| {
+            own.iter()
+                .any(|set| is_within(key, set) || is_within(set, key))
+        });
+        both.next()
     }
 
     /// Reports an end of an input that the case does not accept, neither alone nor with the others at one of their ends.

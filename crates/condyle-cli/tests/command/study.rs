@@ -658,6 +658,11 @@ fn what_is_wrong_with_a_study_is_said_with_its_place() {
             vec!["two designs have the name `twin`"],
         ),
         (
+            vary("contact.friction", range)
+                + "[[alternative]]\nname = \"rough\"\nset = [\"friction=0.2\"]\n",
+            vec!["the design `rough` sets `contact.friction`, which is also varied"],
+        ),
+        (
             vary("contact.friction", range) + "[answers]\noutputs = [\"mass_los_mg\"]\n",
             vec!["did you mean `mass_loss_mg`?"],
         ),

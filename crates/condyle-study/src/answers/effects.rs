@@ -2,16 +2,21 @@
 
 use std::ops::Range;
 
-use condyle_case::study::Design;
+use condyle_case::{
+    config::Level,
+    study::{Design, Input, Variation},
+};
 use condyle_lab::measured::student;
 use serde::Serialize;
 
 use crate::{
     answers::{data::Data, emulated::Emulated},
     design::Walk,
+    distribution::level_along,
     plan::designs,
     random::Random,
     statistics::{extent, mean, rank_correlation, standard_deviation},
+    store::Column,
 };
 
 /// Slices of the values of an input, with equal numbers of tests.
@@ -70,6 +75,10 @@ pub(crate) fn effects(data: &Data<'_>, emulated: &[Emulated]) -> Vec<Effect> {
             pairs.sort_by(|one, other| one.0.total_cmp(&other.0).then(one.1.total_cmp(&other.1)));
             let slices = slices(&pairs);
             let means: Vec<(f64, f64)> = slices.iter().map(|slice| means(slice)).collect();
+            if means.len() < 2 {
+                // All other tests failed: the effect is not known, and is not zero.
+                continue;
+            }
             let is_counted = data.is_sample() && !is_emulated;
             effects.push(Effect {
                 output: output.key,
@@ -194,23 +203,54 @@ pub(crate) fn elementary_effects(data: &Data<'_>) -> Vec<Elementary> {
     };
     let inputs = study.inputs.len();
     let walk = |number| Walk::new(number, inputs, keys.levels, keys.seed);
+    let scales: Vec<Option<f64>> = data
+        .inputs
+        .iter()
+        .zip(&study.inputs)
+        .map(own_range)
+        .collect();
+    // A step of the grid moves an input by its part of the range, but one of steps from one of its values to another.
+    let part = |input: usize, row: usize, step: f64| {
+        let values = &data.inputs[input].values;
+        scales[input].map_or(step, |range| (values[row + 1] - values[row]) / range)
+    };
     let mut all = Vec::new();
     for (output, values) in &data.outputs {
-        let effects = of_walks(inputs, &walk, values);
+        let effects = of_walks(inputs, &walk, &part, values);
         let pairs = study.inputs.iter().zip(effects);
         all.extend(pairs.map(|(input, effects)| Elementary::new(output.key, &input.key, &effects)));
     }
     all
 }
 
-/// Returns the effects of every input, one for each walk; steps from or to a test that failed are omitted.
-fn of_walks(inputs: usize, walk: &dyn Fn(u64) -> Walk, values: &[f64]) -> Vec<Vec<f64>> {
+/// Returns the range of an input of levels or whole numbers, of words that of their places; none for other inputs.
+fn own_range((column, input): (&Column, &Input)) -> Option<f64> {
+    let [low, high] = match &input.variation {
+        Variation::Levels(_) => extent(column.values.iter().copied()),
+        _ if input.is_whole => [0.0, 1.0].map(|part| match level_along(input, part) {
+            Level::Number(number) => number,
+            Level::Word(_) => f64::NAN,
+        }),
+        _ => return None,
+    };
+    Some(high - low)
+}
+
+/// Returns the effects of every input, one for each walk; steps from or to a test that failed are omitted, as are those that
+/// change nothing. `part` is the signed part of the range that an input moves after a row by a step of the grid.
+fn of_walks(
+    inputs: usize,
+    walk: &dyn Fn(u64) -> Walk,
+    part: &dyn Fn(usize, usize, f64) -> f64,
+    values: &[f64],
+) -> Vec<Vec<f64>> {
     let mut effects = vec![Vec::new(); inputs];
     for (number, tests) in (0..).zip(values.chunks_exact(inputs + 1)) {
         let walk = walk(number);
         for step in 0..inputs {
-            let (input, part) = walk.step(step);
-            let effect = (tests[step + 1] - tests[step]) / part;
+            let (input, grid_step) = walk.step(step);
+            let row = number as usize * (inputs + 1) + step;
+            let effect = (tests[step + 1] - tests[step]) / part(input, row, grid_step);
             if effect.is_finite() {
                 effects[input].push(effect);
             }
@@ -246,7 +286,6 @@ mod tests {
         design::{Saltelli, morris_places},
         distribution::Place,
         plan::Plan,
-        store::Column,
     };
 
     #[test]
@@ -407,20 +446,23 @@ mod tests {
     #[test]
     fn verify_effects_of_a_plane_are_its_slopes_and_those_of_a_product_scatter() {
         let (inputs, levels, seed) = (3, 4, 5);
+        let x_of = |row: usize| -> Vec<f64> {
+            let places = morris_places(row as u64, inputs, levels, seed).into_iter();
+            let part = |place| match place {
+                Place::Along(part) => part,
+                _ => f64::NAN,
+            };
+            places.map(part).collect()
+        };
         let value = |row| {
-            let x: Vec<f64> = morris_places(row, inputs, levels, seed)
-                .into_iter()
-                .map(|place| match place {
-                    Place::Along(part) => part,
-                    _ => f64::NAN,
-                })
-                .collect();
+            let x = x_of(row);
             2.0 * x[0] + 3.0 * x[1] * x[2]
         };
         let values: Vec<f64> = (0..400).map(value).collect();
         let effects = of_walks(
             inputs,
             &|number| Walk::new(number, inputs, levels, seed),
+            &|_, _, step| step,
             &values,
         );
         let [plane, product, _] = [0, 1, 2].map(|input| Elementary::new("y", "x", &effects[input]));
@@ -428,5 +470,15 @@ mod tests {
         // 3 x2 where x2 is 0, 1/3, 2/3 or 1: mean 1.5, standard deviation sqrt(5) / 2.
         assert!((product.mu_star - 1.5).abs() < 0.3 && (product.sigma - 1.118).abs() < 0.2);
         assert_eq!(plane.walks, 100);
+        // Of levels, a step of two thirds changes the first input all the way, or not at all.
+        let level = |row: usize| f64::from(x_of(row)[0] > 0.5);
+        let values: Vec<f64> = (0..400).map(|row| 5.0 * level(row)).collect();
+        let part = |input, row, step| match input {
+            0 => level(row + 1) - level(row),
+            _ => step,
+        };
+        let walk = |number| Walk::new(number, inputs, levels, seed);
+        let effects = of_walks(inputs, &walk, &part, &values);
+        assert!(!effects[0].is_empty() && effects[0].iter().all(|effect| *effect == 5.0));
     }
 }

@@ -251,7 +251,15 @@ impl Answers {
         let [one, other, ..] = all.as_slice() else {
             return None;
         };
-        let (both, output) = (percent(one.first + other.first), self.output_of_indices());
+        let (both, output) = (one.first + other.first, self.output_of_indices());
+        if both > 1.0 {
+            return Some(format!(
+                "The {} bases are too few for indices of {output}: those of two inputs add up to {}.",
+                one.bases,
+                percent(both)
+            ));
+        }
+        let both = percent(both);
         let [one, other] = [one, other].map(|index| title_of_path(self.name_of(&index.input)).0);
         Some(format!(
             "{one} and {} explain {both} of the variance of {output}.",
@@ -272,7 +280,8 @@ impl Answers {
         let front = self.front.as_ref().filter(|front| !front.tests.is_empty());
         if self.design == "optimise" && is_unknown && self.robust.is_none() && front.is_none() {
             let advice = "widen the ranges of the inputs or the limits, or allow more tests";
-            return Some(format!("No tested design keeps every limit: {advice}.\n"));
+            let needs = "keeps every limit and, in a robust search, is predicted to be solved under 95 % of the disturbances";
+            return Some(format!("No tested design {needs}: {advice}.\n"));
         }
         let best = self
             .best
@@ -465,7 +474,13 @@ impl Answers {
     fn table_of_indices(&self) -> Vec<Vec<String>> {
         let range = |[low, high]: [f64; 2]| format!("{low:.3} to {high:.3}");
         let all = self.largest_indices();
-        let input = format!("input, by {}", self.output_of_indices());
+        let counted = all.first().map_or(0, |one| one.bases);
+        let kind = if self.design == "saltelli" {
+            "bases"
+        } else {
+            "tests"
+        };
+        let input = format!("input, by {}, {counted} {kind}", self.output_of_indices());
         table_of_most(&[&input, "first", "95 %", "total", "95 %"], &all, |index| {
             vec![
                 self.name_of(&index.input).to_owned(),
@@ -608,10 +623,14 @@ fn sentence_of_front(front: &Front) -> Option<String> {
 
 fn sentence_of_search(best: &Best) -> Option<String> {
     let minimised = best.outputs.iter().find(|one| one.name == best.minimised)?;
-    let [value, first] = [minimised.value, minimised.first].map(shown);
     let (name, unit, row) = (label(best.minimised), best.unit, best.row?);
+    let (value, first) = (shown(minimised.value), minimised.first);
+    let first = match first.is_nan() {
+        true => "could not be solved".to_owned(),
+        false => format!("has {} {unit}", shown(first)),
+    };
     Some(format!(
-        "The least {name} within all limits is {value} {unit}, in row {row}; the first test has {first} {unit}."
+        "The least {name} within all limits is {value} {unit}, in row {row}; the first test {first}."
     ))
 }
 

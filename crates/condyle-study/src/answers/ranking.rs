@@ -342,7 +342,10 @@ const MAX_POINTS: usize = 1000;
 impl Front {
     /// Returns the front; none if the study has a single output.
     pub fn read(data: &Data<'_>, store: &Store) -> Result<Option<Self>, StudyError> {
-        let Some(outputs) = data.plan.study().answers.pareto else {
+        let study = data.plan.study();
+        // Tests under different disturbances say nothing of the designs.
+        let is_robust = study.chosen() < study.inputs.len();
+        let Some(outputs) = study.answers.pareto.filter(|_| !is_robust) else {
             return Ok(None);
         };
         let one = store.column(data.plan, outputs[0].key)?.values;
@@ -360,8 +363,8 @@ impl Front {
             extent(tests.iter().map(|test| test.2))[1],
         ];
         let front = undominated(tests.clone());
-        let is_searched = data.plan.study().objectives().len() > 1;
-        let inputs = data.plan.study().inputs.iter().zip(&data.inputs);
+        let is_searched = study.objectives().len() > 1;
+        let inputs = study.inputs.iter().zip(&data.inputs);
         let input = |(input, column): (&Input, &Column)| {
             let values = front.iter().map(|test| column.values[test.0 as usize]);
             InputOfFront {

@@ -20,8 +20,11 @@ pub(crate) fn labelled(key: &str) -> String {
     }
 }
 
-/// Returns a number with four significant digits.
+/// Returns a number with four significant digits; a dash for one that is not known.
 pub(crate) fn shown(value: f64) -> String {
+    if value.is_nan() {
+        return "-".to_owned();
+    }
     if value == 0.0 || !value.is_finite() {
         return format!("{value:.0}");
     }

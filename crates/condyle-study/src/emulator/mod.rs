@@ -35,6 +35,8 @@ const JOINT_NUGGET: f64 = 1e-7;
 
 /// Groups of tests, each of which is predicted by an emulator fitted to the others.
 const FOLDS: usize = 5;
+/// Standard deviation of values that are constant but for rounding, relative to that of all.
+const CONSTANT: f64 = 1e-9;
 
 /// A Gaussian process with an unknown mean, and the tensor product of Matern 5/2 correlations with a length for each
 /// axis and a nugget (Rasmussen and Williams 2006; Roustant, Ginsbourger and Deville 2012).
@@ -332,14 +334,16 @@ impl Emulator {
     }
 
     /// Returns the ratios of errors and standard deviations of every fifth test, predicted by an emulator fitted to the
-    /// others; none if they allow no fit.
+    /// others; none if they allow no fit, or are constant, as where the only test that failed is among the fifth: their
+    /// deviation of zero says nothing of that of all.
     fn ratios_without(&self, fold: usize) -> Vec<f64> {
         let is_left_out = |test: &usize| test % FOLDS == fold;
         let (left_out, fitted): (Vec<usize>, Vec<usize>) =
             (0..self.points.len()).partition(is_left_out);
         let points = fitted.iter().map(|&test| self.points[test].clone());
         let values: Vec<f64> = fitted.iter().map(|&test| self.values[test]).collect();
-        let fitted = Self::fit(&points.collect::<Vec<_>>(), &values);
+        let is_constant = standard_deviation(&values) < CONSTANT * self.scale;
+        let fitted = Self::fit(&points.collect::<Vec<_>>(), &values).filter(|_| !is_constant);
         let ratio = |fitted: &Self, test: usize| {
             let found = fitted.predict(&self.points[test]);
             let deviation = found.standard_deviation.hypot(fitted.noise());

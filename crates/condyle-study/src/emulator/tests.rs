@@ -179,6 +179,19 @@ fn verify_predicted_deviations_cover_unseen_tests() {
     }
 }
 
+#[test]
+fn a_single_odd_test_does_not_make_all_predictions_unknown() {
+    let tests = points(40, 1, 3);
+    let odd = (0..40).min_by(|&one, &other| tests[one][0].total_cmp(&tests[other][0]));
+    let values = Vec::from_iter((0..40).map(|test| if Some(test) == odd { 0.5 } else { -0.5 }));
+    let emulator = Emulator::fit(&tests, &values).unwrap().calibrated();
+    let found = emulator.predict(&[0.9]);
+    assert!(
+        found.mean + 3.0 * found.standard_deviation < 0.0,
+        "{found:?}"
+    );
+}
+
 pub fn exact_ishigami() -> Vec<[f64; 2]> {
     vec![[0.3139, 0.5576], [0.4424, 0.4424], [0.0, 0.2437]]
 }

@@ -59,7 +59,8 @@ pub(crate) struct Judged {
 pub(crate) struct Comparison {
     pub optimum: Judged,
     pub first: Judged,
-    /// The probability that the optimum has the smaller output under the same disturbance.
+    /// The probability that the optimum has the smaller output under the same disturbance, or is solved where the first design
+    /// is not.
     pub beats: Estimate,
 }
 
@@ -116,9 +117,15 @@ impl Observed {
                 outputs,
             }
         };
+        // After the limits: a design that cannot be solved is worse than one that is.
+        let failure = sampled.excess.get(self.excess.len());
+        let beats = |draw: usize, at: usize| {
+            let is_solved = |design: usize| failure.is_none_or(|all| all[draw][design][at] <= 0.0);
+            let [own, first] = [0, 1].map(|design| sampled.outputs[draw][design][at]);
+            is_solved(0) && (!is_solved(1) || own < first)
+        };
         Some(Comparison {
-            beats: sampled
-                .share(|draw, at| sampled.outputs[draw][0][at] < sampled.outputs[draw][1][at]),
+            beats: sampled.share(beats),
             optimum: judged(0, *best),
             first: judged(1, 0),
         })

@@ -11,7 +11,7 @@ use rusqlite::types::ValueRef;
 use super::{CHECKSUM, Store, quoted};
 use crate::{error::StudyError, plan::Plan};
 
-/// A column of the table, a value for each test; NaN for a test that failed or is missing.
+/// A column of the table, a value for each test; NaN for a test that is missing, and for outputs of one that failed.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(crate) struct Column {
     /// For words, the place of each among `words`.
@@ -21,7 +21,7 @@ pub(crate) struct Column {
 }
 
 impl Store {
-    /// Returns the column called `name` for every test that is done.
+    /// Returns the column called `name` for every test.
     pub(crate) fn column(&self, plan: &Plan, name: &str) -> Result<Column, StudyError> {
         let column = quoted(name);
         self.checked(|connection| {
@@ -33,7 +33,9 @@ impl Store {
             let words = statement.query_map([], |row| row.get(0))?;
             let words: Vec<String> = words.collect::<rusqlite::Result<_>>()?;
             let mut values = vec![f64::NAN; plan.tests() as usize];
-            let query = format!("SELECT \"row\", {column} FROM tests WHERE status = 'done'");
+            // The reason of a test that is done is its doubt, that of another its failure.
+            let of_done = if name == "reason" { " WHERE status = 'done'" } else { "" };
+            let query = format!("SELECT \"row\", {column} FROM tests{of_done}");
             let mut statement = connection.prepare(&query)?;
             let mut rows = statement.query([])?;
             while let Some(row) = rows.next()? {
