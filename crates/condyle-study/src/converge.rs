@@ -397,7 +397,21 @@ impl Convergence {
             [(*name).to_owned()].into_iter().chain(cells).collect()
         });
         tendency[0] = head(first[0], None);
-        [runs, off, tendency].map(|rows| aligned(&rows)).join("\n")
+        let mut text = [runs, off, tendency].map(|rows| aligned(&rows)).join("\n");
+        for point in self
+            .points
+            .iter()
+            .filter(|point| !point.summary.plausibility.is_empty())
+        {
+            let doubts = point.summary.plausibility.iter();
+            let doubts: Vec<&str> = doubts.map(|doubt| doubt.check.as_str()).collect();
+            text += &format!(
+                "\n{key} = {} is doubtful: {}.\n",
+                point.value,
+                doubts.join(", ")
+            );
+        }
+        text
     }
 }
 

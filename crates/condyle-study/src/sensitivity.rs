@@ -27,6 +27,8 @@ const ASSUMPTIONS: &str = include_str!("assumptions.csv");
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Sensitivity {
     as_given: Results,
+    /// The checks that the case without changes fails.
+    doubts: Vec<String>,
     changed: Vec<Changed>,
 }
 
@@ -63,6 +65,11 @@ pub fn sensitivity(
     )?;
     let bench = TestBench::default();
     let as_given = bench.summary(&study.case)?;
+    let doubts = as_given
+        .plausibility
+        .iter()
+        .map(|doubt| doubt.check.clone());
+    let doubts = doubts.collect();
     let mut changes = changes_of(&study.case);
     // The law or the curve of the case itself is not a change.
     changes.retain(|(_, _, set)| study.changed_case(set).ok().as_ref() != Some(&study.case));
@@ -83,6 +90,7 @@ pub fn sensitivity(
     Ok(Sensitivity {
         changed: changed.collect(),
         as_given,
+        doubts,
     })
 }
 
@@ -229,7 +237,8 @@ impl Sensitivity {
             let reason = one.not_run.as_ref()?;
             Some(format!("{} ({reason})", name(one)))
         });
-        let lists: [(&str, Vec<String>); 2] = [
+        let lists: [(&str, Vec<String>); 3] = [
+            ("The case as given is doubtful", self.doubts.clone()),
             ("Without effect here", without_effect.map(name).collect()),
             ("Not run", not_run.collect()),
         ];
@@ -291,6 +300,7 @@ mod tests {
                 changed("law", Err("it slipped away")),
             ],
             as_given: as_given.clone(),
+            doubts: vec!["single_update".to_owned()],
         };
         let text = study.markdown();
         assert!(
@@ -299,7 +309,7 @@ mod tests {
         );
         assert!(text.contains("| 0.00 "), "no part of nothing: {text}");
         assert!(
-            text.contains("\nWithout effect here: damping: x 2.\n"),
+            text.contains("\nThe case as given is doubtful: single_update.\n\nWithout effect here: damping: x 2.\n"),
             "{text}"
         );
         assert!(
