@@ -193,7 +193,7 @@ async function remembered(page) {
 async function examples(page) {
   await ran(page, () => page.getByLabel("Example").selectOption("Pin on disc"));
   assert.match(await page.locator("#case-text").inputValue(), /preset = "pin-on-disc"/);
-  for (const name of ["Distal radius", "Varus of the femur", "Load, relative to the waveform"]) {
+  for (const name of ["Distal radius", "Varus of the femur", "Loads, relative to the waveforms"]) {
     assert(await page.getByLabel(name).isDisabled(), `a pin has a slider for ${name}`);
     assert.strictEqual(await page.getByLabel(name).getAttribute("aria-valuetext"), "not of this joint");
   }
@@ -239,8 +239,8 @@ async function comparingOthers(page) {
   const knee = (more) => `[insert]\nedge_mm = 3.0\nlayers = 1\n${more}`;
   await ran(page, () => write(page, knee("[march]\nupdates = 4\n[time]\nincrements = 80\n")));
   await page.getByRole("button", { name: "Keep this run" }).click();
-  await ran(page, () => page.getByLabel("Load, relative to the waveform").fill("1.2"));
-  assert.match(await told(), /machine\.axial_force\.knots_n: other points/);
+  await ran(page, () => page.getByLabel("Loads, relative to the waveforms").fill("1.2"));
+  assert.match(await told(), /machine\.load_scale: 1(\.0)? .* 1\.2/);
   assert.strictEqual(await page.locator(".difference canvas").count(), 1);
   await ran(page, () => write(page, `side = "left"\n${knee("")}`));
   assert.match(await told(), /cannot be subtracted: one is a right joint and the other a left one/);
@@ -256,10 +256,10 @@ async function comparingOthers(page) {
 
 // A key that the case has in braces is moved there.
 async function otherForms(page) {
-  const text = 'contact = { friction = 0.05 }\n[insert]\nedge_mm = 3.0\nlayers = 1\n[machine]\npreset = "stanmore-force"\naxial_force.scale = 0.8\n';
+  const text = 'contact = { friction = 0.05 }\n[insert]\nedge_mm = 3.0\nlayers = 1\n[machine]\npreset = "stanmore-force"\nload_scale = 0.8\n';
   await ran(page, () => write(page, text));
-  assert.strictEqual(await page.getByLabel("Load, relative to the waveform").inputValue(), "0.8");
-  await ran(page, () => page.getByLabel("Load, relative to the waveform").fill("0.9"));
+  assert.strictEqual(await page.getByLabel("Loads, relative to the waveforms").inputValue(), "0.8");
+  await ran(page, () => page.getByLabel("Loads, relative to the waveforms").fill("0.9"));
   await ran(page, () => page.getByLabel("Friction").fill("0.06"));
   assert.strictEqual(await page.locator("#case-text").inputValue(), text.replace("0.8", "0.9").replace("0.05", "0.06"));
 }

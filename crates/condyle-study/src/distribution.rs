@@ -102,7 +102,7 @@ pub(crate) fn normal_share(deviations: f64) -> f64 {
 
 fn truncated_normal(keys: &TruncatedKeys, share: f64) -> f64 {
     let mean = keys.mean.unwrap_or_default();
-    // Far above the mean, shares below a value round to 1; those above it are exact.
+    // Far above the mean, shares below a value round to 1; those above it are exact up to 38 deviations.
     let sign = if keys.low > mean { -1.0 } else { 1.0 };
     let deviation = sign * keys.standard_deviation;
     let [from, to] = [keys.low, keys.high].map(|end| normal_share((end - mean) / deviation));

@@ -93,6 +93,16 @@ impl Assignment {
         number(value.get_ref()).filter(|number| number.is_finite())
     }
 
+    /// Returns whether the value is a table with a value at `path` within, such as `.scale`.
+    pub(crate) fn has(&self, path: &str) -> bool {
+        let value = toml::from_str::<toml::Value>(&format!("x = {}", self.text)).ok();
+        let keys = format!("x{path}");
+        let found = value
+            .as_ref()
+            .and_then(|value| keys.split('.').try_fold(value, |at, key| at.get(key)));
+        path.starts_with('.') && found.is_some()
+    }
+
     fn value(&self) -> String {
         match DeValue::parse(&self.text) {
             Ok(_) => self.text.clone(),

@@ -218,7 +218,7 @@ impl Study {
                     "the design `{}` sets `{key}`, which is also varied: the varied value would replace that of the design",
                     alternative.name
                 );
-                let advice = "remove one of the two, or vary what scatters around the value of every design by another key";
+                let advice = "remove the key from the design or from `[[vary]]`";
                 log.problem(alternative.span.clone(), Fault::new(message, advice));
             }
             if let Some((why, advice)) = self.refusal(&alternative.set) {
@@ -229,26 +229,20 @@ impl Study {
         }
     }
 
-    /// Returns a key that a design and an input both set, by itself or in a table.
+    /// Returns a key that a design and an input both set.
     fn varied_key(&self, alternative: &Alternative) -> Option<&str> {
-        let own = alternative.set.iter().filter_map(|set| {
-            let written = set.key();
-            self.case
-                .path_of_key(written)
-                .ok()
-                .or(Some(written.to_owned()))
-        });
-        let own: Vec<String> = own.collect();
-        let is_within = |inner: &str, outer: &str| {
-            let rest = inner.strip_prefix(outer);
-            rest.is_some_and(|rest| rest.is_empty() || rest.starts_with('.'))
+        let is_set = |input: &&Input| {
+            alternative.set.iter().any(|set| {
+                let path = self.case.path_of_key(set.key());
+                let path = path.unwrap_or_else(|_| set.key().to_owned());
+                let rest = input.key.strip_prefix(&path);
+                rest.is_some_and(|rest| rest.is_empty() || set.has(rest))
+            })
         };
-        let keys = self.inputs.iter().map(|input| input.key.as_str());
-        let mut both = keys.filter(|key| {
-            own.iter()
-                .any(|set| is_within(key, set) || is_within(set, key))
-        });
-        both.next()
+        self.inputs
+            .iter()
+            .find(is_set)
+            .map(|input| input.key.as_str())
     }
 
     /// Reports an end of an input that the case does not accept, neither alone nor with the others at one of their ends.

@@ -22,9 +22,9 @@ fn places(bench: &Bench) -> Vec<Place> {
     for (row, path) in table["path"].iter().enumerate() {
         let at = |column: &str| table[column][row];
         let place = places.entry(*path as u64).or_default();
-        let [anterior, right] = [at("slip_x_mm"), at("slip_z_mm")];
-        let per_mm = at("pressure_mpa") / anterior.hypot(right).max(f64::MIN_POSITIVE);
-        let parts = [anterior * anterior, anterior * right, right * right];
+        let [x, z] = [at("slip_x_mm"), at("slip_z_mm")];
+        let per_mm = at("pressure_mpa") / x.hypot(z).max(f64::MIN_POSITIVE);
+        let parts = [x * x, x * z, z * z];
         for (sum, part) in place.work.iter_mut().zip(parts) {
             *sum += per_mm * part;
         }

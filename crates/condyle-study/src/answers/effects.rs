@@ -16,7 +16,6 @@ use crate::{
     plan::designs,
     random::Random,
     statistics::{extent, mean, rank_correlation, standard_deviation},
-    store::Column,
 };
 
 /// Slices of the values of an input, with equal numbers of tests.
@@ -76,7 +75,7 @@ pub(crate) fn effects(data: &Data<'_>, emulated: &[Emulated]) -> Vec<Effect> {
             let slices = slices(&pairs);
             let means: Vec<(f64, f64)> = slices.iter().map(|slice| means(slice)).collect();
             if means.len() < 2 {
-                // All other tests failed: the effect is not known, and is not zero.
+                // All tests that are done have one value of it: the effect is not known, and is not zero.
                 continue;
             }
             let is_counted = data.is_sample() && !is_emulated;
@@ -203,16 +202,9 @@ pub(crate) fn elementary_effects(data: &Data<'_>) -> Vec<Elementary> {
     };
     let inputs = study.inputs.len();
     let walk = |number| Walk::new(number, inputs, keys.levels, keys.seed);
-    let scales: Vec<Option<f64>> = data
-        .inputs
-        .iter()
-        .zip(&study.inputs)
-        .map(own_range)
-        .collect();
-    // A step of the grid moves an input by its part of the range, but one of steps from one of its values to another.
     let part = |input: usize, row: usize, step: f64| {
         let values = &data.inputs[input].values;
-        scales[input].map_or(step, |range| (values[row + 1] - values[row]) / range)
+        part_of_range(&study.inputs[input], [values[row], values[row + 1]], step)
     };
     let mut all = Vec::new();
     for (output, values) in &data.outputs {
@@ -223,17 +215,26 @@ pub(crate) fn elementary_effects(data: &Data<'_>) -> Vec<Elementary> {
     all
 }
 
-/// Returns the range of an input of levels or whole numbers, of words that of their places; none for other inputs.
-fn own_range((column, input): (&Column, &Input)) -> Option<f64> {
-    let [low, high] = match &input.variation {
-        Variation::Levels(_) => extent(column.values.iter().copied()),
-        _ if input.is_whole => [0.0, 1.0].map(|part| match level_along(input, part) {
-            Level::Number(number) => number,
-            Level::Word(_) => f64::NAN,
-        }),
-        _ => return None,
+/// Returns the signed part of its range that an input moves from one value to another by a step of the grid; 0 if it stays.
+///
+/// Levels and whole numbers move farther or less far than the grid. Any change between words, which have no order, is all of
+/// their range.
+fn part_of_range(input: &Input, [before, after]: [f64; 2], grid_step: f64) -> f64 {
+    let ends = match &input.variation {
+        Variation::Levels(keys) => keys.levels.0.clone(),
+        _ if input.is_whole => [0.0, 1.0].map(|part| level_along(input, part)).to_vec(),
+        _ => return grid_step,
     };
-    Some(high - low)
+    let numbers = ends.iter().filter_map(|level| match level {
+        Level::Number(number) => Some(*number),
+        Level::Word(_) => None,
+    });
+    let numbers = Vec::from_iter(numbers);
+    if numbers.len() < ends.len() {
+        return f64::from(before != after) * grid_step.signum();
+    }
+    let [low, high] = extent(numbers.into_iter());
+    (after - before) / (high - low)
 }
 
 /// Returns the effects of every input, one for each walk; steps from or to a test that failed are omitted, as are those that
@@ -279,6 +280,10 @@ impl Elementary {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use condyle_case::{
+        config::Levels,
+        study::{LevelKeys, UniformKeys},
+    };
     use condyle_results::catalogue::MASS_LOSS_MG;
 
     use crate::{
@@ -286,6 +291,7 @@ mod tests {
         design::{Saltelli, morris_places},
         distribution::Place,
         plan::Plan,
+        store::Column,
     };
 
     #[test]
@@ -470,15 +476,33 @@ mod tests {
         // 3 x2 where x2 is 0, 1/3, 2/3 or 1: mean 1.5, standard deviation sqrt(5) / 2.
         assert!((product.mu_star - 1.5).abs() < 0.3 && (product.sigma - 1.118).abs() < 0.2);
         assert_eq!(plane.walks, 100);
-        // Of levels, a step of two thirds changes the first input all the way, or not at all.
-        let level = |row: usize| f64::from(x_of(row)[0] > 0.5);
-        let values: Vec<f64> = (0..400).map(|row| 5.0 * level(row)).collect();
-        let part = |input, row, step| match input {
-            0 => level(row + 1) - level(row),
-            _ => step,
+    }
+
+    #[test]
+    fn verify_levels_move_by_their_own_steps_and_words_by_their_range() {
+        let part = |levels: Vec<Level>, values| {
+            let levels = Levels(levels);
+            let keys = LevelKeys { levels };
+            let input = Input::new("x", Variation::Levels(keys));
+            part_of_range(&input, values, -2.0 / 3.0)
         };
-        let walk = |number| Walk::new(number, inputs, levels, seed);
-        let effects = of_walks(inputs, &walk, &part, &values);
-        assert!(!effects[0].is_empty() && effects[0].iter().all(|effect| *effect == 5.0));
+        let numbers = || [1.0, 10.0, 2.0].map(Level::Number).to_vec();
+        assert_eq!(part(numbers(), [10.0, 2.0]), -8.0 / 9.0);
+        assert_eq!(part(numbers(), [2.0, 2.0]), 0.0);
+        // The places of words are alphabetical.
+        let words = || {
+            ["c", "a", "b"]
+                .map(|word| Level::Word(word.to_owned()))
+                .to_vec()
+        };
+        assert_eq!(part(words(), [0.0, 1.0]), -1.0);
+        assert_eq!(part(words(), [2.0, 2.0]).abs(), 0.0);
+        let (low, high) = (1.0, 3.0);
+        let mut whole = Input::new(
+            "march.updates",
+            Variation::Uniform(UniformKeys { low, high }),
+        );
+        whole.is_whole = true;
+        assert_eq!(part_of_range(&whole, [1.0, 2.0], 2.0 / 3.0), 0.5);
     }
 }

@@ -252,14 +252,16 @@ impl Answers {
             return None;
         };
         let (both, output) = (one.first + other.first, self.output_of_indices());
-        if both > 1.0 {
+        // Only an excess that the scatter of both does not explain.
+        if one.first_interval[0] + other.first_interval[0] > 1.0 {
             return Some(format!(
-                "The {} bases are too few for indices of {output}: those of two inputs add up to {}.",
+                "The {} {} are too few for indices of {output}: those of two inputs add up to {}.",
                 one.bases,
+                self.kind_of_tests(),
                 percent(both)
             ));
         }
-        let both = percent(both);
+        let both = percent(both.min(1.0));
         let [one, other] = [one, other].map(|index| title_of_path(self.name_of(&index.input)).0);
         Some(format!(
             "{one} and {} explain {both} of the variance of {output}.",
@@ -280,7 +282,12 @@ impl Answers {
         let front = self.front.as_ref().filter(|front| !front.tests.is_empty());
         if self.design == "optimise" && is_unknown && self.robust.is_none() && front.is_none() {
             let advice = "widen the ranges of the inputs or the limits, or allow more tests";
-            let needs = "keeps every limit and, in a robust search, is predicted to be solved under 95 % of the disturbances";
+            // Without an optimum and a front, the search is robust.
+            let needs = if self.best.is_none() && self.front.is_none() {
+                "is predicted to keep every limit and to be solved under enough disturbances"
+            } else {
+                "keeps every limit"
+            };
             return Some(format!("No tested design {needs}: {advice}.\n"));
         }
         let best = self
@@ -471,15 +478,20 @@ impl Answers {
         })
     }
 
+    /// Returns the word for the tests from which indices are computed: those of an emulator, or bases of a Saltelli design.
+    fn kind_of_tests(&self) -> &'static str {
+        if self.design == "saltelli" {
+            "bases"
+        } else {
+            "tests"
+        }
+    }
+
     fn table_of_indices(&self) -> Vec<Vec<String>> {
         let range = |[low, high]: [f64; 2]| format!("{low:.3} to {high:.3}");
         let all = self.largest_indices();
         let counted = all.first().map_or(0, |one| one.bases);
-        let kind = if self.design == "saltelli" {
-            "bases"
-        } else {
-            "tests"
-        };
+        let kind = self.kind_of_tests();
         let input = format!("input, by {}, {counted} {kind}", self.output_of_indices());
         table_of_most(&[&input, "first", "95 %", "total", "95 %"], &all, |index| {
             vec![
@@ -625,9 +637,10 @@ fn sentence_of_search(best: &Best) -> Option<String> {
     let minimised = best.outputs.iter().find(|one| one.name == best.minimised)?;
     let (name, unit, row) = (label(best.minimised), best.unit, best.row?);
     let (value, first) = (shown(minimised.value), minimised.first);
-    let first = match first.is_nan() {
-        true => "could not be solved".to_owned(),
-        false => format!("has {} {unit}", shown(first)),
+    let first = if first.is_nan() {
+        "is not solved".to_owned()
+    } else {
+        format!("has {} {unit}", shown(first))
     };
     Some(format!(
         "The least {name} within all limits is {value} {unit}, in row {row}; the first test {first}."

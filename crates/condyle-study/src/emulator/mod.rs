@@ -342,8 +342,10 @@ impl Emulator {
             (0..self.points.len()).partition(is_left_out);
         let points = fitted.iter().map(|&test| self.points[test].clone());
         let values: Vec<f64> = fitted.iter().map(|&test| self.values[test]).collect();
-        let is_constant = standard_deviation(&values) < CONSTANT * self.scale;
-        let fitted = Self::fit(&points.collect::<Vec<_>>(), &values).filter(|_| !is_constant);
+        if standard_deviation(&values) < CONSTANT * self.scale {
+            return Vec::new();
+        }
+        let fitted = Self::fit(&points.collect::<Vec<_>>(), &values);
         let ratio = |fitted: &Self, test: usize| {
             let found = fitted.predict(&self.points[test]);
             let deviation = found.standard_deviation.hypot(fitted.noise());

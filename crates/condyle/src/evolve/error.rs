@@ -30,8 +30,8 @@ pub enum MarchError {
     },
     /// The counterface left the insert.
     #[error(
-        "update {update}: the counterface never touches the insert during the cycle: it has slid or tipped off, as a hip that \
-         dislocates; it was lowered at x {:.1}, z {:.1} mm and ends at {readings}; check, if a translation is large, start_mm, axes and sides, the loads and \
+        "update {update}: the counterface never touches the insert during the cycle; it may have slid or tipped off, like a hip \
+         that dislocates; it was lowered at x {:.1}, z {:.1} mm and ends at {readings}; check, if a translation is large, start_mm, axes and sides, the loads and \
          their signs, and the springs that hold it; if a rotation is large, the point of its axis (vv_axis_medial_mm or point_mm)",
         start_mm.0,
         start_mm.1

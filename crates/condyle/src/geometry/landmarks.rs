@@ -1,5 +1,5 @@
-//! Landmarks of the bodies, from which the places of a machine are measured: the dishes of an insert and the posterior
-//! arc of a femur.
+//! Landmarks of the bodies, from which the places of a machine are measured: the dishes of an insert, the posterior
+//! arc of a femur and the dome of a talus.
 
 use std::ops::RangeInclusive;
 
@@ -119,7 +119,7 @@ impl FittedArc {
 
     /// Fits the dome of a talus around its lowest place.
     pub fn of_dome(talus: &TriangleMesh) -> Self {
-        // Domes span 100 to 130 degrees, less by the position of the talus in its file.
+        // Domes span 100 to 130 degrees; 80 leaves room for a talus that is turned in its file.
         Self::fitted(talus, -40..=40)
     }
 

@@ -148,12 +148,12 @@ impl MeshFemur {
         let off_mm = arc(joint, mesh)?.off_mm;
         (self.flexion_axis_mm.is_none() && off_mm > MAX_OFF_ARC_MM).then(|| {
             let place = match joint {
-                TestedJoint::Knee => "back, as where the condyles end below 90 degrees of flexion",
+                TestedJoint::Knee => "posterior condyles, which may end below 90 degrees of flexion",
                 _ => "dome",
             };
             let remark = format!(
-                "its flexion axis is the centre of a circle that is {off_mm:.2} mm off the outline of its {place}: the axis may be \
-                 wrong by millimetres; write flexion_axis_mm"
+                "a circle fits its outline only within {off_mm:.2} mm along its {place}: the flexion axis, its centre, may be wrong by \
+                 millimetres; write flexion_axis_mm"
             );
             BuildWarning::mesh(&self.file, remark)
         })
@@ -229,8 +229,8 @@ impl MeshFemur {
 /// Largest distance of a ball from the axes of the machine, mm: that of a drawing whose origin was meant to be in it.
 const MAX_OFF_AXES_MM: f64 = 0.1;
 
-/// Largest distance of an outline from the circle about its flexion axis, mm: the posterior condyles of real knees, of more than
-/// one radius, have up to 0.13, and an arc of 24 mm that ends at 79 degrees, with its axis 1 mm off, has this.
+/// Largest distance of an outline from the circle about its flexion axis, mm. The posterior condyles of real knees, which have
+/// more than one radius, are off by up to 0.13 mm; an arc of radius 24 mm that ends at 79 degrees is off by this, and its axis by 1 mm.
 const MAX_OFF_ARC_MM: f64 = 0.2;
 
 /// Returns the arc about the flexion axis of a joint that has one.
