@@ -125,7 +125,7 @@ fn flaps(mesh: &TriangleMesh) -> BTreeSet<[u32; 3]> {
 
 /// Height over longest edge below which a triangle has no area: rounding of double precision.
 const FLAT: f64 = 1e-12;
-/// Splitting a neighbour may leave it flat in turn; more rounds than this do not help.
+/// Splitting a neighbour that is flat leaves it flat; more rounds of that than this do not help.
 const MAX_ROUNDS: usize = 8;
 
 /// Removes triangles of two equal corners and those of three corners in a line; returns their number.
@@ -136,24 +136,28 @@ pub(super) fn remove_degenerate(mesh: &mut TriangleMesh) -> usize {
     let before = mesh.triangles.len();
     mesh.triangles.retain(has_three_corners);
     let mut merged = 0;
-    let mut on_edge = None;
+    let mut flat = all_flat(mesh);
+    let mut on_edge = TrianglesOnEdges::new();
+    if !flat.is_empty() {
+        (0..mesh.triangles.len()).for_each(|index| add_edges(&mut on_edge, mesh, index));
+    }
     for _ in 0..MAX_ROUNDS {
-        let all = 0..mesh.triangles.len();
-        let flat: Vec<usize> = all.filter(|&t| is_flat(&mesh.corners(t))).collect();
-        if flat.is_empty() {
-            break;
+        let mut merge = |mesh: &mut TriangleMesh, flat: &[usize], into_flat| {
+            let merges = |&&t: &&usize| merge_into_neighbour(mesh, t, into_flat, &mut on_edge);
+            flat.iter().filter(merges).count()
+        };
+        // Those of a fan vanish one after the other, from the neighbour with an area on.
+        let mut merged_now = merge(mesh, &flat, false);
+        while merged_now > 0 {
+            merged += merged_now;
+            flat.retain(|&t| is_flat(&mesh.corners(t)));
+            flat.reverse();
+            merged_now = merge(mesh, &flat, false);
         }
-        let on_edge = on_edge.get_or_insert_with(|| {
-            let mut on_edge = TrianglesOnEdges::with_capacity(2 * mesh.triangles.len());
-            (0..mesh.triangles.len()).for_each(|index| add_edges(&mut on_edge, mesh, index));
-            on_edge
-        });
-        let flat = flat.iter();
-        let merged_now = flat
-            .filter(|&&t| merge_into_neighbour(mesh, t, on_edge))
-            .count();
-        merged += merged_now;
-        if merged_now == 0 {
+        let merged_flat = merge(mesh, &flat, true);
+        merged += merged_flat;
+        flat = all_flat(mesh);
+        if merged_flat == 0 || flat.is_empty() {
             break;
         }
     }
@@ -162,6 +166,11 @@ pub(super) fn remove_degenerate(mesh: &mut TriangleMesh) -> usize {
         .retain(|triangle| !is_flat(&triangle.map(|vertex| vertices[vertex as usize])));
     // A merged triangle takes half of its neighbour, so that the number of triangles stays.
     before - mesh.triangles.len() + merged
+}
+
+fn all_flat(mesh: &TriangleMesh) -> Vec<usize> {
+    let all = 0..mesh.triangles.len();
+    all.filter(|&t| is_flat(&mesh.corners(t))).collect()
 }
 
 fn has_three_corners([a, b, c]: &[u32; 3]) -> bool {
@@ -175,10 +184,12 @@ fn is_flat([a, b, c]: &[Vec3; 3]) -> bool {
     (b - a).cross(&(c - a)).norm() <= FLAT * ab.max(bc).max(ca)
 }
 
-/// Gives a flat triangle the half of its neighbour beyond its middle corner; returns false if that is not possible.
+/// Gives a flat triangle the half of its neighbour beyond its middle corner; returns false if that is not possible, or the
+/// neighbour is flat and must not be.
 fn merge_into_neighbour(
     mesh: &mut TriangleMesh,
     index: usize,
+    into_flat: bool,
     on_edge: &mut TrianglesOnEdges,
 ) -> bool {
     // An earlier merge of the round may have changed it.
@@ -200,6 +211,7 @@ fn merge_into_neighbour(
     let has_both = |t: &[u32; 3]| t.contains(&end) && t.contains(&other_end);
     let neighbour = others
         .filter(|&other| has_both(&mesh.triangles[other]))
+        .filter(|&other| into_flat || !is_flat(&mesh.corners(other)))
         .min();
     let Some(neighbour) = neighbour else {
         return false;
@@ -355,6 +367,29 @@ mod tests {
         );
         assert_eq!(shell.mesh.triangles.len(), 14);
         assert!((shell.mesh.signed_volume() - 1.0).abs() < 1e-14);
+    }
+
+    /// A fan along the edges of a face starts with flat triangles, each the neighbour of the next.
+    #[test]
+    fn a_fan_over_many_vertices_in_a_line_stays_closed() {
+        for count in [1, 8, 40] {
+            let mut mesh = unit_block();
+            // Triangle 1 is [0, 3, 1], and triangle 4, [0, 1, 5], is on the other side of edge 0-1.
+            let line = (1..=count).map(|n| f64::from(n) / f64::from(count + 1));
+            mesh.vertices.extend(line.map(|x| Vec3::new(x, 0.0, 0.0)));
+            let along: Vec<u32> = std::iter::once(0).chain(8..8 + count).chain([1]).collect();
+            let pairs = || along.windows(2).map(|pair| [pair[0], pair[1]]);
+            mesh.triangles[4] = [0, 8, 5];
+            mesh.triangles
+                .extend(pairs().skip(1).map(|[a, b]| [a, b, 5]));
+            mesh.triangles
+                .extend(pairs().skip(1).map(|[a, b]| [0, b, a]));
+            let shell = checked_mesh(mesh).unwrap();
+            assert!(shell.closed && shell.defects.is_empty());
+            assert_eq!(shell.removed_degenerate, count as usize);
+            assert_eq!(shell.mesh.triangles.len(), 12 + 2 * count as usize);
+            assert!((shell.mesh.signed_volume() - 1.0).abs() < 1e-14);
+        }
     }
 
     #[test]
