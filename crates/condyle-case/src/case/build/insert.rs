@@ -241,7 +241,13 @@ impl Case {
         let boundary = TriangleMesh::of_quads(file.mesh.nodes.clone(), file.mesh.boundary_quads());
         self.check_orientation(Body::Insert, &insert.file, &boundary, &placing, warnings)?;
         let articulating = match &insert.articulating_surface {
-            Some(name) => named(&file, path, &["articulating_surface"], name)?,
+            Some(name) => {
+                let key = &["articulating_surface", "axes"];
+                let quads = named(&file, path, key, name)?;
+                refuse_downward(&file.mesh, &quads, name)
+                    .map_err(|message| BuildError::mesh(path, key, message))?;
+                quads
+            }
             None => facing(&file.mesh, 1.0),
         };
         let backside = match &insert.backside {
@@ -314,6 +320,28 @@ fn named(
     };
     let message = format!("the mesh has no surface \"{name}\"; its surfaces are {listed}");
     Err(BuildError::mesh(path, key, message))
+}
+
+/// Refuses an articulating surface that faces down, away from the counterface.
+fn refuse_downward(mesh: &HexMesh, quads: &[[u32; 4]], name: &str) -> Result<(), String> {
+    let sorted = |mut quad: [u32; 4]| {
+        quad.sort_unstable();
+        quad
+    };
+    // Files may turn the faces of a surface either way: those of the boundary face outwards.
+    let named: BTreeSet<[u32; 4]> = quads.iter().copied().map(sorted).collect();
+    let outward = mesh.boundary_quads().into_iter();
+    let outward = outward.filter(|quad| named.contains(&sorted(*quad)));
+    let area = |quad: [u32; 4]| {
+        let [a, b, c, d]: [Vec3; 4] = quad.map(|node| mesh.nodes[node as usize]);
+        (c - a).cross(&(d - b))
+    };
+    if outward.map(area).sum::<Vec3>().y >= 0.0 {
+        return Ok(());
+    }
+    Err(format!(
+        "`articulating_surface` \"{name}\" faces down, away from the counterface; exchange it with `backside`, or correct `axes`"
+    ))
 }
 
 /// A face counts as seen from above or below if it leans by less than 60 degrees.

@@ -358,6 +358,21 @@ fn hexahedra_upside_down_make_no_insert() {
 }
 
 #[test]
+fn an_articulating_surface_that_faces_down_is_refused_with_its_key() {
+    let folder = tempfile::tempdir().unwrap();
+    let both = format!("{HEX}*SURFACE, NAME=BOTTOM, TYPE=ELEMENT\nALL, S1\n");
+    fs::write(folder.path().join("a.inp"), both).unwrap();
+    let text = "[insert]\nshape = \"hexahedra\"\nfile = \"a.inp\"\n";
+    let exchanged = format!("{text}articulating_surface = \"BOTTOM\"\nbackside = \"TOP\"\n");
+    assert!(refusal(&exchanged, folder.path()).contains("\"BOTTOM\" faces down"));
+    assert_eq!(place(&exchanged, folder.path()), Some((4, 24)));
+    let upside_down = format!(
+        "{text}articulating_surface = \"TOP\"\naxes = [\"anterior\", \"inferior\", \"left\"]\n"
+    );
+    assert!(refusal(&upside_down, folder.path()).contains("\"TOP\" faces down"));
+}
+
+#[test]
 fn open_femur_that_faces_up_is_turned_to_face_down() {
     let mut condyles = GenericFemur::new(GenericFemurShape::default()).surface_mesh(3.0);
     condyles
