@@ -1,5 +1,6 @@
 //! A case of a hip drafted from the files of head and cup.
 
+use std::ops::RangeInclusive;
 use std::path::Path;
 
 use condyle::geometry::TriangleMesh;
@@ -15,13 +16,12 @@ use super::frame::LengthUnit;
 use super::machine::Preset;
 use crate::config::quoted;
 
-/// Radii of heads and cups on the market, mm. In inches they overlap with those in centimetres from 25.4 to 32 mm: such a
-/// file is read as one in centimetres.
-const RADII_MM: std::ops::RangeInclusive<f64> = 10.0..=32.0;
+/// Largest radius of heads, cups and discs on the market, mm.
+const MAX_RADIUS_MM: f64 = 32.0;
 /// Root mean square distance from its sphere above which a body is not round, mm: a fifth of the usual clearance.
 const MAX_RMS_MM: f64 = 0.02;
 /// Usual radial clearances of polyethylene cups, mm.
-const CLEARANCES_MM: std::ops::RangeInclusive<f64> = 0.02..=0.4;
+const CLEARANCES_MM: RangeInclusive<f64> = 0.02..=0.4;
 
 impl Drafted {
     /// Drafts the case of a hip from the triangles of its head and its cup, to be kept in `folder`: units, radii, and the
@@ -30,20 +30,11 @@ impl Drafted {
     /// # Errors
     /// A file that cannot be read, a head without a ball, a cup without a socket, and a cup that is smaller than its head.
     pub fn hip(preset: Preset, [head, cup]: [&Path; 2], folder: &Path) -> Result<Self, DraftError> {
-        let Some(inclination) = inclination(preset) else {
+        let Some((min_mm, inclination)) = of_joint(preset) else {
             let message = "--head and --cup are a ball and its socket, of a hip or a disc; the machine tests another joint";
             return Err(BuildError::mesh(head, &["file"], message).into());
         };
-        let ball = Round::from(head, Roundness::Convex)?;
-        let (ball, socket) = match (ball, Round::from(cup, Roundness::Concave)?) {
-            (Some(ball), Some(socket)) => (ball, socket),
-            (_, None) if Round::from(head, Roundness::Concave)?.is_some() => {
-                let message = "this body has a spherical socket, and the other has none; exchange --head and --cup";
-                return Err(BuildError::mesh(head, &["file"], message).into());
-            }
-            (None, _) => return Err(not_round(head, "ball", "head").into()),
-            (_, None) => return Err(not_round(cup, "socket", "cup").into()),
-        };
+        let (ball, socket) = ball_and_socket([head, cup], &(min_mm..=MAX_RADIUS_MM))?;
         let clearance_mm = socket.radius_mm() - ball.radius_mm();
         if clearance_mm <= 0.0 {
             let message = format!(
@@ -91,12 +82,35 @@ impl Drafted {
     }
 }
 
-/// Returns the line of the inclination of a cup that differs from the usual one; none if the machine tests no ball and socket.
-fn inclination(preset: Preset) -> Option<&'static str> {
+/// Returns the ball and the socket of two files, with radii on the market.
+fn ball_and_socket<'a>(
+    [head, cup]: [&'a Path; 2],
+    radii_mm: &RangeInclusive<f64>,
+) -> Result<(Round<'a>, Round<'a>), BuildError> {
+    // Heads have a whole diameter in mm, and sockets the radius of their head.
+    let to_whole = |radius_mm: f64| (2.0 * radius_mm - (2.0 * radius_mm).round()).abs();
+    let ball = Round::from(head, Roundness::Convex, radii_mm, to_whole)?;
+    let head_mm = ball.as_ref().map_or(0.0, Round::radius_mm);
+    let to_head = |radius_mm: f64| (radius_mm - head_mm).abs();
+    let socket = Round::from(cup, Roundness::Concave, radii_mm, to_head)?;
+    match (ball, socket) {
+        (Some(ball), Some(socket)) => Ok((ball, socket)),
+        (_, None) if Round::from(head, Roundness::Concave, radii_mm, to_head)?.is_some() => {
+            let message = "this body has a spherical socket, and the other has none; exchange --head and --cup";
+            Err(BuildError::mesh(head, &["file"], message))
+        }
+        (None, _) => Err(not_round(head, "ball", "head")),
+        (_, None) => Err(not_round(cup, "socket", "cup")),
+    }
+}
+
+/// Returns the smallest radius on the market, mm, and the line of the inclination of a cup that differs from the usual one; none
+/// if the machine tests no ball and socket.
+fn of_joint(preset: Preset) -> Option<(f64, &'static str)> {
     match preset.machine().keys.tests {
-        TestedJoint::Hip => Some(""),
+        TestedJoint::Hip => Some((10.0, "")),
         // The discs of the presets lie across the load.
-        TestedJoint::Disc => Some("inclination_deg = 0.0\n"),
+        TestedJoint::Disc => Some((5.0, "inclination_deg = 0.0\n")),
         _ => None,
     }
 }
@@ -106,25 +120,44 @@ struct Round<'a> {
     file: &'a Path,
     sphere: FittedSphere,
     unit: LengthUnit,
+    /// Another unit in which its radius is on the market.
+    other_unit: Option<LengthUnit>,
 }
 
 impl<'a> Round<'a> {
-    /// Returns the body of a file if it has a sphere of the size of a hip.
-    fn from(file: &'a Path, roundness: Roundness) -> Result<Option<Self>, BuildError> {
+    /// Returns the body of a file if it has a sphere, in the unit that makes its radius one of `radii_mm`, and of two units the
+    /// one with the smaller `oddity` of the radius.
+    fn from(
+        file: &'a Path,
+        roundness: Roundness,
+        radii_mm: &RangeInclusive<f64>,
+        oddity: impl Fn(f64) -> f64,
+    ) -> Result<Option<Self>, BuildError> {
         let mesh: TriangleMesh = parse_surface(file, &surface_bytes(&Disk, file)?)?;
         let Some(sphere) = FittedSphere::new(&mesh, roundness) else {
             return Ok(None);
         };
-        let is_usual = |unit: &LengthUnit| RADII_MM.contains(&(sphere.radius_mm * unit.in_mm()));
-        let Some(unit) = LengthUnit::ALL.iter().copied().find(is_usual) else {
+        let in_mm = |unit: &LengthUnit| sphere.radius_mm * unit.in_mm();
+        let all = LengthUnit::ALL.iter().copied();
+        let mut units: Vec<LengthUnit> =
+            all.filter(|unit| radii_mm.contains(&in_mm(unit))).collect();
+        units.sort_by(|one, two| oddity(in_mm(one)).total_cmp(&oddity(in_mm(two))));
+        let Some(&unit) = units.first() else {
             let message = format!(
                 "the sphere in this body has a radius of {:.4} in the unit of the file, and none of mm, cm, m and in makes it \
-                 10 mm to 32 mm, as that of a hip is; scale it, or write the case by hand",
-                sphere.radius_mm
+                 {} mm to {} mm, as those of this joint are; scale it, or write the case by hand",
+                sphere.radius_mm,
+                radii_mm.start(),
+                radii_mm.end()
             );
             return Err(BuildError::mesh(file, &["length_unit"], message));
         };
-        Ok(Some(Self { file, sphere, unit }))
+        Ok(Some(Self {
+            file,
+            sphere,
+            unit,
+            other_unit: units.get(1).copied(),
+        }))
     }
 
     fn radius_mm(&self) -> f64 {
@@ -138,14 +171,24 @@ impl<'a> Round<'a> {
         } else {
             ""
         };
-        vec![
+        let other = self.other_unit.map(|unit| {
+            let radius_mm = self.sphere.radius_mm * unit.in_mm();
+            format!(
+                "  The unit is uncertain: the radius would be {radius_mm:.3} mm with length_unit \"{}\", which is on the market too. \
+                 Check it; if that is right, scale both files to mm and draft again.",
+                unit.word()
+            )
+        });
+        let mut remarks = vec![
             format!("{body}, derived from the shape of {}:", self.file.display()),
             format!(
                 "  {part} of {:.3} mm radius with length_unit \"{}\"; its vertices are {rms_mm:.4} mm from it (rms){doubt}.",
                 self.radius_mm(),
                 self.unit.word()
             ),
-        ]
+        ];
+        remarks.extend(other);
+        remarks
     }
 }
 

@@ -143,6 +143,40 @@ fn bodies_that_are_no_hip_are_refused_with_the_reason() {
     said.assert_refused(2, &["not larger than its head"]);
 }
 
+/// Inches and centimetres both fit some radii: the unit is that of a head with a whole diameter, and the other is named.
+#[test]
+fn a_unit_that_is_uncertain_is_named_with_the_other() {
+    let bench = Bench::new();
+    let write = |name: &str, body: TriangleMesh, scale: f64| {
+        let mut stl = Vec::new();
+        write_stl(&mut stl, &body.mapped(|vertex| vertex * scale)).unwrap();
+        std::fs::write(bench.path(name), stl).unwrap();
+    };
+    for (joint, radius_mm, unit_mm, unit, other) in [
+        ("hip", 27.0, 25.4, "in", "10.630 mm with length_unit \"cm\""),
+        ("hip", 11.0, 10.0, "cm", "27.940 mm with length_unit \"in\""),
+        ("disc", 6.0, 10.0, "cm", "15.240 mm with length_unit \"in\""),
+        ("disc", 6.0, 1.0, "mm", ""),
+    ] {
+        let scale = radius_mm / 14.0 / unit_mm;
+        write("head.stl", head(), scale);
+        write("cup.stl", cup(), scale);
+        let pair = ["--head", "head.stl", "--cup", "cup.stl", "--force"];
+        let said = bench.say(&[&["new", "a.toml", "--joint", joint], &pair[..]].concat());
+        let ball = format!("a ball of {radius_mm:.3} mm radius with length_unit \"{unit}\"");
+        assert!(said.err.contains(&ball), "{}", said.err);
+        let drafted = std::fs::read_to_string(bench.path("a.toml")).expect("a case is written");
+        for text in [&said.err, &drafted] {
+            assert_eq!(text.contains("The unit is uncertain"), !other.is_empty());
+            assert!(text.contains(other), "{text}");
+        }
+        assert!(
+            drafted.contains(&format!("length_unit = \"{unit}\"")),
+            "{drafted}"
+        );
+    }
+}
+
 /// Scatters the vertices off the axis, where slivers meet, by a standard deviation.
 fn scattered(mut body: TriangleMesh, by_mm: f64) -> TriangleMesh {
     let vertices = body.vertices.iter_mut().enumerate();
