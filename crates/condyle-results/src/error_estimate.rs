@@ -150,6 +150,10 @@ impl ErrorEstimate {
 
     /// Returns the error of a number; none if it was not estimated.
     pub fn get(&self, scalar: &Scalar) -> Option<QuantityError<'_>> {
+        // The relative error of another number may have the key of this one.
+        if scalar.error != ErrorMethod::Estimated {
+            return None;
+        }
         Some(QuantityError {
             scalar: catalogue::scalar(scalar.key)?,
             percent: self.errors.get(&percent_key(scalar))?,
@@ -234,5 +238,14 @@ mod tests {
             serde_json::from_str::<ErrorEstimate>(&text).expect("is read"),
             estimate
         );
+    }
+
+    #[test]
+    fn the_relative_error_of_one_number_is_not_the_error_of_another() {
+        let percent = catalogue::scalar("peak_max_shear_percent").unwrap();
+        let mpa = catalogue::scalar("peak_max_shear_mpa").unwrap();
+        let errors = vec![(mpa, Ok(10.0))];
+        let estimate = ErrorEstimate::new(|_| 7.0, [(Part::Mesh, errors)]);
+        assert!(estimate.get(mpa).is_some() && estimate.get(percent).is_none());
     }
 }

@@ -39,6 +39,8 @@ impl Parameter {
 
 /// The units with which names may end, each with its usual notation.
 const UNITS: &[(&str, &str)] = &[
+    ("_mg_per_million_cycles", "mg per million cycles"),
+    ("_mm_per_million_cycles", "mm per million cycles"),
     ("_mg_per_mm3", "mg/mm3"),
     ("_mm3_per_nm", "mm3/(N m)"),
     ("_nm_s_per_rad", "N m s/rad"),

@@ -5,7 +5,7 @@ pub(crate) mod register;
 use std::path::Path;
 
 use condyle::{Mat3, Vec3};
-use condyle_case::measured::Scan;
+use condyle_case::measured::{FitWord, Scan};
 use condyle_mesh::formats::read_vtu_points;
 use condyle_report::SurfaceFields;
 use condyle_results::{check_file, insert_file_name};
@@ -20,14 +20,17 @@ use crate::measured::{
 pub use crate::measured::surface::register::Registration;
 
 const DEPTH: &str = "wear_depth_mm";
+const CREEP: &str = "creep_depth_mm";
+const CREEP_LEFT: &str = "creep_left_unloaded_mm";
+const PERMANENT_SET: &str = "permanent_set_mm";
 
 /// Registers a scan onto the worn insert of a results folder, and compares depths.
 pub(crate) fn compare(scan: &Scan, folder: &Path) -> Result<SurfaceComparison, CompareError> {
-    let (unworn, worn) = first_and_last(folder)?;
+    let (unworn, mut worn) = first_and_last(folder)?;
+    let depth = unload(&unworn, &mut worn);
     let (unworn_mesh, worn_mesh) = (triangulated(&unworn), triangulated(&worn));
     let (unworn_sheet, worn_sheet) = (Sheet::new(&unworn_mesh), Sheet::new(&worn_mesh));
-    let depth = worn.field(DEPTH).unwrap_or_default();
-    let registration = register(scan, &worn_sheet, depth)?;
+    let registration = register(scan, &worn_sheet, &depth)?;
     let registered: Vec<Vec3> = scan.points.iter().map(|p| registration.moved(p)).collect();
     let normals = scan.normals.as_ref();
     let normals: Option<Vec<Vec3>> = normals.map(|all| {
@@ -42,7 +45,52 @@ pub(crate) fn compare(scan: &Scan, folder: &Path) -> Result<SurfaceComparison, C
         (&registered, normals.as_deref()),
         scan.keys.farthest_mm,
     );
-    summarised(&unworn, &compared, registration, scan)
+    let mut compared = summarised(&unworn, &compared, registration, scan)?;
+    compared.notes.insert(0, contents(&worn));
+    if scan.keys.fit == FitWord::All {
+        let remark = "the whole scan was fitted, worn places too: a wear that is deeper or less deep everywhere shifts the scan instead";
+        compared.notes.push(remark.to_owned());
+    }
+    Ok(compared)
+}
+
+/// Moves a worn surface to where a scan of the unloaded insert shows it, with the parts of creep and yield that remain; returns
+/// the depth of every node, mm.
+fn unload(unworn: &SurfaceFields, worn: &mut SurfaceFields) -> Vec<f64> {
+    let field = |name| worn.field(name).map(<[f64]>::to_vec);
+    let [wear, creep, left, set] = [DEPTH, CREEP, CREEP_LEFT, PERMANENT_SET].map(field);
+    let at = |field: &Option<Vec<f64>>, node: usize| field.as_ref().map_or(0.0, |all| all[node]);
+    let unload = |(node, place): (usize, &mut Vec3)| {
+        let wear_mm = at(&wear, node);
+        let moved_mm = wear_mm + at(&creep, node);
+        let depth_mm = wear_mm + at(&left, node) + at(&set, node);
+        // The mesh holds the creep under load, and no permanent set.
+        if moved_mm > 0.0 {
+            let unworn = unworn.nodes[node];
+            *place = unworn + (*place - unworn) * (depth_mm / moved_mm);
+        }
+        depth_mm
+    };
+    worn.nodes.iter_mut().enumerate().map(unload).collect()
+}
+
+/// Returns a remark on the parts of the predicted depth.
+fn contents(worn: &SurfaceFields) -> String {
+    let has = |name| worn.field(name).is_some();
+    let set = if has(PERMANENT_SET) {
+        ", the permanent set"
+    } else {
+        ""
+    };
+    if has(CREEP_LEFT) {
+        return format!(
+            "predicted depths are those of an unloaded insert: wear{set} and the creep that is left"
+        );
+    }
+    format!(
+        "predicted depths are wear{set} alone: a scan of an unloaded insert also shows about half of the creep, so scanned depths are \
+         expected to be larger where pressure was high"
+    )
 }
 
 /// Returns the unworn surface and that of the last update, of one numbering.
@@ -73,8 +121,6 @@ fn surface(folder: &Path, update: usize) -> Result<SurfaceFields, CompareError> 
     Ok(SurfaceFields::of_mesh(&file.mesh, &file.point_data, &path)?)
 }
 
-const CREEP: &str = "a scan of an unloaded insert shows wear and about half of the creep; the \
-    prediction is wear alone, so scanned depths are expected to be larger where pressure was high";
 /// A place deeper than this share of the largest predicted depth is part of a scar.
 const SCAR_SHARE: f64 = 0.05;
 /// A registration with a larger standard error is noted, mm.
@@ -201,7 +247,7 @@ pub(crate) fn summarised(
 }
 
 fn notes(registration: &Registration, covered_area_share: f64) -> Vec<String> {
-    let mut notes = vec![CREEP.to_owned()];
+    let mut notes = Vec::new();
     let standard_error_mm = registration.weakest_standard_error_mm;
     if standard_error_mm > MAX_STANDARD_ERROR_MM {
         notes.push(format!(
@@ -387,4 +433,35 @@ fn areas(surface: &SurfaceFields) -> Vec<f64> {
         }
     }
     areas
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn verify_an_unloaded_insert_has_its_wear_the_creep_left_and_the_permanent_set() {
+        let up = Vec3::y();
+        let unworn = SurfaceFields {
+            nodes: vec![Vec3::zeros(), up],
+            ..SurfaceFields::default()
+        };
+        let fields = [
+            (DEPTH, 0.2),
+            (CREEP, 0.3),
+            (CREEP_LEFT, 0.1),
+            (PERMANENT_SET, 0.05),
+        ];
+        let field = |(name, mm): (&str, f64)| (name.to_owned(), vec![mm, 0.0]);
+        let mut worn = SurfaceFields {
+            nodes: vec![-0.5 * up, up],
+            fields: fields.map(field).to_vec(),
+            ..SurfaceFields::default()
+        };
+        let depth_mm = unload(&unworn, &mut worn);
+        assert!((depth_mm[0] - 0.35).abs() < 1e-12 && depth_mm[1] == 0.0);
+        assert!((worn.nodes[0] + 0.35 * up).norm() < 1e-12 && worn.nodes[1] == up);
+        worn.fields.truncate(1);
+        assert!(contents(&worn).contains("wear alone"));
+    }
 }

@@ -34,7 +34,7 @@ const SCALE_OF_MEDIAN: f64 = 1.4826;
 /// Smallest scale of residuals, mm: round-off of a scan without noise.
 const MIN_SCALE_MM: f64 = 1e-7;
 const SCAN_SLIDES: &str = "the fitted surface does not determine the position of the scan, which can slide or rotate along \
-    it; scan more of the insert, or fit all of it (fit = \"all\" in [surface])";
+    it; scan more of the insert, or fit worn places too (fit = \"all\" in [surface]), which hides a part of their difference";
 /// A motion with a smaller eigenvalue, relative to the largest, is not determined by the surface.
 const MIN_RESISTANCE: f64 = 1e-7;
 
