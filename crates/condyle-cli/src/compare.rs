@@ -159,12 +159,15 @@ fn inside(is_inside: bool) -> &'static str {
 fn add_surface(surface: &SurfaceComparison, lines: &mut Lines) {
     let registration = &surface.registration;
     lines.line("Worn surface: scanned minus predicted depth, mm");
-    lines.line(format!("  registered by a rotation of {:.3} deg and a shift of {:.3} mm; {} points fitted, {:.4} mm rms remaining, standard error {:.4} mm",
-        registration.angle_deg,
-        registration.shift_mm,
-        registration.points,
-        registration.residual_rms_mm,
-        registration.weakest_standard_error_mm));
+    lines.line(match registration.steps {
+        0 => "  not registered: the scan lies as given".to_owned(),
+        _ => format!("  registered by a rotation of {:.3} deg and a shift of {:.3} mm; {} points fitted, {:.4} mm rms remaining, standard error {:.4} mm",
+            registration.angle_deg,
+            registration.shift_mm,
+            registration.points,
+            registration.residual_rms_mm,
+            registration.weakest_standard_error_mm),
+    });
     lines.line("                                  mean  mean abs       rms    area mm2");
     add_errors("everywhere", &surface.everywhere, lines);
     if let Some(scars) = &surface.in_scars {

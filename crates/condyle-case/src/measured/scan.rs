@@ -16,6 +16,8 @@ choice! {
         All = "all",
         /// Within `fit_x_mm` and `fit_z_mm`.
         Region = "region",
+        /// Nothing: after `axes` and `start_mm`, the scan lies in the frame of the results.
+        Nothing = "nothing",
     }
 }
 

@@ -170,6 +170,27 @@ fn verify_deeper_scars_are_measured_as_much_deeper() {
 }
 
 #[test]
+fn verify_a_scan_in_the_frame_of_the_results_is_compared_as_it_is() {
+    let bench = measured_bench();
+    bench.write(
+        "scan.csv",
+        &csv(nodes(&worn(&bench), 0.0, 0.25).into_iter()),
+    );
+    let json = &compared(
+        &bench,
+        "[surface]\nfile = \"scan.csv\"\nfit = \"nothing\"\n",
+    )["surface"];
+    assert_eq!(json["registration"]["steps"], 0);
+    assert_eq!(json["registration"]["shift_mm"], 0.0);
+    let [scanned, predicted] =
+        ["scanned_volume_mm3", "predicted_volume_mm3"].map(|key| json[key].as_f64().unwrap());
+    assert!(
+        (scanned / predicted - 1.25).abs() < 0.02,
+        "{scanned} {predicted}"
+    );
+}
+
+#[test]
 fn an_stl_in_metres_with_other_axes_is_the_same_scan() {
     let bench = measured_bench();
     let surface = worn(&bench);

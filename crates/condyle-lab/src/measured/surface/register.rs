@@ -34,7 +34,8 @@ const SCALE_OF_MEDIAN: f64 = 1.4826;
 /// Smallest scale of residuals, mm: round-off of a scan without noise.
 const MIN_SCALE_MM: f64 = 1e-7;
 const SCAN_SLIDES: &str = "the fitted surface does not determine the position of the scan, which can slide or rotate along \
-    it; scan more of the insert, or fit worn places too (fit = \"all\" in [surface]), which hides a part of their difference";
+    it, as on that of a hip; scan more of the insert, place the scan yourself (fit = \"nothing\" in [surface]), or fit worn places \
+    too (fit = \"all\"), which hides a part of their difference";
 /// A motion with a smaller eigenvalue, relative to the largest, is not determined by the surface.
 const MIN_RESISTANCE: f64 = 1e-7;
 
@@ -54,9 +55,9 @@ pub struct Registration {
     /// Weighted root mean square of the remaining distances along the normals.
     pub residual_rms_mm: f64,
     /// Standard error of the least determined motion, at the radius of gyration of the fitted points, for independent
-    /// noise.
+    /// noise; 0 if nothing was fitted.
     pub weakest_standard_error_mm: f64,
-    /// Steps made.
+    /// Steps made; 0 if nothing was fitted.
     pub steps: usize,
     #[serde(skip)]
     motion: Isometry3<f64>,
@@ -80,7 +81,12 @@ pub(crate) fn register(
 ) -> Result<Registration, CompareError> {
     let places = Places::of(scan);
     let mut motion = Isometry3::identity();
-    let mut reach = REACH_MM.max(scan.keys.farthest_mm);
+    let is_fitted = scan.keys.fit != FitWord::Nothing;
+    let mut reach = if is_fitted {
+        REACH_MM.max(scan.keys.farthest_mm)
+    } else {
+        scan.keys.farthest_mm
+    };
     let mut step_mm = f64::INFINITY;
     for steps in 1..=MAX_STEPS {
         let pairs = places.pairs(&motion, target, reach, |foot| fits(&scan.keys, foot, depth));
@@ -91,6 +97,13 @@ pub(crate) fn register(
                  length_unit, axes, start_mm and the fit region in [surface]"
             ))
         })?;
+        if !is_fitted {
+            let placed = fit.registration(motion, 0);
+            return Ok(Registration {
+                weakest_standard_error_mm: 0.0,
+                ..placed
+            });
+        }
         let slides = || CompareError::NotComparable(SCAN_SLIDES.to_owned());
         let step = fit.step().ok_or_else(slides)?;
         motion = step * motion;
@@ -114,7 +127,7 @@ fn fits(keys: &ScanKeys, foot: &Foot, depth: &[f64]) -> bool {
         range.is_none_or(|[low, high]| (low..=high).contains(&value))
     };
     match keys.fit {
-        FitWord::All => true,
+        FitWord::All | FitWord::Nothing => true,
         FitWord::Unworn => foot.value(depth) <= keys.unworn_depth_mm,
         FitWord::Region => {
             within(keys.fit_x_mm, foot.point.x) && within(keys.fit_z_mm, foot.point.z)
