@@ -176,6 +176,8 @@ pub struct New {
 pub struct Export {
     /// The case file.
     pub case: PathBuf,
+    #[command(flatten)]
+    pub changes: Changes,
     /// The input file to write; it must not exist yet.
     #[arg(short, long, value_name = "FILE.inp")]
     pub out: PathBuf,

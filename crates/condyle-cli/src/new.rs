@@ -148,7 +148,8 @@ fn text(arguments: &New, meshes: &Option<[PathBuf; 2]>) -> Result<String, DraftE
 }
 
 pub fn export(arguments: &Export) -> Done {
-    let case = Case::read(&arguments.case).map_err(RunError::from)?;
+    let case = Case::read_changed(&arguments.case, &arguments.changes.set);
+    let case = case.map_err(RunError::from)?;
     let mut text = Vec::new();
     let written = PressedCase::new(&case, usize::from(arguments.threads)).and_then(|pressed| {
         pressed.write(arguments.pressed_at, &mut text)?;

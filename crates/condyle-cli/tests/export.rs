@@ -29,6 +29,12 @@ fn a_file_is_written_once_and_never_overwritten() {
     for keyword in ["TYPE=C3D8I", "*STEP, NAME=PRESSED", "*BOUNDARY"] {
         assert!(written.contains(keyword), "no {keyword}");
     }
+    // The same case by --set.
+    let set = ["--set", "contact.model=deformable", "--force"];
+    let (code, said) = export(folder.path(), COARSE, &[&PRESSED[..], &set].concat());
+    assert_eq!((code, said.as_str()), (0, ""));
+    let again = fs::read_to_string(folder.path().join("a.inp")).expect("it is there");
+    assert_eq!(again, written);
     let (code, said) = export(folder.path(), &case, &PRESSED);
     assert_eq!(code, 2);
     assert!(
