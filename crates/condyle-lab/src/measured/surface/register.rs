@@ -94,7 +94,8 @@ pub(crate) fn register(
             let (near, points) = (pairs.len(), places.points.len());
             CompareError::NotComparable(format!(
                 "only {near} of {points} points of the scan are near the fitted part of the insert; check \
-                 length_unit, axes, start_mm and the fit region in [surface]"
+                 length_unit, axes, start_mm and the fit region in [surface]; an insert that is worn everywhere has no unworn \
+                 place to fit: write fit = \"nothing\" or \"all\""
             ))
         })?;
         if !is_fitted {
