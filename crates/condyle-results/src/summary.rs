@@ -176,6 +176,12 @@ impl Summary {
         }
     }
 
+    /// Returns the checks of plausibility that the run fails.
+    pub fn doubts(&self) -> Vec<&str> {
+        let doubts = self.plausibility.iter();
+        doubts.map(|doubt| doubt.check.as_str()).collect()
+    }
+
     /// Returns the value of a number; none if the run does not have it.
     pub fn get(&self, scalar: &Scalar) -> Option<f64> {
         self.scalars.get(scalar.key).copied()

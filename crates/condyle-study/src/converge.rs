@@ -398,18 +398,15 @@ impl Convergence {
         });
         tendency[0] = head(first[0], None);
         let mut text = [runs, off, tendency].map(|rows| aligned(&rows)).join("\n");
-        for point in self
-            .points
-            .iter()
-            .filter(|point| !point.summary.plausibility.is_empty())
-        {
-            let doubts = point.summary.plausibility.iter();
-            let doubts: Vec<&str> = doubts.map(|doubt| doubt.check.as_str()).collect();
-            text += &format!(
-                "\n{key} = {} is doubtful: {}.\n",
-                point.value,
-                doubts.join(", ")
-            );
+        for point in &self.points {
+            let doubts = point.summary.doubts();
+            if !doubts.is_empty() {
+                text += &format!(
+                    "\n{key} = {} is doubtful: {}.\n",
+                    point.value,
+                    doubts.join(", ")
+                );
+            }
         }
         text
     }

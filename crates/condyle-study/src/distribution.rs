@@ -39,10 +39,7 @@ pub(crate) fn level_at_share(input: &Input, share: f64) -> Level {
 /// Returns the number of that level, without the rounding of values that files state; NaN for a word.
 pub(crate) fn number_at_share(input: &Input, share: f64) -> f64 {
     match &input.variation {
-        Variation::Levels(_) => match level_at_share(input, share) {
-            Level::Number(number) => number,
-            Level::Word(_) => f64::NAN,
-        },
+        Variation::Levels(_) => level_at_share(input, share).number().unwrap_or(f64::NAN),
         other if input.is_whole => quantile(other, share).round(),
         other => quantile(other, share),
     }

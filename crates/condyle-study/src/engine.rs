@@ -286,14 +286,12 @@ impl TestBench {
             let words = problem.map_or_else(|| error.to_string(), ToString::to_string);
             words.lines().next().unwrap_or_default().trim().to_owned()
         })?;
-        let doubts = summary.plausibility.iter();
-        let doubts: Vec<&str> = doubts.map(|doubt| doubt.check.as_str()).collect();
         Ok(TestOutputs {
             values: plan
                 .study()
                 .outputs
                 .values(&|key| catalogue::scalar(key).map_or(f64::NAN, |scalar| summary[scalar])),
-            doubts: doubts.join(" "),
+            doubts: summary.doubts().join(" "),
         })
     }
 

@@ -65,11 +65,7 @@ pub fn sensitivity(
     )?;
     let bench = TestBench::default();
     let as_given = bench.summary(&study.case)?;
-    let doubts = as_given
-        .plausibility
-        .iter()
-        .map(|doubt| doubt.check.clone());
-    let doubts = doubts.collect();
+    let doubts = as_given.doubts().into_iter().map(str::to_owned).collect();
     let mut changes = changes_of(&study.case);
     // The law or the curve of the case itself is not a change.
     changes.retain(|(_, _, set)| study.changed_case(set).ok().as_ref() != Some(&study.case));

@@ -219,6 +219,16 @@ pub enum Level {
     Word(String),
 }
 
+impl Level {
+    /// Returns the number; none for a word.
+    pub fn number(&self) -> Option<f64> {
+        match self {
+            Self::Number(number) => Some(*number),
+            Self::Word(_) => None,
+        }
+    }
+}
+
 /// Levels, one or more.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Levels(pub Vec<Level>);

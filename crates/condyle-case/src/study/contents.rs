@@ -128,6 +128,11 @@ impl Study {
         chosen.count()
     }
 
+    /// Returns whether some inputs are disturbances, under which a search judges its designs.
+    pub fn is_robust(&self) -> bool {
+        self.chosen() < self.inputs.len()
+    }
+
     /// Returns the changes of the case in one test: those of the design, then the inputs'. An input without a value
     /// sets nothing.
     pub fn assignments(&self, alternative: usize, values: &[Option<Level>]) -> Vec<Assignment> {
@@ -225,7 +230,7 @@ impl Study {
                 let bounds = self.answers.bounds.iter();
                 let bound = bounds.map(|bound| (bound.output.key, bound.least, bound.most));
                 out.line(&format!("{:?}", bound.collect::<Vec<_>>()), "");
-                if self.chosen() < self.inputs.len() {
+                if self.is_robust() {
                     let kept = self.answers.bounds.iter().map(|bound| bound.probability);
                     let kept: Vec<f64> = kept.collect();
                     out.line(&format!("chosen {}, {kept:?}", self.chosen()), "");

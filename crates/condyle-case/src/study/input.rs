@@ -278,11 +278,7 @@ impl Variation {
 
 /// Returns the numbers among levels in ascending order.
 pub(super) fn sorted_numbers(levels: &Levels) -> Vec<f64> {
-    let numbers = levels.0.iter().filter_map(|level| match level {
-        Level::Number(number) => Some(*number),
-        Level::Word(_) => None,
-    });
-    let mut sorted: Vec<f64> = numbers.collect();
+    let mut sorted: Vec<f64> = levels.0.iter().filter_map(Level::number).collect();
     sorted.sort_by(f64::total_cmp);
     sorted
 }

@@ -2,19 +2,16 @@
 
 use std::ops::Range;
 
-use condyle_case::{
-    config::Level,
-    study::{Design, Input, Variation},
-};
+use condyle_case::study::{Design, Input, Variation};
 use condyle_lab::measured::student;
 use serde::Serialize;
 
 use crate::{
     answers::{data::Data, emulated::Emulated},
     design::Walk,
-    distribution::level_along,
     plan::designs,
     random::Random,
+    search::ends,
     statistics::{extent, mean, rank_correlation, standard_deviation},
 };
 
@@ -220,20 +217,15 @@ pub(crate) fn elementary_effects(data: &Data<'_>) -> Vec<Elementary> {
 /// Levels and whole numbers move farther or less far than the grid. Any change between words, which have no order, is all of
 /// their range.
 fn part_of_range(input: &Input, [before, after]: [f64; 2], grid_step: f64) -> f64 {
-    let ends = match &input.variation {
-        Variation::Levels(keys) => keys.levels.0.clone(),
-        _ if input.is_whole => [0.0, 1.0].map(|part| level_along(input, part)).to_vec(),
+    match &input.variation {
+        Variation::Levels(keys) if keys.levels.0.iter().any(|level| level.number().is_none()) => {
+            return f64::from(before != after) * grid_step.signum();
+        }
+        Variation::Levels(_) => {}
+        _ if input.is_whole => {}
         _ => return grid_step,
-    };
-    let numbers = ends.iter().filter_map(|level| match level {
-        Level::Number(number) => Some(*number),
-        Level::Word(_) => None,
-    });
-    let numbers = Vec::from_iter(numbers);
-    if numbers.len() < ends.len() {
-        return f64::from(before != after) * grid_step.signum();
     }
-    let [low, high] = extent(numbers.into_iter());
+    let [low, high] = ends(input);
     (after - before) / (high - low)
 }
 
@@ -281,7 +273,7 @@ impl Elementary {
 mod tests {
     use super::*;
     use condyle_case::{
-        config::Levels,
+        config::{Level, Levels},
         study::{LevelKeys, UniformKeys},
     };
     use condyle_results::catalogue::MASS_LOSS_MG;

@@ -262,7 +262,7 @@ impl Best {
         let [minimised] = objectives[..] else {
             return Ok(None);
         };
-        if plan.study().chosen() < plan.study().inputs.len() {
+        if plan.study().is_robust() {
             return Ok(None);
         }
         let values = store.column(plan, minimised.key)?.values;
@@ -344,8 +344,7 @@ impl Front {
     pub fn read(data: &Data<'_>, store: &Store) -> Result<Option<Self>, StudyError> {
         let study = data.plan.study();
         // Tests under different disturbances say nothing of the designs.
-        let is_robust = study.chosen() < study.inputs.len();
-        let Some(outputs) = study.answers.pareto.filter(|_| !is_robust) else {
+        let Some(outputs) = study.answers.pareto.filter(|_| !study.is_robust()) else {
             return Ok(None);
         };
         let one = store.column(data.plan, outputs[0].key)?.values;

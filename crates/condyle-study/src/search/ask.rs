@@ -7,9 +7,7 @@ use condyle_case::{
 use condyle_results::catalogue::Scalar;
 
 use super::{
-    Known, along_all, first_places, first_tests, is_new, observed,
-    places::{along, number},
-    point, tests_at,
+    Known, along_all, first_places, first_tests, is_new, observed, places::along, point, tests_at,
 };
 use crate::{
     error::StudyError,
@@ -135,7 +133,7 @@ impl Plan {
         let inputs = self.study().inputs.iter().zip(&test.values);
         let number = |(input, value): (&Input, &Option<Level>)| {
             let value = value.clone().or_else(|| self.study().value_of_case(input));
-            value.as_ref().and_then(number).unwrap_or(f64::NAN)
+            value.as_ref().and_then(Level::number).unwrap_or(f64::NAN)
         };
         inputs.map(number).collect()
     }

@@ -17,22 +17,15 @@ const MAX_LEVELS: f64 = 1000.0;
 /// Returns the place of a value in the range of its input, 0 to 1; beyond for rare values of an unbounded distribution.
 pub(super) fn along(input: &Input, value: Option<&Level>) -> Option<f64> {
     let [low, high] = ends(input);
-    Some((number(value?)? - low) / (high - low))
+    Some((value?.number()? - low) / (high - low))
 }
 
 /// Returns the numbers at both ends of the range of an input.
 pub(crate) fn ends(input: &Input) -> [f64; 2] {
     let ends = || [0.0, 1.0].map(|end| level_along(input, end));
     match &input.variation {
-        Variation::Levels(keys) => extent(keys.levels.0.iter().filter_map(number)),
-        _ => extent(ends().iter().filter_map(number)),
-    }
-}
-
-pub(super) fn number(level: &Level) -> Option<f64> {
-    match level {
-        Level::Number(number) => Some(*number),
-        Level::Word(_) => None,
+        Variation::Levels(keys) => extent(keys.levels.0.iter().filter_map(Level::number)),
+        _ => extent(ends().iter().filter_map(Level::number)),
     }
 }
 

@@ -136,17 +136,26 @@ impl MeshFemur {
         if let Some([x, y]) = self.flexion_axis_mm {
             return (x, y);
         }
-        match (arc(joint, mesh), ball) {
+        match (self.arc(joint, mesh), ball) {
             (Some(arc), _) => arc.centre_mm,
             (None, Some(ball)) => (ball.centre_mm.x, ball.centre_mm.y),
             (None, None) => (0.0, 0.0),
         }
     }
 
+    /// Returns the arc whose centre is the flexion axis, of a joint that has one and a case that gives no axis.
+    fn arc(&self, joint: TestedJoint, mesh: &TriangleMesh) -> Option<FittedArc> {
+        match (self.flexion_axis_mm, joint) {
+            (None, TestedJoint::Knee) => Some(FittedArc::posterior(mesh)),
+            (None, TestedJoint::Ankle) => Some(FittedArc::of_dome(mesh)),
+            _ => None,
+        }
+    }
+
     /// Returns a warning if no circle fits the arc whose centre is the flexion axis.
     fn not_round(&self, joint: TestedJoint, mesh: &TriangleMesh) -> Option<BuildWarning> {
-        let off_mm = arc(joint, mesh)?.off_mm;
-        (self.flexion_axis_mm.is_none() && off_mm > MAX_OFF_ARC_MM).then(|| {
+        let off_mm = self.arc(joint, mesh)?.off_mm;
+        (off_mm > MAX_OFF_ARC_MM).then(|| {
             let place = match joint {
                 TestedJoint::Knee => "posterior condyles, which may end below 90 degrees of flexion",
                 _ => "dome",
@@ -232,15 +241,6 @@ const MAX_OFF_AXES_MM: f64 = 0.1;
 /// Largest distance of an outline from the circle about its flexion axis, mm. The posterior condyles of real knees, which have
 /// more than one radius, are off by up to 0.13 mm; an arc of radius 24 mm that ends at 79 degrees is off by this, and its axis by 1 mm.
 const MAX_OFF_ARC_MM: f64 = 0.2;
-
-/// Returns the arc about the flexion axis of a joint that has one.
-fn arc(joint: TestedJoint, mesh: &TriangleMesh) -> Option<FittedArc> {
-    match joint {
-        TestedJoint::Knee => Some(FittedArc::posterior(mesh)),
-        TestedJoint::Ankle => Some(FittedArc::of_dome(mesh)),
-        TestedJoint::Hip | TestedJoint::Disc | TestedJoint::Specimen => None,
-    }
-}
 
 /// Cosine of 78 degrees, within which the normal of a triangle that faces the bearing lies from straight down.
 const MIN_DOWN: f64 = 0.2;
