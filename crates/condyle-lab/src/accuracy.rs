@@ -461,7 +461,7 @@ fn errors<const N: usize>(factors: [f64; N], now: [f64; N], reference: [f64; N])
 }
 
 fn peaks_of(update: &UpdateRecord) -> Peaks {
-    let stress = update.under_surface.as_ref();
+    let stress = update.peaks.under_surface.as_ref();
     let [mises, shear] =
         stress.map_or([0.0; 2], |under| [under.von_mises_mpa, under.max_shear_mpa]);
     [

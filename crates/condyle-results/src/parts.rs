@@ -352,12 +352,12 @@ mod tests {
             peaks: CyclePeaks {
                 peak_pressure_mpa: 0.0,
                 contact_area_mm2: 0.0,
+                under_surface: None,
             },
             cycles_solved: 1.0,
             repeats: true,
             worst_quality: 1.0,
             creep: Some(creep),
-            under_surface: None,
         }
     }
 

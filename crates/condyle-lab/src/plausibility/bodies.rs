@@ -289,6 +289,10 @@ const MAX_DEVIATION_MM: f64 = 0.05;
 /// it, and where facets are divided into flat triangles, more of it changed the mass by 3 %.
 const MAX_INSERT_ERROR_MM: f64 = 0.005;
 
+/// Height of voids below the contact up to which an insert counts as solid, mm; our choice: faces of parts that touch, and
+/// engraved marks, leave less.
+const MAX_VOID_MM: f64 = 0.2;
+
 /// Largest part of the contact, by overclosure, where the triangles of a body do not determine its surface, %; our choice:
 /// in sound knees, up to 4 % lies at the sharp edges that the smooth surface rounds.
 const MAX_ROUGH_PERCENT: f64 = 10.0;
@@ -358,17 +362,13 @@ pub(crate) fn femur_on_eminence(finished: &Finished<'_>) -> Option<PlausibilityW
 
 /// Warns of an insert whose triangles are too coarse where the femur touches them.
 pub(crate) fn insert_mesh(finished: &Finished<'_>) -> Option<PlausibilityWarning> {
-    let pressed_mpa = finished.march.state().first_pressure_mpa.iter();
-    let force_n = pressed_mpa.zip(&finished.surface.shares);
-    let force_n = force_n.map(|(pressure_mpa, share)| pressure_mpa * share.area_mm2);
-    let error_mm = finished.march.insert().mesh_error_mm().iter().copied();
     let [_, name] = tests(finished).bodies();
     let advice = format!(
         "The mesh is too coarse there: export the {name} with a chord error of at most 0.01 mm, without decimation or division of \
          its facets."
     );
     let is = format!("the surface of the {name} is uncertain by");
-    let contact = force_n.zip(error_mm);
+    let contact = pressed(finished, finished.march.insert().mesh_error_mm());
     rough(
         "insert_mesh",
         (&is, ""),
@@ -376,6 +376,27 @@ pub(crate) fn insert_mesh(finished: &Finished<'_>) -> Option<PlausibilityWarning
         contact,
         &advice,
     )
+}
+
+/// Warns of contact above a slot, an undercut or a void of the insert.
+pub(crate) fn hollow_insert(finished: &Finished<'_>) -> Option<PlausibilityWarning> {
+    let [_, name] = tests(finished).bodies();
+    let advice = "The hexahedra fill the slot, undercut or void below the contact with polyethylene. If a part of the tray fills it, \
+                  test a mesh whose backside is the upper face of the void; if it is empty, the body deflects more than computed.";
+    let is = format!("the {name} below is hollow by");
+    let contact = pressed(finished, finished.march.insert().void_mm());
+    rough("hollow_insert", (&is, ""), MAX_VOID_MM, contact, advice)
+}
+
+/// Returns the force on each surface node in the first cycle, N, with its value.
+fn pressed<'a>(
+    finished: &'a Finished<'_>,
+    values: &'a [f64],
+) -> impl Iterator<Item = (f64, f64)> + 'a {
+    let pressed_mpa = finished.march.state().first_pressure_mpa.iter();
+    let force_n = pressed_mpa.zip(&finished.surface.shares);
+    let force_n = force_n.map(|(pressure_mpa, share)| pressure_mpa * share.area_mm2);
+    force_n.zip(values.iter().copied())
 }
 
 /// Warns of the noise of a scan, whose peaks bear much of the load; the warning of the build names the mesh.

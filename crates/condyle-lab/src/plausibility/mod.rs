@@ -24,12 +24,13 @@ use finished::{Finished, percent_of, warning};
 type Check = fn(&Finished<'_>) -> Option<PlausibilityWarning>;
 
 /// The unit of the load, the place of the femur on the insert, their meshes, and impossible pressure.
-const PLACE: [Check; 7] = [
+const PLACE: [Check; 8] = [
     loads::load_small,
     bodies::femur_on_eminence,
     bodies::pressure_at_rim,
     bodies::femur_mesh,
     bodies::insert_mesh,
+    bodies::hollow_insert,
     bodies::noisy_mesh,
     bodies::pressure_beyond_flow,
 ];

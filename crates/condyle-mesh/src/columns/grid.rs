@@ -121,6 +121,9 @@ pub struct ColumnMesh {
     /// Error that the triangles leave in the smooth surface at each node of the articulating surface, in the order of the nodes,
     /// mm; empty for a shape without triangles.
     pub mesh_error_mm: Vec<f64>,
+    /// Height of the voids below these nodes that the hexahedra fill, such as a slot for a lock, mm; empty for a shape without
+    /// triangles.
+    pub void_mm: Vec<f64>,
 }
 
 impl ColumnGrid {
@@ -287,6 +290,7 @@ impl Plan {
             articulating: quads.map(|corners| quad(corners, layers)).collect(),
             backside: backside.collect(),
             mesh_error_mm: Vec::new(),
+            void_mm: Vec::new(),
             mesh: HexMesh { hexes, nodes },
         }
     }

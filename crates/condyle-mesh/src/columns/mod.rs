@@ -140,7 +140,7 @@ fn columns_of(
         let over_spread = VerticalLines::new(&spread, true);
         let mut found = vertical_columns(&spread, &over_spread, None, meshing).ok()?;
         post.gather(&mut found, shell, &lines);
-        found.0.mesh_error_mm = mesh_errors_mm(&found.0, shell, &lines, |place| lines.at(place));
+        compare(&mut found.0, shell, &lines, |place| lines.at(place));
         // A post that cannot be spread, such as one that overhangs, is bridged as a hole is.
         (found.0.mesh.worst_quality() > 0.0).then_some(found)
     });
@@ -182,7 +182,7 @@ fn vertical_columns(
     }
     let mut columns = plan.hexahedra(&columns, meshing);
     let through = |place| footprint.through(place);
-    columns.mesh_error_mm = mesh_errors_mm(&columns, shell, lines, through);
+    compare(&mut columns, shell, lines, through);
     Ok((columns, holes))
 }
 
@@ -193,15 +193,15 @@ const DIVIDED: f64 = 1.5;
 /// 0.03 mm, the smooth surface changes the mass by less than 0.1 %, and the triangles by 3 %.
 const ERROR_OF_LIFT: f64 = 0.25;
 
-/// Returns the error that the triangles leave at each node of the articulating surface, mm.
+/// Compares columns with the surface that they mesh: the errors and the voids at each node of the articulating surface.
 ///
 /// Triangles that divide a flat facet are lifted at its edges only, and all of the distance that they lack is an error.
-fn mesh_errors_mm(
-    columns: &ColumnMesh,
+fn compare(
+    columns: &mut ColumnMesh,
     shell: &TriangleMesh,
     lines: &VerticalLines<'_>,
     through: impl Fn(Place) -> Option<Through>,
-) -> Vec<f64> {
+) {
     let is_upward = |corners: &[u32; 3]| {
         let [a, b, c] = corners.map(|vertex| shell.vertices[vertex as usize]);
         (b - a).cross(&(c - a)).y > 0.0
@@ -217,9 +217,11 @@ fn mesh_errors_mm(
     let mut nodes: Vec<u32> = columns.articulating.iter().flatten().copied().collect();
     nodes.sort_unstable();
     nodes.dedup();
-    let error = |node: u32| {
+    let places = nodes.into_iter().map(|node| {
         let node = columns.mesh.nodes[node as usize];
-        let place = Place::new(node.x, node.z);
+        Place::new(node.x, node.z)
+    });
+    let error_mm = |place: Place| {
         let of_lift_mm = through(place).map(|through| ERROR_OF_LIFT * through.lift_mm.abs());
         let over_facet = over_facets.as_ref().and_then(|lines| lines.highest(place));
         let both = over_facet.zip(lines.highest(place));
@@ -227,7 +229,8 @@ fn mesh_errors_mm(
         let chord_mm = divided.map(|((facet, _, over), _)| facets.chord_mm(facet, over.weights));
         of_lift_mm.unwrap_or(0.0).max(chord_mm.unwrap_or(0.0))
     };
-    nodes.into_iter().map(error).collect()
+    columns.mesh_error_mm = places.clone().map(error_mm).collect();
+    columns.void_mm = places.map(|place| lines.void_mm(place)).collect();
 }
 
 /// Returns the plan of the hexahedra with its rim on the outline, and the columns on its places.

@@ -95,6 +95,15 @@ impl<'a> VerticalLines<'a> {
         Some((triangle, (b - a).cross(&(c - a)).norm() / 2.0, over))
     }
 
+    /// Returns the height of the voids on the line over a place, between a face that looks down and the next one that looks up, mm.
+    pub(super) fn void_mm(&self, place: Place) -> f64 {
+        let mut faces: Vec<Over> = self.over(place).map(|(_, over)| over).collect();
+        faces.sort_by(|a, b| b.height.total_cmp(&a.height));
+        let pairs = faces.windows(2);
+        let voids = pairs.filter(|pair| pair[0].upward < 0.0 && pair[1].upward > 0.0);
+        voids.map(|pair| pair[0].height - pair[1].height).sum()
+    }
+
     /// Returns the same without a second attempt next to the place.
     pub(super) fn exactly_at(&self, place: Place) -> Option<Through> {
         let through = self.over(place).map(|(_, over)| Through {
@@ -213,4 +222,28 @@ fn mean<'a>(heights: impl Iterator<Item = &'a [f64; 2]>) -> [f64; 2] {
         (count + 1.0, [sum[0] + height[0], sum[1] + height[1]])
     });
     sum.map(|sum| sum / count.max(1.0))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_height_of_a_void_is_found_below_the_surface_only() {
+        let block = |low: [f64; 3], high: [f64; 3]| TriangleMesh::block(low.into(), high.into());
+        let mut void = block([-4.0, 2.0, -4.0], [4.0, 5.0, 4.0]);
+        for triangle in &mut void.triangles {
+            triangle.swap(0, 1);
+        }
+        let body = block([-10.0, 0.0, -10.0], [10.0, 8.0, 10.0]).joined(&void);
+        // A foot below is apart from the body by a gap, which is a void too, and a block that overlaps the body is not.
+        let foot = block([5.0, -3.0, -10.0], [10.0, -1.0, 10.0]);
+        let boss = block([-10.0, 6.0, -10.0], [-6.0, 9.0, 10.0]);
+        let body = body.joined(&foot).joined(&boss);
+        let lines = VerticalLines::new(&body, true);
+        for (x_mm, void_mm) in [(0.0, 3.0), (4.5, 0.0), (7.0, 1.0), (-8.0, 0.0)] {
+            let found = lines.void_mm(Place::new(x_mm, 0.3));
+            assert!((found - void_mm).abs() < 1e-9, "{x_mm}: {found}");
+        }
+    }
 }

@@ -1,6 +1,6 @@
 //! Stress below the surface of a deformable insert, what has yielded, and its backside.
 //!
-//! Stress is that of the centres of elements, at the increment of each update with the highest pressure.
+//! Stress is that of the centres of elements, at the increment of each solved cycle with the highest pressure.
 
 use condyle::{
     contact::BacksideAtRest,
@@ -29,7 +29,7 @@ scalars! { "Below the surface";
         .continued();
 
     /// Cycles before the cycle with the largest shear stress. 0 is the first cycle.
-    PEAK_MAX_SHEAR_CYCLE = Scalar::sometimes("peak_max_shear_cycle", "cycles before that stress", 0, |run| Some(run.state().cycles_before(most_sheared(run)?.0)))
+    PEAK_MAX_SHEAR_CYCLE = Scalar::sometimes("peak_max_shear_cycle", "cycles before that stress", 0, |run| Some(most_sheared(run)?.0))
         .listed();
 
     /// Instant of the largest shear stress in its cycle.
@@ -66,7 +66,7 @@ scalars! { "Below the surface";
         .count()
         .continued();
 
-    /// Largest lift of the backside off the tray. In the last cycle of any update, like all numbers of the backside.
+    /// Largest lift of the backside off the tray. In any solved cycle, like all numbers of the backside.
     BACKSIDE_LIFT_MM = Scalar::sometimes("backside_lift_mm", "lift of the backside", 4, |run| backside(run, |rest| rest.lift_mm));
 
     /// Largest part of the backside that is lifted at the same time.
@@ -84,33 +84,33 @@ scalars! { "Below the surface";
         .continued();
 }
 
-/// Returns the stresses of the updates with their numbers; none for a foundation.
-fn records<'a>(
-    run: &FinishedRun<'a>,
-) -> impl DoubleEndedIterator<Item = (usize, &'a UnderSurfaceRecord)> {
-    let updates = run.state().updates.iter().enumerate();
-    updates.filter_map(|(number, update)| Some((number, update.under_surface.as_ref()?)))
+/// Returns the stresses of all solved cycles with the cycles done before each; none for a foundation.
+fn records(
+    run: &FinishedRun<'_>,
+) -> impl DoubleEndedIterator<Item = (f64, UnderSurfaceRecord)> {
+    let peaks = run.peaks();
+    peaks.filter_map(|(cycles, peaks)| Some((cycles, peaks.under_surface?)))
 }
 
-fn first<'a>(run: &FinishedRun<'a>) -> Option<&'a UnderSurfaceRecord> {
+fn first(run: &FinishedRun<'_>) -> Option<UnderSurfaceRecord> {
     records(run).next().map(|(_, record)| record)
 }
 
-fn most_stressed<'a>(run: &FinishedRun<'a>) -> Option<&'a UnderSurfaceRecord> {
+fn most_stressed(run: &FinishedRun<'_>) -> Option<UnderSurfaceRecord> {
     let records = records(run).map(|(_, record)| record);
     records.max_by(|a, b| a.von_mises_mpa.total_cmp(&b.von_mises_mpa))
 }
 
-fn most_sheared<'a>(run: &FinishedRun<'a>) -> Option<(usize, &'a UnderSurfaceRecord)> {
+fn most_sheared(run: &FinishedRun<'_>) -> Option<(f64, UnderSurfaceRecord)> {
     records(run).max_by(|a, b| a.1.max_shear_mpa.total_cmp(&b.1.max_shear_mpa))
 }
 
-/// Returns the yield up to the last update; `None` for an insert that does not yield.
+/// Returns the yield up to the final cycle; `None` for an insert that does not yield.
 fn plastic(run: &FinishedRun<'_>) -> Option<PlasticRecord> {
     records(run).next_back()?.1.plastic
 }
 
-/// Returns the largest value of all updates; `None` for a bonded backside.
+/// Returns the largest value of all solved cycles; `None` for a bonded backside.
 fn backside(run: &FinishedRun<'_>, value: fn(&BacksideAtRest) -> f64) -> Option<f64> {
     let rests = records(run).filter_map(|(_, record)| record.backside);
     rests.map(|rest| value(&rest)).reduce(f64::max)

@@ -60,13 +60,18 @@ impl<'a> FinishedRun<'a> {
         self.march.state()
     }
 
-    /// The first cycle with the largest `value`: cycles done before it, and the value.
-    pub fn largest(&self, value: fn(&CyclePeaks) -> f64) -> (f64, f64) {
+    /// Returns the extremes of all solved cycles with the cycles done before each: those of the updates, then the
+    /// final one.
+    pub fn peaks(&self) -> impl DoubleEndedIterator<Item = (f64, CyclePeaks)> {
         let state = self.state();
         let updates = state.updates.iter().enumerate();
-        let solved = updates.map(|(number, update)| (state.cycles_before(number), &update.peaks));
-        let solved = solved.chain([(self.last.cycles, &self.final_cycle)]);
-        let mut values = solved.map(|(cycles, peaks)| (cycles, value(peaks)));
+        let solved = updates.map(|(number, update)| (state.cycles_before(number), update.peaks));
+        solved.chain([(self.last.cycles, self.final_cycle)])
+    }
+
+    /// The first cycle with the largest `value`: cycles done before it, and the value.
+    pub fn largest(&self, value: fn(&CyclePeaks) -> f64) -> (f64, f64) {
+        let mut values = self.peaks().map(|(cycles, peaks)| (cycles, value(&peaks)));
         let first = values.next().expect("a run has an update");
         // Strictly larger, so that of equal cycles the first counts; `max_by` would return the last.
         values.fold(

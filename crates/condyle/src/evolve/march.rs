@@ -4,9 +4,9 @@
 use std::ops::ControlFlow;
 
 use super::{
-    Activity, CreepRecord, CreepState, DepthField, DepthFields, FamilyWear, MarchError, MarchState,
-    NodeFields, PlacementError, Progress, Snapshot, SolvedCycle, UnderSurfaceRecord, UpdateRecord,
-    WearTest,
+    Activity, CreepRecord, CreepState, CyclePeaks, DepthField, DepthFields, FamilyWear, MarchError,
+    MarchState, NodeFields, PlacementError, Progress, Snapshot, SolvedCycle, UnderSurfaceRecord,
+    UpdateRecord, WearTest,
     comparison_laws::{ComparisonLaw, outside_mm3, sum, wear_of_each},
     creep::{CreepContact, CreepStep},
     depth::sum_mm,
@@ -277,7 +277,7 @@ impl March {
         let (creep, crept) = self.creep(&solved, &step).unzip();
         let mut taken = vec![DepthField::wear(step.depth_mm.clone())];
         taken.extend(crept);
-        let (under_surface, under_record) = self.under_surface(&solved).unzip();
+        let (under_surface, stress) = self.under_surface(&solved).unzip();
         let before = self.lower(&solved.surface, &taken)?;
 
         // The results.
@@ -300,7 +300,7 @@ impl March {
             &solved_step,
             &taken,
             before.worst_quality,
-            under_record,
+            solved.peaks(stress),
         );
         self.state.updates.push(record);
         self.sum_up(&solved_step);
@@ -308,8 +308,8 @@ impl March {
         Ok(ControlFlow::Continue(()))
     }
 
-    /// Solves a cycle on the surface after the last update, so that motions, pressures and areas of the last cycle are
-    /// those of the worn insert. Nothing wears, and the history of the contact stays that of the last update.
+    /// Solves a cycle on the surface after the last update, so that motions, pressures, areas and stresses of the last
+    /// cycle are those of the worn insert. Nothing wears, and the history of the contact stays that of the last update.
     fn solve_final_cycle(
         &mut self,
         watch: &mut dyn FnMut(Progress) -> ControlFlow<()>,
@@ -330,7 +330,9 @@ impl March {
         let surface = &solved.surface;
         let fields = NodeFields::new(&mean, surface, &rates, &self.insert, &self.state.depths);
         self.state.fields = Some(fields);
-        self.state.final_cycle = Some(solved.peaks());
+        let (under_surface, stress) = self.under_surface(&solved).unzip();
+        self.state.under_surface = under_surface;
+        self.state.final_cycle = Some(solved.peaks(stress));
         self.keep(self.cycles(), solved);
         Ok(ControlFlow::Continue(()))
     }
@@ -459,7 +461,7 @@ impl March {
         &SolvedStep { rates, step, .. }: &SolvedStep<'_>,
         taken: &[DepthField],
         worst_quality: f64,
-        under_surface: Option<UnderSurfaceRecord>,
+        peaks: CyclePeaks,
     ) -> UpdateRecord {
         let (area_mm2, last) = (&rates.area_mm2, self.state.updates.last());
         let lost = taken.iter().filter(|field| field.loses_mass);
@@ -478,12 +480,11 @@ impl March {
                 - creep_mm3,
             mass_loss_mg: volume_loss_mm3 * self.test.density_mg_per_mm3,
             max_depth_mm: wear_mm.copied().fold(0.0, f64::max),
-            peaks: solved.peaks(),
+            peaks,
             cycles_solved: increments as f64 / self.test.time.increments as f64,
             repeats: cycles.clone().all(|cycle| cycle.repeats),
             worst_quality,
             creep,
-            under_surface,
         }
     }
 

@@ -45,8 +45,6 @@ pub struct UpdateRecord {
     pub worst_quality: f64,
     /// Creep so far, if the insert creeps.
     pub creep: Option<CreepRecord>,
-    /// Stress below the surface at the highest pressure, if the insert is a solid.
-    pub under_surface: Option<UnderSurfaceRecord>,
 }
 
 /// Extremes of one solved cycle of every activity.
@@ -56,6 +54,8 @@ pub struct CyclePeaks {
     pub peak_pressure_mpa: f64,
     /// Largest contact area, mm2.
     pub contact_area_mm2: f64,
+    /// Stress below the surface at the highest pressure, if the insert is a solid.
+    pub under_surface: Option<UnderSurfaceRecord>,
 }
 
 /// The motions and loads of one solved cycle.
@@ -174,7 +174,7 @@ impl CreepRecord {
     }
 }
 
-/// Stress below the surface at the increment of an update with the highest pressure.
+/// Stress below the surface at the increment with the highest pressure.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct UnderSurfaceRecord {
     /// Number of the activity, from 0.
@@ -195,7 +195,7 @@ pub struct UnderSurfaceRecord {
     pub backside: Option<BacksideAtRest>,
 }
 
-/// Plastic strain of an insert after an update.
+/// Plastic strain of an insert after its last solved cycle.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct PlasticRecord {
     /// Maximum permanent deflection of the surface, mm.

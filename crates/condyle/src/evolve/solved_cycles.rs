@@ -3,7 +3,7 @@
 use std::ops::ControlFlow;
 
 use super::{
-    Activity, CyclePeaks, MarchError, MarchState, Progress, Updates, WearTest,
+    Activity, CyclePeaks, MarchError, MarchState, Progress, UnderSurfaceRecord, Updates, WearTest,
     next_step::{equal_interval, fixed_interval},
 };
 use crate::{
@@ -154,8 +154,8 @@ impl SolvedCycles {
         shares.zip(histories).collect()
     }
 
-    /// Returns the extremes of all rows.
-    pub fn peaks(&self) -> CyclePeaks {
+    /// Returns the extremes of all rows, with the stress `under_surface`.
+    pub fn peaks(&self, under_surface: Option<UnderSurfaceRecord>) -> CyclePeaks {
         let largest = |value: fn(&CycleRow) -> f64| {
             let each = self.cycles.iter().map(|cycle| cycle.max(value));
             each.fold(0.0, f64::max)
@@ -163,6 +163,7 @@ impl SolvedCycles {
         CyclePeaks {
             peak_pressure_mpa: largest(|row| row.peak_pressure_mpa),
             contact_area_mm2: largest(|row| row.contact_area_mm2),
+            under_surface,
         }
     }
 

@@ -119,8 +119,8 @@ pub struct MarchState {
     pub law_family: Option<FamilyWear>,
     /// The history of the contact.
     pub contact: ContactState,
-    /// Stress below the surface at the increment of the last update with the highest pressure, if the insert is a
-    /// solid.
+    /// Stress below the surface at the increment of the last solved cycle with the highest pressure, if the insert is
+    /// a solid.
     pub under_surface: Option<UnderSurface>,
     /// One per activity.
     pub activities: Vec<ActivityState>,

@@ -86,7 +86,7 @@ impl UnrolledCup {
             *node = mounting * (Vec3::new(node.x * around, -cosine, node.z * around) * -node.y);
         }
         let insert = Insert::new(columns.mesh, &columns.articulating, &columns.backside)?;
-        let insert = insert.with_mesh_error_mm(columns.mesh_error_mm);
+        let insert = insert.compared_with_mesh(columns.mesh_error_mm, columns.void_mm);
         let thickness_mm = insert.surface_nodes().iter().map(|&top| {
             // The nodes of a column follow each other from the backside up.
             let [bottom, top] =

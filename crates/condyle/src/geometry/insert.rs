@@ -99,7 +99,7 @@ impl Insert {
     ) -> Result<(Self, Vec<Hole>), InsertError> {
         let (columns, holes) = column_mesh(surface, is_closed, thickness_mm, meshing)?;
         let insert = Self::new(columns.mesh, &columns.articulating, &columns.backside)?;
-        let insert = insert.with_mesh_error_mm(columns.mesh_error_mm);
+        let insert = insert.compared_with_mesh(columns.mesh_error_mm, columns.void_mm);
         Ok((insert, holes))
     }
 
@@ -177,6 +177,12 @@ impl Insert {
         &self.unworn.mesh_error_mm
     }
 
+    /// Returns the height of the voids of a mesh below each surface node that the hexahedra fill, mm; empty for a shape without
+    /// triangles.
+    pub fn void_mm(&self) -> &[f64] {
+        &self.unworn.void_mm
+    }
+
     /// Returns the articulating surface in its present shape.
     pub fn surface(&self) -> ArticulatingSurface {
         self.surface_at(&self.mesh.nodes)
@@ -189,10 +195,10 @@ impl Insert {
         ArticulatingSurface::new(positions, &self.unworn.faces_around)
     }
 
-    /// Sets the error that the triangles of a mesh leave at every surface node, mm.
-    pub(super) fn with_mesh_error_mm(mut self, mesh_error_mm: Vec<f64>) -> Self {
+    /// Sets the error that the triangles of a mesh leave at every surface node, and the voids below, mm.
+    pub(super) fn compared_with_mesh(mut self, error_mm: Vec<f64>, void_mm: Vec<f64>) -> Self {
         let unworn = Arc::get_mut(&mut self.unworn).expect("a new insert shares nothing");
-        unworn.mesh_error_mm = mesh_error_mm;
+        (unworn.mesh_error_mm, unworn.void_mm) = (error_mm, void_mm);
         self
     }
 

@@ -58,8 +58,9 @@ pub(super) struct UnwornInsert {
     pub node_blocks: Vec<NodeBlock>,
     pub share_mm2: Vec<f64>,
     pub thickness_mm: Vec<f64>,
-    /// Empty for a shape without triangles.
+    /// Empty for a shape without triangles, as are the voids.
     pub mesh_error_mm: Vec<f64>,
+    pub void_mm: Vec<f64>,
     /// Unit direction of the side wall below each surface node on the rim, upwards.
     pub walls: Vec<Option<Vec3>>,
     pub followers: Vec<Follower>,
@@ -101,6 +102,7 @@ impl UnwornInsert {
             share_mm2: surface.shares.iter().map(|share| share.area_mm2).collect(),
             thickness_mm: thickness_at_nodes(&surface, mesh, backside)?,
             mesh_error_mm: Vec::new(),
+            void_mm: Vec::new(),
             walls: walls(mesh, &boundary, &surface_nodes),
             followers: followers(mesh, &surface_nodes),
             node_blocks: node_blocks(&faces, &faces_around),
