@@ -22,6 +22,28 @@ class Summary:
     """Wear depth at the deepest node. In mm."""
     wear_over_conventional: float
     """Wear of cross-linked relative to conventional polyethylene."""
+    max_penetration_mm: float
+    """Deepest penetration. In mm."""
+    wear_at_max_penetration_mm: float
+    """Wear at the deepest penetration. In mm."""
+    creep_at_max_penetration_mm: float
+    """Creep at the deepest penetration. In mm."""
+    max_creep_mm: float
+    """Deepest creep. In mm."""
+    creep_volume_mm3: float
+    """Volume of creep. In mm3."""
+    max_unloaded_depth_mm: float
+    """Deepest place of a scan without load. In mm."""
+    million_penetration_mm: float
+    """Deepest penetration after a million cycles. In mm."""
+    million_wear_mm: float
+    """Wear at the deepest penetration after a million cycles. In mm."""
+    million_creep_mm: float
+    """Creep at the deepest penetration after a million cycles. In mm."""
+    scan_rise_mm_per_million_cycles: float
+    """Rise of the deepest place of scans without load. In mm per million cycles."""
+    scan_at_no_cycles_mm: float
+    """The same line at no cycles. In mm."""
     peak_pressure_mpa: float
     """Highest contact pressure. In MPa."""
     peak_pressure_cycle: float
@@ -128,8 +150,6 @@ class Summary:
     """Wear by every law for the same histories, that of the run first; only this law moves the surface."""
     activities: list[dict[str, Any]]
     """Motion, loads and wear of each activity."""
-    creep: dict[str, Any]
-    """Creep, and its separation from wear."""
     joint: str
     """The joint whose replacement the machine tests, such as ``hip``."""
     motions: list[dict[str, Any]]

@@ -82,7 +82,7 @@ def creep(runs):
         f"after {first['cycles']:.0f} cycles the deepest place has receded by {crept:.3f} mm by creep and by {worn:.3f} mm by wear",
         crept > worn,
     )
-    last, found = wear(runs / "creep")[-1], summary(runs / "creep")["creep"]
+    last, found = wear(runs / "creep")[-1], summary(runs / "creep")
     row(
         "wear dominates the rest of the test",
         "`creep`",
@@ -90,13 +90,12 @@ def creep(runs):
         f"{last['max_depth_mm'] - first['max_depth_mm']:.3f} mm",
         last["max_depth_mm"] - first["max_depth_mm"] > last["max_creep_mm"] - first["max_creep_mm"],
     )
-    line = found["line_from_a_million"]
     slope = (last["max_depth_mm"] - at_million(runs)["max_depth_mm"]) / (last["cycles"] - 1e6) * 1e6
-    rise = line["rise_mm_per_million_cycles"]
+    rise = found["scan_rise_mm_per_million_cycles"]
     row(
         "the rise of scans from a million cycles on is the rate of wear",
         "`creep`",
-        f"{rise:.4f} mm per million cycles, compared with {slope:.4f} mm of wear at its deepest; {line['at_no_cycles_mm']:.3f} mm at no cycles",
+        f"{rise:.4f} mm per million cycles, compared with {slope:.4f} mm of wear at its deepest; {found['scan_at_no_cycles_mm']:.3f} mm at no cycles",
         abs(rise / slope - 1) < 0.05,
         "Within 5 % counts as yes.",
     )

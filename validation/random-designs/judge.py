@@ -152,7 +152,7 @@ def _volume(mesh):
 
 
 def _volumes(summary, meshes):
-    crept = summary.get("creep", {}).get("volume_mm3", 0.0)
+    crept = summary.get("creep_volume_mm3", 0.0)
     lost = _volume(meshes[0]) - _volume(meshes[-1]) - crept
     if abs(lost - summary["volume_loss_mm3"]) > COUNTS_APART * summary["volume_loss_mm3"] + 0.01:
         yield Finding("volumes of mesh and wear differ", ("counts_of_volume",))

@@ -5,7 +5,7 @@ use std::path::Path;
 use condyle_case::cache::Cache;
 use condyle_lab::{Outcome, RunOptions};
 use condyle_results::{
-    CreepSummary, ErrorEstimate, ErrorParts, Part, Summary,
+    ErrorEstimate, ErrorParts, Part, Summary,
     catalogue::{self, MASS_LOSS_MG, Prominence, Scalar, WEAR_OVER_CONVENTIONAL},
 };
 
@@ -101,7 +101,7 @@ fn print_summary(summary: &Summary, out: &Path, json: bool) -> Done {
 
 type SummaryLine = (&'static str, String);
 
-/// Returns the numbers of the catalogue, then creep and the parts of the error.
+/// Returns the numbers of the catalogue, then the parts of the error.
 fn rows(summary: &Summary) -> Vec<SummaryLine> {
     let mut rows: Vec<SummaryLine> = Vec::new();
     for scalar in catalogue::scalars().filter(|scalar| scalar.prominence >= Prominence::Printed) {
@@ -124,9 +124,7 @@ fn rows(summary: &Summary) -> Vec<SummaryLine> {
     if let (Some(error), Some((_, time))) = (&summary.error, rows.last_mut()) {
         *time += &format!(", error estimate {:.3} s", error.wall_s);
     }
-    let creep = summary.creep.iter().flat_map(rows_of_creep);
-    let error = summary.error.iter().map(row_of_error);
-    rows.extend(creep.chain(error));
+    rows.extend(summary.error.iter().map(row_of_error));
     rows
 }
 
@@ -159,33 +157,6 @@ fn in_words(summary: &Summary, scalar: &Scalar) -> Option<String> {
         None => {}
     }
     Some(words)
-}
-
-fn rows_of_creep(creep: &CreepSummary) -> Vec<SummaryLine> {
-    let last = &creep.last;
-    let parts = |penetration: f64, wear: f64, creep: f64| {
-        format!("{penetration:.4} mm: {wear:.4} by wear, {creep:.4} by creep (approximate)")
-    };
-    let (wear_mm, creep_mm) = (last.wear_there_mm, last.creep_there_mm);
-    let deepest = parts(last.max_penetration_mm, wear_mm, creep_mm);
-    let unloaded = format!("{:.4} mm", last.max_unloaded_depth_mm);
-    let mut rows = vec![
-        ("deepest penetration", deepest),
-        ("  scanned without load", unloaded),
-        ("volume of creep", format!("{:.2} mm3", last.volume_mm3)),
-    ];
-    if let Some(first) = creep.first_million {
-        let first = parts(first.penetration_mm, first.wear_mm, first.creep_mm);
-        rows.push(("  after a million cycles", first));
-    }
-    if let Some(line) = creep.line_from_a_million {
-        let line = format!(
-            "{:.4} mm a million cycles, from {:.4} mm, as laboratories separate wear from creep",
-            line.rise_mm_per_million_cycles, line.at_no_cycles_mm
-        );
-        rows.push(("  scans from there on", line));
-    }
-    rows
 }
 
 /// Returns the parts of the error of the mass, with the sign of the change that finer values would make.

@@ -108,6 +108,9 @@ mod tests {
         assert_eq!(schema["properties"]["updates"]["type"], "integer");
         assert_eq!(schema["tables"]["wear.csv"][1]["name"], "mass_loss_mg");
         let required = schema["required"].as_array().expect("is a list");
-        assert!(required.contains(&json!("plausibility")) && !required.contains(&json!("creep")));
+        assert!(
+            required.contains(&json!("plausibility"))
+                && !required.contains(&json!("max_penetration_mm"))
+        );
     }
 }

@@ -13,11 +13,11 @@ use serde_json::{Map, Value};
 
 use super::{
     catalogue::{
-        self, CYCLES, FinishedRun, PEAK_PRESSURE_MPA, RunFacts, Scalar, UPDATES, WALL_S,
+        self, CYCLES, FinishedRun, MAX_PENETRATION_MM, RunFacts, Scalar, UPDATES, WALL_S,
         WEAR_OVER_CONVENTIONAL,
     },
     error_estimate::ErrorEstimate,
-    parts::{ActivitySummary, CreepSummary, LawWear, MotionColumn, NeutralPose},
+    parts::{ActivitySummary, LawWear, MotionColumn, NeutralPose},
     prediction::Prediction,
 };
 
@@ -118,11 +118,8 @@ summary! {
     wear_laws: Vec<LawWear> as Objects, true, before Some(&WEAR_OVER_CONVENTIONAL),
         "Wear by every law for the same histories, that of the run first; only this law moves the surface.";
     /// Empty for one activity; motions and ranges of the summary are those of the first.
-    activities: Vec<ActivitySummary> as Objects, false, before Some(&PEAK_PRESSURE_MPA),
+    activities: Vec<ActivitySummary> as Objects, false, before Some(&MAX_PENETRATION_MM),
         "Motion, loads and wear of each activity.";
-    /// None for an insert that does not creep.
-    creep: Option<CreepSummary> as Object, false, before Some(&PEAK_PRESSURE_MPA),
-        "Creep, and its separation from wear.";
     joint: TestedJoint as Text, true, before Some(&UPDATES),
         "The joint whose replacement the machine tests, such as `hip`.";
     /// Empty in a file of an older version.
@@ -153,7 +150,7 @@ pub struct PlausibilityWarning {
 }
 
 impl Summary {
-    /// Creates the numbers, activities and creep of a march; none before its first update.
+    /// Creates the numbers and activities of a march; none before its first update.
     pub fn new(march: &March, facts: RunFacts) -> Option<Self> {
         let run = FinishedRun::new(march, facts)?;
         let values = catalogue::scalars();
@@ -161,7 +158,6 @@ impl Summary {
         Some(Self {
             scalars: values.collect(),
             activities: ActivitySummary::of(march),
-            creep: CreepSummary::of(march.state()),
             version: env!("CARGO_PKG_VERSION").to_owned(),
             ..Self::of_machine(march.test().machine().mechanism)
         })

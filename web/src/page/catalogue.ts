@@ -7,6 +7,17 @@ export interface Numbers {
   volume_loss_mesh_mm3: number;
   max_depth_mm: number;
   wear_over_conventional?: number;
+  max_penetration_mm?: number;
+  wear_at_max_penetration_mm?: number;
+  creep_at_max_penetration_mm?: number;
+  max_creep_mm?: number;
+  creep_volume_mm3?: number;
+  max_unloaded_depth_mm?: number;
+  million_penetration_mm?: number;
+  million_wear_mm?: number;
+  million_creep_mm?: number;
+  scan_rise_mm_per_million_cycles?: number;
+  scan_at_no_cycles_mm?: number;
   peak_pressure_mpa: number;
   peak_pressure_cycle: number;
   first_cycle_peak_pressure_mpa: number;

@@ -145,20 +145,11 @@ fn is_hidden(key: &str) -> bool {
     NOT_LISTED.iter().any(|hidden| key.contains(hidden))
 }
 
-/// Returns creep, and entries that are not in the catalogue, named by their keys.
+/// Returns the entries that are not in the catalogue, named by their keys.
 fn others(summary: &Summary) -> Vec<Listed> {
-    let creep = summary
-        .creep
-        .as_ref()
-        .map(|creep| ("creep", serde_json::to_value(creep).unwrap_or_default()));
-    let creep = creep.iter().map(|(key, value)| (*key, value));
-    let unknown = summary
-        .others
-        .iter()
-        .map(|(key, value)| (key.as_str(), value));
-    let all = creep.chain(unknown);
-    all.flat_map(|(key, value)| unlisted(key, key, value))
-        .collect()
+    let others = summary.others.iter();
+    let listed = others.flat_map(|(key, value)| unlisted(key, key, value));
+    listed.collect()
 }
 
 /// Returns an entry that is not in the catalogue, or each entry of an object.

@@ -21,6 +21,7 @@ pub use scalar::{ErrorMethod, Prominence, Scalar, Section};
 
 scalar::sections! {
     wear,
+    creep,
     contact,
     below_surface,
     motion,
