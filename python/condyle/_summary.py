@@ -155,7 +155,7 @@ class Summary:
     motions: list[dict[str, Any]]
     """The joints of the machine: ``column`` of ``kinematics.csv``, ``title``, and the ``positive`` direction."""
     neutral_pose: dict[str, Any]
-    """Pose of the settled femur in the insert frame: there AP, ML and IS read zero."""
+    """Pose of the settled femur in the insert frame: there AP, ML and IS of a knee read zero."""
     warnings: list[str]
     """Corrections of the input, and doubts about it."""
     version: str

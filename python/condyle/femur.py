@@ -4,8 +4,6 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Literal
 
-from .errors import CondyleError
-
 if TYPE_CHECKING:
     import numpy as np
     from numpy.typing import NDArray
@@ -29,13 +27,10 @@ def femur_points_at(result: Result, increment: int, cycle: Literal["first", "las
 
     Raises:
         ValueError: another word for the cycle.
-        CondyleError: a joint other than the knee, whose runs have no neutral pose.
     """
     import numpy as np
 
     neutral = result.neutral_pose
-    if neutral is None:
-        raise CondyleError(f"a run of a {result.joint} has no neutral pose; femur_pose has the poses of the cycles")
     origin, rotation = np.array(neutral["femoral_origin_mm"]), np.array(neutral["rotation"])
     in_femoral_frame = (result.femur_points_mm - origin) @ rotation
     table = result.femur_pose

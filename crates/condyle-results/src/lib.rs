@@ -50,7 +50,8 @@ pub use insert_fields::{
     InsertFields, NODE_FIELDS, NodeField, insert_file_name, insert_pvd, insert_vtu,
 };
 pub use parts::{
-    ActivitySummary, KneeActivity, LawWear, MotionColumn, NeutralPose, joint_range, kinematics_file,
+    ActivitySummary, KneeActivity, LawWear, MotionColumn, NeutralAngles, NeutralPose, joint_range,
+    kinematics_file,
 };
 pub use prediction::{CALIBRATED_LAW, Interval, MAX_FACTOR_OF_RUN, Prediction, Source};
 pub use settings::{SettingDifference, setting_differences};

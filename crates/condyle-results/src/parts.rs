@@ -194,39 +194,45 @@ impl MotionColumn {
     }
 }
 
-/// The pose in which the femur settles under the load at the start of the cycle, where AP, ML and IS read zero: a
-/// point p of the femoral frame is at R p + t in the insert frame, each of the knee's own side.
+/// The pose in which the femur settles under the load at the start of the cycle, where AP, ML and IS of a knee read zero: a
+/// point p of the femoral frame is at R p + t in the insert frame, each of the joint's own side.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct NeutralPose {
     /// t, the origin of the femoral frame in the insert frame: x, y, z, mm.
     pub femoral_origin_mm: [f64; 3],
     /// R, its rows.
     pub rotation: [[f64; 3]; 3],
-    /// Flexion of R, degrees.
+    /// The angles of R; of a knee only.
+    #[serde(flatten)]
+    pub angles: Option<NeutralAngles>,
+}
+
+/// Angles of the settled femur of a knee, degrees.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct NeutralAngles {
+    /// Flexion.
     pub flexion_deg: f64,
-    /// Internal rotation of the insert, degrees.
+    /// Internal rotation of the insert.
     pub ie_deg: f64,
-    /// Varus of the insert, degrees.
+    /// Varus of the insert.
     pub vv_deg: f64,
 }
 
 impl NeutralPose {
-    /// Returns the neutral pose of a march, in a knee of the given side.
-    pub fn of(march: &March, side: Side) -> Option<Self> {
-        let is_knee = *march.test().machine().mechanism == KNEE;
-        is_knee.then(|| Self::of_knee(march, side))
-    }
-
-    fn of_knee(march: &March, side: Side) -> Self {
+    /// Returns the neutral pose of a march, in a joint of the given side.
+    pub fn new(march: &March, side: Side) -> Self {
         let pose = pose_on_side(&march.neutral_pose(), side);
         let settled = &march.state().settled;
         let turned = |joint| KNEE.joint(joint).kind().in_files(joint.of(settled));
+        let is_knee = *march.test().machine().mechanism == KNEE;
         Self {
             femoral_origin_mm: pose.translation.into(),
             rotation: rotation_rows(&pose),
-            flexion_deg: turned(FLEXION),
-            ie_deg: turned(IE),
-            vv_deg: turned(VV),
+            angles: is_knee.then(|| NeutralAngles {
+                flexion_deg: turned(FLEXION),
+                ie_deg: turned(IE),
+                vv_deg: turned(VV),
+            }),
         }
     }
 }

@@ -126,7 +126,7 @@ summary! {
     motions: Vec<MotionColumn> as Objects, true, before Some(&UPDATES),
         "The joints of the machine: `column` of `kinematics.csv`, `title`, and the `positive` direction.";
     neutral_pose: Option<NeutralPose> as Object, true, before Some(&UPDATES),
-        "Pose of the settled femur in the insert frame: there AP, ML and IS read zero.";
+        "Pose of the settled femur in the insert frame: there AP, ML and IS of a knee read zero.";
     warnings: Vec<String> as Texts, true, before Some(&WALL_S), "Corrections of the input, and doubts about it.";
     version: String as Text, true, before None, "Version of condyle.";
     inputs_blake3: String as Text, true, before None, "Hash of case and meshes.";

@@ -60,6 +60,9 @@ const MAX_NOISE_PERCENT: f64 = 3.0;
 const MIN_REVERSALS: f64 = 0.15;
 /// Increments of a cycle from which smoothing keeps every motion of a joint.
 const MIN_ROWS_OF_NOISE: usize = 100;
+/// Largest error of the path of a motion or the peak of a load by the ends of increments, %; our choice: at
+/// 200 increments, the preset waveforms have 0.1 %.
+const MAX_MISSED_PERCENT: f64 = 2.0;
 /// Smallest plausible peak of the axial force on specimens, N; our choice: pins are pressed by tens to hundreds of newtons.
 const MIN_PEAK_LOAD_OF_SPECIMENS_N: f64 = 1.0;
 
@@ -200,6 +203,71 @@ fn noisy_motion(
     let advice = "Filter it: low_pass_harmonics = 15 in the table of its waveform.";
     let value = (percent, MAX_NOISE_PERCENT, "%");
     (percent > MAX_NOISE_PERCENT).then(|| warning("motion_noisy", value, message, advice))
+}
+
+/// Warns of a waveform whose jumps or peaks lie between the increments: each joint once.
+///
+/// Slip is the rate at the end of an increment times its duration, so a jump between two ends has no slip, and one at an end too much.
+pub(crate) fn coarse_increments(finished: &Finished<'_>) -> Vec<PlausibilityWarning> {
+    let mut warnings = Vec::new();
+    for index in JointIndex::ALL {
+        let coarse = |cycle: SolvedCycle<'_>| {
+            let machine = finished.machine(&cycle);
+            let (kind, count) = (machine.mechanism.joint(index).kind(), cycle.rows.len());
+            let (of, percent) = match &machine.joint(index).drive {
+                Drive::Locked(_) => return None,
+                Drive::Prescribed(waveform) => ("path", missed_path(waveform, kind, count)),
+                Drive::Loaded(waveform) => ("peak", missed_peak(waveform, count)),
+            };
+            let message = format!(
+                "the increments resolve the {of} of `{}`{} with an error of {percent:.1} %: it has a jump or a peak within an increment",
+                machine.mechanism.joint(index).symbol,
+                finished.activity_in_words(&cycle)
+            );
+            let advice = "Use more increments, or a waveform whose jumps take several of them.";
+            let value = (percent, MAX_MISSED_PERCENT, "%");
+            (percent > MAX_MISSED_PERCENT)
+                .then(|| warning("increments_coarse", value, message, advice))
+        };
+        warnings.extend(finished.cycles().find_map(coarse));
+    }
+    warnings
+}
+
+/// Instants of each increment at which a waveform is compared with its values at the ends of increments.
+const FINE: usize = 20;
+
+/// Returns the values of a waveform at equal steps of a cycle, both ends included.
+fn sampled(waveform: &Waveform, count: usize) -> impl Iterator<Item = f64> + '_ {
+    (0..=count).map(move |place| waveform.at(place as f64 / count as f64).0)
+}
+
+/// Returns the error of the path of a motion by its rates at the ends of increments, %.
+fn missed_path(waveform: &Waveform, kind: JointKind, increments: usize) -> f64 {
+    let fine: Vec<f64> = sampled(waveform, FINE * increments).collect();
+    let step = |pair: &[f64]| match (kind, pair[1] - pair[0]) {
+        (JointKind::Translation, step) => step.abs(),
+        // A turn that goes on through the end of the cycle returns there to its first value.
+        (JointKind::Rotation, step) => step.sin().atan2(step.cos()).abs(),
+    };
+    let path: f64 = fine.windows(2).map(step).sum();
+    let rates = (0..increments).map(|place| waveform.at(place as f64 / increments as f64).1.abs());
+    let by_rates = rates.sum::<f64>() / increments as f64;
+    // A constant curve varies by round-off.
+    if path < 1e-6 {
+        return 0.0;
+    }
+    100.0 * (by_rates / path - 1.0).abs()
+}
+
+/// Returns the part of the largest load that the ends of increments do not have, %.
+fn missed_peak(waveform: &Waveform, increments: usize) -> f64 {
+    let peak = |count: usize| sampled(waveform, count).map(f64::abs).fold(0.0, f64::max);
+    let fine = peak(FINE * increments);
+    if fine == 0.0 {
+        return 0.0;
+    }
+    100.0 * (1.0 - peak(increments) / fine)
 }
 
 pub(crate) fn not_reached(finished: &Finished<'_>) -> Vec<PlausibilityWarning> {
@@ -515,6 +583,8 @@ mod loads_tests {
 
 #[cfg(test)]
 mod motions_tests {
+    use condyle::machine::{Interpolation, Knot};
+
     use super::*;
 
     fn row(medial_n: f64, lateral_n: f64) -> CycleRow {
@@ -544,5 +614,26 @@ mod motions_tests {
             rows: &rows,
         };
         assert_eq!(lifted_percent(&cycle), 50.0);
+    }
+
+    #[test]
+    fn jumps_and_peaks_within_an_increment_are_missed() {
+        let waveform = |knots: &[(f64, f64)], interpolation| {
+            let knots = knots
+                .iter()
+                .map(|&(percent, value)| Knot { percent, value });
+            Waveform::new(knots.collect(), interpolation).unwrap()
+        };
+        let (slides, turns) = (JointKind::Translation, JointKind::Rotation);
+        let jumps = [(0.0, 0.0), (49.99, 0.0), (50.0, 8.0), (99.99, 8.0)];
+        let jumps = waveform(&jumps, Interpolation::HalfCosine);
+        assert!(missed_path(&jumps, slides, 200) > 99.0);
+        let smooth = waveform(&[(0.0, 0.0), (50.0, 0.5)], Interpolation::HalfCosine);
+        assert!(missed_path(&smooth, slides, 200) < 0.1);
+        let whole_turn = Waveform::turning(0.0, std::f64::consts::TAU);
+        assert!(missed_path(&whole_turn, turns, 200) < 1e-6);
+        let spike = [(0.0, 10.0), (50.05, 10.0), (50.2, 100.0), (50.45, 10.0)];
+        let spike = waveform(&spike, Interpolation::HalfCosine);
+        assert!(missed_peak(&spike, 200) > 80.0 && missed_peak(&smooth, 200) < 1e-9);
     }
 }

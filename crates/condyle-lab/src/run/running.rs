@@ -190,7 +190,7 @@ impl<'a> Run<'a> {
             Summary::new(&self.march, facts).expect("a march that is done has an update");
         summary.inputs_blake3.clone_from(&self.inputs_blake3);
         summary.warnings = self.warnings.iter().map(ToString::to_string).collect();
-        summary.neutral_pose = NeutralPose::of(&self.march, self.case.side_in_frame());
+        summary.neutral_pose = Some(NeutralPose::new(&self.march, self.case.side_in_frame()));
         summary.wear_laws = self.wear_laws();
         summary
     }

@@ -110,7 +110,10 @@ fn neutral(summary: &Summary) -> Group {
         unit: unit.to_owned(),
         meaning: meaning.to_owned(),
     };
-    let rows = summary.neutral_pose.iter().flat_map(|pose| {
+    let of_knee = summary
+        .neutral_pose
+        .and_then(|pose| Some((pose, pose.angles?)));
+    let rows = of_knee.iter().flat_map(|(pose, angles)| {
         [
             row(
                 "Femoral frame's origin: x, y, z",
@@ -120,7 +123,7 @@ fn neutral(summary: &Summary) -> Group {
             ),
             row(
                 "Flexion, internal rotation, varus",
-                &[pose.flexion_deg, pose.ie_deg, pose.vv_deg],
+                &[angles.flexion_deg, angles.ie_deg, angles.vv_deg],
                 "degrees",
                 "Of the settled femur; zero if both frames are parallel.",
             ),
