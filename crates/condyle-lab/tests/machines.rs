@@ -205,22 +205,34 @@ fn verify_activities_of_a_machine_wear_by_their_shares() {
     assert!((found - 1.0).abs() < 1e-3, "{found}");
 }
 
+/// Slides a ball on a deformable flat; `contact` are keys of `[contact]`.
+fn ball_slid(contact: &str, cycles: u32, updates: u32) -> March {
+    let text = format!(
+        "[femur]\nshape = \"sphere\"\nradius_mm = 24.0\n[insert]\nshape = \"flat\"\nedge_mm = 2.0\nlayers = 3\n\
+         [contact]\nmodel = \"deformable\"\n{contact}[wear]\nlaw = \"archard\"\n[time]\nincrements = 40\n\
+         [march]\ncycles = {cycles}\nupdates = {updates}\n[machine]\ntests = \"specimen\"\n\
+         [[machine.joints]]\nname = \"x\"\nkind = \"translation\"\naxis = [1, 0, 0]\ndrive = \"prescribed\"\n\
+         settling = \"held\"\n[machine.joints.motion]\nknots_mm = [[0, 3], [50, -3]]\n\
+         [[machine.joints]]\nname = \"press\"\nkind = \"translation\"\naxis = [0, -1, 0]\ndrive = \"loaded\"\n\
+         [machine.joints.load]\nknots_n = [[0, 500]]\n"
+    );
+    finished(&text).1
+}
+
+#[test]
+fn stick_slip_without_friction_is_sliding_without_friction() {
+    let volume_mm3 = |model: &str| {
+        let march = ball_slid(&format!("friction = 0.0\n{model}"), 500_000, 1);
+        march.state().updates[0].volume_loss_mm3
+    };
+    let stick_slip = "[contact.deformable]\nfriction_model = \"stick-slip\"\n";
+    assert_eq!(volume_mm3(stick_slip), volume_mm3(""));
+}
+
 /// The final cycle of a test is on the surface on which the next update of a longer test starts: it has the same stress.
 #[test]
 fn the_stress_of_the_final_cycle_is_that_of_the_worn_surface() {
-    let stressed = |cycles: u32, updates: u32| {
-        let text = format!(
-            "[femur]\nshape = \"sphere\"\nradius_mm = 24.0\n[insert]\nshape = \"flat\"\nedge_mm = 2.0\nlayers = 3\n\
-             [contact]\nmodel = \"deformable\"\n[wear]\nlaw = \"archard\"\n[time]\nincrements = 40\n\
-             [march]\ncycles = {cycles}\nupdates = {updates}\n[machine]\ntests = \"specimen\"\n\
-             [[machine.joints]]\nname = \"x\"\nkind = \"translation\"\naxis = [1, 0, 0]\ndrive = \"prescribed\"\n\
-             settling = \"held\"\n[machine.joints.motion]\nknots_mm = [[0, 3], [50, -3]]\n\
-             [[machine.joints]]\nname = \"press\"\nkind = \"translation\"\naxis = [0, -1, 0]\ndrive = \"loaded\"\n\
-             [machine.joints.load]\nknots_n = [[0, 500]]\n"
-        );
-        finished(&text).1
-    };
-    let (short, long) = (stressed(500_000, 1), stressed(1_000_000, 2));
+    let (short, long) = (ball_slid("", 500_000, 1), ball_slid("", 1_000_000, 2));
     let updates = &long.state().updates;
     let [unworn, worn] = [0, 1].map(|update| updates[update].peaks.under_surface.unwrap());
     let end = short.state().final_cycle.unwrap().under_surface.unwrap();

@@ -69,10 +69,12 @@ pub(crate) fn records<const N: usize>(
 
 impl Scatter {
     fn is_of(&self, case: &Case) -> bool {
-        let is_by_joints = case.machine.rig.is_some();
+        let rig = case.machine.rig.as_ref();
+        let is_by_joints = rig.is_some();
         self.cases.split(' ').any(|word| match word {
             "any" => true,
             "by-joints" => is_by_joints,
+            "moved-joints" => rig.is_some_and(|rig| rig.has_motion_curve()),
             // The waveforms of activities have no keys of their own.
             "activities" => !is_by_joints && !case.activities.is_empty(),
             joint => joint == case.tested_joint().name(),

@@ -107,7 +107,7 @@ pub(crate) fn pressure_at_rim(finished: &Finished<'_>) -> Option<PlausibilityWar
     let (from_rim_mm, highest, node, cycle) = at_rim.min_by(|a, b| a.0.total_cmp(&b.0))?;
     let place = point_on_side(&finished.surface.positions[node], finished.side);
     let message = format!(
-        "the {cycle} cycle's highest pressure, {highest:.1} MPa, is {from_rim_mm:.2} mm from the rim, at x {:.1} mm, z \
+        "the {cycle} cycle's highest pressure of a node, {highest:.1} MPa, is {from_rim_mm:.2} mm from the rim, at x {:.1} mm, z \
              {:.1} mm",
         place.x, place.z
     );

@@ -454,6 +454,16 @@ fn keys_of_machines_by_joints_are_refused_on_a_knee_simulator() {
 }
 
 #[test]
+fn a_factor_on_motions_is_refused_where_no_joint_moves_along_a_waveform() {
+    let orbital = "[machine]\npreset = \"iso-14242-3-like\"\nmotion_scale = 0.5\n";
+    let (place, said) = refusal(orbital);
+    assert!(
+        place.ends_with("motion_scale") && said.contains("no joint moves along a waveform"),
+        "{place}: {said}"
+    );
+}
+
+#[test]
 fn a_joint_may_be_loaded_in_one_activity_and_prescribed_in_another() {
     let aside = "[[JOINTS]]\nname = \"aside\"\nkind = \"translation\"\naxis = [1, 0, 0]\n";
     let loaded = aside.replace("JOINTS", "machine.joints") + "drive = \"loaded\"\n";

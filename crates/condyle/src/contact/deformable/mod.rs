@@ -295,7 +295,8 @@ impl ContactLaw for Deformable {
         if let Some(material) = &self.material {
             histories.push(material.history(Arc::clone(&surface), &state));
         }
-        if self.friction_model == FrictionModel::StickSlip {
+        // Without friction nothing sticks, and the limits of all nodes would be 0.
+        if self.friction_model == FrictionModel::StickSlip && settings.friction > 0.0 {
             let along = Arc::clone(surface.tangential());
             let history = ElasticFriction::new(&state, settings.friction, bodies.surface, along);
             histories.push(Box::new(history));
