@@ -5,7 +5,7 @@ use std::{collections::BTreeMap, ops::ControlFlow, path::Path};
 use condyle::{evolve::March, geometry::TriangleMesh, parameter::unit_of};
 use condyle_case::{
     cache::Cache,
-    case::Case,
+    case::{Case, Rig},
     config::Level,
     study::{Design, Input, SampleKeys, ScaledKey, Study, TruncatedKeys, Variation},
 };
@@ -74,7 +74,7 @@ impl Scatter {
         self.cases.split(' ').any(|word| match word {
             "any" => true,
             "by-joints" => is_by_joints,
-            "moved-joints" => rig.is_some_and(|rig| rig.has_motion_curve()),
+            "moved-joints" => rig.is_some_and(Rig::has_motion_curve),
             // The waveforms of activities have no keys of their own.
             "activities" => !is_by_joints && !case.activities.is_empty(),
             joint => joint == case.tested_joint().name(),

@@ -38,9 +38,9 @@ settings! {
         tests: TestedJoint;
         /// Cycles a second.
         frequency_hz: f64 = 1.0, in within(0.001, 100.0);
-        /// Factor on every load and torque, 1 if not given; that of an activity multiplies that of the machine.
+        /// Factor on every load and torque, 1 if not given. Those of a machine file, of [machine] and of an activity are multiplied.
         load_scale: f64 = 1.0, in within(0.01, 100.0);
-        /// Factor on every motion along a waveform, 1 if not given; that of an activity multiplies that of the machine.
+        /// Factor on every motion along a waveform, 1 if not given. Those of a machine file, of [machine] and of an activity are multiplied.
         motion_scale: f64 = 1.0, in within(0.0, 100.0);
         /// Names of all joints from the bearing to the counterface; that of the file if not given.
         order: Option<Names> = None;
@@ -162,7 +162,18 @@ impl Rig {
     ) -> Option<Self> {
         let source = file.source(section, "file", log)?;
         let read = Self::of_text(&source, Base::of(file.shared_files(), file.path()));
-        read.map_err(|problems| log.extend(problems)).ok()
+        let read = read.map_err(|problems| log.extend(problems)).ok();
+        read.map(Self::with_scaled_waveforms)
+    }
+
+    /// Returns the machine with its factors in its waveforms, so that those of the case multiply them, and act once on every activity.
+    fn with_scaled_waveforms(mut self) -> Self {
+        for joint in &mut self.joints {
+            let scale = self.keys.scale_of(joint);
+            joint.waveform = joint.waveform.take().map(|waveform| waveform.scaled(scale));
+        }
+        (self.keys.load_scale, self.keys.motion_scale) = (1.0, 1.0);
+        self
     }
 
     /// Returns the machine with the keys of `section`, and with its joints and ligaments in place of those of the same name.

@@ -84,6 +84,25 @@ fn a_shown_knee_simulator_has_the_results_of_its_preset() {
 }
 
 #[test]
+fn factors_of_file_machine_and_activity_are_multiplied_once() {
+    let bench = Bench::new();
+    let shown = bench.say(&["machine", "show", "pin-on-disc"]).out;
+    let scaled = shown.replacen("tests =", "load_scale = 3\ntests =", 1);
+    bench.write("pin.toml", &scaled);
+    let short = "[femur]\nshape = \"plane\"\n[insert]\nshape = \"pin\"\n[march]\ncycles = 1\nupdates = 1\n\
+                 [time]\nincrements = 50\n[accuracy]\nestimate = false\n[machine]\nfile = \"pin.toml\"\nload_scale = 2\n\
+                 [[activity]]\nname = \"inherited\"\nshare = 0.5\n\
+                 [[activity]]\nname = \"own\"\nshare = 0.5\nfile = \"pin.toml\"\nload_scale = 0.5\n";
+    bench.write("case.toml", short);
+    bench.run_into("out");
+    let activities = bench.summary("out").activities;
+    for (activity, factor) in activities.iter().zip([6.0, 3.0]) {
+        let peak_n = activity.peak_axial_force_n;
+        assert!((peak_n / (70.0 * factor) - 1.0).abs() < 1e-3, "{peak_n}");
+    }
+}
+
+#[test]
 fn a_machine_that_cannot_press_is_refused_with_its_line() {
     let bench = Bench::new();
     let shown = bench.say(&["machine", "show", "iso-14242-1-like"]).out;

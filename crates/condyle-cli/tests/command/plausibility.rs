@@ -102,6 +102,14 @@ fn units_of_loads_and_motions_are_doubtful() {
             "ap_motion]\nfile = \"noisy.csv\"\n[time]\nincrements = 100",
             "motion_noisy",
         ),
+        (
+            "flexion]\nknots_deg = [[0, 0], [30.01, 0], [30.02, 40], [80, 40]]",
+            "increments_coarse",
+        ),
+        (
+            "flexion]\nknots_deg = [[0, 0], [50, 40]]\n[contact]\nslip_tolerance_mm_per_s = 100.0",
+            "slides_slowly",
+        ),
     ];
     let noisy = noise(100).into_iter().enumerate().map(|(percent, noise)| {
         let phase = std::f64::consts::TAU * percent as f64 / 100.0;

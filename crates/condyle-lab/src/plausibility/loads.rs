@@ -60,9 +60,13 @@ const MAX_NOISE_PERCENT: f64 = 3.0;
 const MIN_REVERSALS: f64 = 0.15;
 /// Increments of a cycle from which smoothing keeps every motion of a joint.
 const MIN_ROWS_OF_NOISE: usize = 100;
-/// Largest error of the path of a motion or the peak of a load by the ends of increments, %; our choice: at
-/// 200 increments, the preset waveforms have 0.1 %.
-const MAX_MISSED_PERCENT: f64 = 2.0;
+/// Smallest sliding speed over the slip tolerance; our choice: friction then has 98 % of its full value.
+const MIN_SPEED_OVER_TOLERANCE: f64 = 5.0;
+/// Path in a cycle below which a surface that is only pressed counts as not sliding, mm; our choice.
+const MIN_PATH_MM: f64 = 0.01;
+/// Largest error of the path of a motion or the peak of a load by the ends of increments, %; our choice: the preset waveforms have at
+/// most 0.1 % at 200 increments and 3.5 % at 50, and a jump within an increment has tens.
+const MAX_MISSED_PERCENT: f64 = 5.0;
 /// Smallest plausible peak of the axial force on specimens, N; our choice: pins are pressed by tens to hundreds of newtons.
 const MIN_PEAK_LOAD_OF_SPECIMENS_N: f64 = 1.0;
 
@@ -203,6 +207,25 @@ fn noisy_motion(
     let advice = "Filter it: low_pass_harmonics = 15 in the table of its waveform.";
     let value = (percent, MAX_NOISE_PERCENT, "%");
     (percent > MAX_NOISE_PERCENT).then(|| warning("motion_noisy", value, message, advice))
+}
+
+/// Warns of sliding that is not fast compared with the slip tolerance, below which friction vanishes. Once it has vanished, the error
+/// estimate, which doubles the tolerance, changes nothing more.
+pub(crate) fn slides_slowly(finished: &Finished<'_>) -> Option<PlausibilityWarning> {
+    let test = finished.march.test();
+    let tolerance_mm_per_s = test.contact.slip_tolerance_mm_per_s()?;
+    let slips_mm = finished.march.fields().sliding_distance_mm.iter();
+    let farthest_mm = slips_mm.copied().fold(0.0, f64::max);
+    let speed_mm_per_s = farthest_mm / test.cycle_seconds();
+    let least = MIN_SPEED_OVER_TOLERANCE * tolerance_mm_per_s;
+    let message = format!(
+        "the fastest place slides at {speed_mm_per_s:.3} mm/s on average, and friction vanishes below slip_tolerance_mm_per_s = \
+         {tolerance_mm_per_s}; at least {least} mm/s is acceptable"
+    );
+    let advice = "Take a smaller slip_tolerance_mm_per_s, and compare both runs.";
+    let value = (speed_mm_per_s, least, "mm/s");
+    let is_slow = farthest_mm > MIN_PATH_MM && speed_mm_per_s < least;
+    is_slow.then(|| warning("slides_slowly", value, message, advice))
 }
 
 /// Warns of a waveform whose jumps or peaks lie between the increments: each joint once.

@@ -36,7 +36,8 @@ const PLACE: [Check; 8] = [
 ];
 
 /// Load on the polyethylene, and quality of the solution.
-const REST: [Check; 15] = [
+const REST: [Check; 16] = [
+    loads::slides_slowly,
     bodies::insert_rocks,
     bodies::contact_coarse,
     bodies::single_layer,

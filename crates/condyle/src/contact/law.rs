@@ -56,6 +56,11 @@ impl ContactSettings {
             sample_reuse_mm: Self::SAMPLE_REUSE_MM,
         }
     }
+
+    /// Returns the slip tolerance if there is friction.
+    pub(super) fn slip_tolerance_of_friction(&self) -> Option<f64> {
+        (self.friction > 0.0).then_some(self.slip_tolerance_mm_per_s)
+    }
 }
 
 /// A law of contact. It belongs to a test and creates the contact of its bodies.
@@ -96,6 +101,11 @@ pub trait ContactLaw: Debug + Send + Sync {
         _insert: &Insert,
         _more_than_pairs: usize,
     ) -> Option<KnownCompliance> {
+        None
+    }
+
+    /// Returns the sliding speed below which its friction vanishes, mm/s; none for a law without regularised friction.
+    fn slip_tolerance_mm_per_s(&self) -> Option<f64> {
         None
     }
 

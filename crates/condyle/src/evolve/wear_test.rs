@@ -76,7 +76,7 @@ impl Activity {
 
 impl WearTest {
     /// Returns the duration of a mean cycle of all activities, s.
-    pub(super) fn cycle_seconds(&self) -> f64 {
+    pub fn cycle_seconds(&self) -> f64 {
         self.activities.iter().map(Activity::seconds).sum()
     }
 

@@ -402,6 +402,12 @@ impl ContactLaw for Deformable {
         surface.known(more_than_pairs)
     }
 
+    fn slip_tolerance_mm_per_s(&self) -> Option<f64> {
+        let is_regularised = self.friction_model == FrictionModel::Regularised;
+        let tolerance = self.settings.slip_tolerance_of_friction();
+        tolerance.filter(|_| is_regularised)
+    }
+
     fn with_slip_tolerance_times(&self, factor: f64) -> Arc<dyn ContactLaw> {
         let mut law = self.clone();
         law.settings.slip_tolerance_mm_per_s *= factor;

@@ -72,6 +72,10 @@ impl ContactLaw for Foundation {
         self.pressure.pressure(0.0, insert.thickness_mm()[node]).1
     }
 
+    fn slip_tolerance_mm_per_s(&self) -> Option<f64> {
+        self.settings.slip_tolerance_of_friction()
+    }
+
     fn with_slip_tolerance_times(&self, factor: f64) -> Arc<dyn ContactLaw> {
         let mut law = self.clone();
         law.settings.slip_tolerance_mm_per_s *= factor;
