@@ -43,7 +43,7 @@ class Summary:
     scan_rise_mm_per_million_cycles: float
     """Rise of the deepest place of scans without load. In mm per million cycles."""
     scan_at_no_cycles_mm: float
-    """The same line at no cycles. In mm."""
+    """Deepest place of unloaded scans, extrapolated to no cycles. In mm."""
     peak_pressure_mpa: float
     """Highest contact pressure. In MPa."""
     peak_pressure_cycle: float

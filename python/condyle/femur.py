@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Literal
 
+from .errors import CondyleError
+
 if TYPE_CHECKING:
     import numpy as np
     from numpy.typing import NDArray
@@ -27,10 +29,13 @@ def femur_points_at(result: Result, increment: int, cycle: Literal["first", "las
 
     Raises:
         ValueError: another word for the cycle.
+        CondyleError: a result of an earlier version and a joint other than the knee, which has no neutral pose.
     """
     import numpy as np
 
     neutral = result.neutral_pose
+    if neutral is None:
+        raise CondyleError("this result of an earlier version has no neutral pose; run its case again")
     origin, rotation = np.array(neutral["femoral_origin_mm"]), np.array(neutral["rotation"])
     in_femoral_frame = (result.femur_points_mm - origin) @ rotation
     table = result.femur_pose

@@ -40,9 +40,14 @@ def test_other_joints_have_their_own_labels() -> None:
     assert hip.plot.wear_map().get_xlabel() == "lateral  <  z, mm  >  medial"
     titles = [axes.get_title() for axes in hip.plot.kinematics().axes]
     assert "abduction +, deg" in titles and "peak pressure, MPa" in titles and len(titles) == 8
-    settled = hip.femur_points_mm - hip.neutral_pose["femoral_origin_mm"]
-    first = [hip.femur_pose[f"origin_{axis}_mm"][0] for axis in "xyz"]
-    assert np.allclose(np.linalg.norm(hip.femur_points_at(0) - first, axis=1), np.linalg.norm(settled, axis=1))
+    # A vertex of the femoral frame is at R p + t, and at N p + n in the neutral pose.
+    settled = (hip.femur_points_mm - hip.neutral_pose["femoral_origin_mm"]) @ np.array(hip.neutral_pose["rotation"])
+    rows = [[hip.femur_pose[f"r_{i}{j}"][20] for j in "xyz"] for i in "xyz"]
+    origin = [hip.femur_pose[f"origin_{axis}_mm"][20] for axis in "xyz"]
+    assert np.allclose(hip.femur_points_at(20), settled @ np.transpose(rows) + origin)
+    # The machine has hardly moved by the end of the first increment: the ball is near its neutral pose.
+    assert np.abs(hip.femur_points_at(0) - hip.femur_points_mm).max() < 2
+    assert "flexion_deg" not in hip.neutral_pose
 
 
 def test_the_curve_ends_at_the_mass(result: condyle.Result) -> None:

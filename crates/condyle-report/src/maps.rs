@@ -51,7 +51,7 @@ pub(crate) static MAPS: [MappedField; 6] = [
         "peak_pressure_mpa",
         MAP_PICTURES[1],
         style(["map-pressure", "Peak pressure", "MPa", "Highest"], VIRIDIS),
-        "Largest contact pressure of each node in one cycle, averaged over its share of the surface, at the last update.",
+        "Largest contact pressure of each node in the final cycle, averaged over its share of the surface.",
     ),
     mapped(
         "sliding_distance_mm",
@@ -60,7 +60,7 @@ pub(crate) static MAPS: [MappedField; 6] = [
             ["map-sliding", "Sliding distance", "mm", "Highest"],
             CIVIDIS,
         ),
-        "Sliding distance of the counterface over each place under pressure in one cycle, at the last update.",
+        "Sliding distance of the counterface over each place under pressure in the final cycle.",
     ),
     mapped(
         "cross_shear",
@@ -69,7 +69,7 @@ pub(crate) static MAPS: [MappedField; 6] = [
             ["map-cross-shear", "Cross-shear ratio", "", "Highest"],
             MAGMA,
         ),
-        "The part of pressure times sliding across the principal direction of each place, at the last update: 0 for \
+        "The part of pressure times sliding across the principal direction of each place, in the final cycle: 0 for \
          sliding along a line, 0.5 for a circle.",
     ),
     mapped(
@@ -82,7 +82,7 @@ pub(crate) static MAPS: [MappedField; 6] = [
         "permanent_set_mm",
         MAP_PICTURES[5],
         style(["map-set", "Permanent set", "mm", "Deepest"], VIRIDIS),
-        "Permanent depth of the surface by yielding, at the last update, without wear.",
+        "Permanent depth of the surface by yielding, after the final cycle, without wear.",
     ),
 ];
 
@@ -172,7 +172,7 @@ pub(crate) fn drawn(
         maps.push(DrawnMap {
             file: SLIP_PATHS_PICTURE,
             caption: "Slip of the counterface past the deepest place of each region and past four places around it, \
-                      while they are loaded, in one cycle, at the last update. Each path is drawn around the dot of \
+                      while they are loaded, in the final cycle. Each path is drawn around the dot of \
                       its place, with its length times 0.4 and its width times 1.6, so its width is exaggerated by a \
                       factor of four. Wide paths have more cross-shear.",
             svg: draw(&map, &desc, &paths.concat()),

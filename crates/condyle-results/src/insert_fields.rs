@@ -95,7 +95,7 @@ impl Source<'_> {
         values.map_or_else(none, |values| self.at_surface(values))
     }
 
-    /// Returns the state inside a deformable insert at the last update; none for a foundation.
+    /// Returns the state inside a deformable insert in the last solved cycle; none for a foundation.
     fn under_surface(&self) -> Option<&UnderSurface> {
         self.march.state().under_surface.as_ref()
     }

@@ -5,7 +5,7 @@ use std::{collections::BTreeMap, ops::ControlFlow, path::Path};
 use condyle::{evolve::March, geometry::TriangleMesh, parameter::unit_of};
 use condyle_case::{
     cache::Cache,
-    case::{Case, Rig},
+    case::Case,
     config::Level,
     study::{Design, Input, SampleKeys, ScaledKey, Study, TruncatedKeys, Variation},
 };
@@ -69,12 +69,11 @@ pub(crate) fn records<const N: usize>(
 
 impl Scatter {
     fn is_of(&self, case: &Case) -> bool {
-        let rig = case.machine.rig.as_ref();
-        let is_by_joints = rig.is_some();
+        let is_by_joints = case.machine.rig.is_some();
         self.cases.split(' ').any(|word| match word {
             "any" => true,
             "by-joints" => is_by_joints,
-            "moved-joints" => rig.is_some_and(Rig::has_motion_curve),
+            "moved-joints" => case.has_motion_curve(),
             // The waveforms of activities have no keys of their own.
             "activities" => !is_by_joints && !case.activities.is_empty(),
             joint => joint == case.tested_joint().name(),

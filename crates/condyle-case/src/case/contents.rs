@@ -79,6 +79,15 @@ impl Case {
             check_axes(axes, side, root.part("insert").value_span("axes"), log);
         }
         self.check_round_bearing(&root.part("insert"), log);
+        let rig = self.machine.rig.as_ref();
+        if rig.is_some_and(|rig| rig.keys.motion_scale != 1.0) && !self.has_motion_curve() {
+            let message = "`motion_scale` has no effect: no joint moves along a waveform";
+            let fault = Fault::new(
+                message,
+                "remove it; whole turns and locked angles are not scaled",
+            );
+            log.problem(root.part("machine").key_span("motion_scale"), fault);
+        }
         if self.tested_joint() == TestedJoint::Disc && self.heading.side == Side::Left {
             let fault = Fault::new("a disc has no side", "remove `side`");
             log.problem(root.value_span("side"), fault);
@@ -94,6 +103,13 @@ impl Case {
     /// Returns the side of the body in the frame of the machine, which decides whether shapes are mirrored.
     pub fn side_in_frame(&self) -> Side {
         self.heading.side.in_frame_of(self.tested_joint())
+    }
+
+    /// Returns true if a joint of a machine by joints, or of its activities, moves along a waveform, which `motion_scale` multiplies.
+    pub fn has_motion_curve(&self) -> bool {
+        let of_activities = self.activities.iter().map(|activity| &activity.rig);
+        let mut rigs = of_activities.chain([&self.machine.rig]).flatten();
+        rigs.any(Rig::has_motion_curve)
     }
 
     /// Returns whether the machine tests knees, whose bodies are recognised by their shapes.

@@ -33,6 +33,7 @@ mod waveform;
 mod wear;
 
 // Only some of these items are public; the others are for the files of this module.
+pub(crate) use self::waveform::parts_of_a_cycle;
 pub use self::{
     activity::*, assignment::*, build::*, contact::*, contents::*, drive::*, femur::*, frame::*,
     insert::*, ligament::*, machine::*, material::*, pressure_table::*, reader::*, rig::*,

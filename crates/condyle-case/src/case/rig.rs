@@ -214,7 +214,7 @@ impl Rig {
     }
 
     /// Returns true if a joint moves along a waveform, which `motion_scale` multiplies; a joint that turns on and on does not.
-    pub fn has_motion_curve(&self) -> bool {
+    pub(super) fn has_motion_curve(&self) -> bool {
         let mut joints = self.joints.iter();
         joints.any(|joint| joint.keys.drive == DriveWord::Prescribed && joint.waveform.is_some())
     }
@@ -264,12 +264,6 @@ impl Rig {
         }
         if let Some((message, advice)) = self.press_fault() {
             return fault("joints", message, advice);
-        }
-        if self.keys.motion_scale != 1.0 && !self.has_motion_curve() {
-            let message =
-                "`motion_scale` has no effect: no joint moves along a waveform".to_owned();
-            let advice = "remove it; the angles of locked joints and whole turns are keys of the machine's file";
-            return fault("motion_scale", message, advice);
         }
         let mut springs = self.springs.iter().map(|spring| spring.build(&self.joints));
         if let Some(unattached) = springs.find_map(Result::err) {

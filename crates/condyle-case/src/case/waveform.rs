@@ -181,7 +181,7 @@ pub(super) fn read(
     let section = machine.table(channel.name, log);
     let keys = WaveformSource::read(&section, log)?;
     let samples = samples(channel, &section, &keys, log)?;
-    if let Some(fault) = parts_of_a_cycle(&samples.knots) {
+    if let Some(fault) = parts_of_a_cycle(samples.knots.iter().map(|knot| knot.percent)) {
         return samples.reject(samples.knots.len() - 1, fault, &section, log);
     }
     let Some(knots) = levelled(samples.knots.clone(), &keys) else {
@@ -406,11 +406,12 @@ impl Samples {
 }
 
 /// Returns the fault of points whose cycle runs from 0 to 1.
-fn parts_of_a_cycle(knots: &[Knot]) -> Option<Fault> {
-    let last = knots.last().filter(|_| knots.len() > 2)?;
-    let message = format!("the points end at {} % of the cycle", last.percent);
+pub(crate) fn parts_of_a_cycle(percents: impl ExactSizeIterator<Item = f64>) -> Option<Fault> {
+    let is_enough = percents.len() > 2;
+    let last = percents.last().filter(|last| is_enough && *last <= 1.0)?;
+    let message = format!("the points end at {last} % of the cycle");
     let advice = "give percent from 0 to 100, not parts of the cycle from 0 to 1";
-    (last.percent <= 1.0).then(|| Fault::new(message, advice))
+    Some(Fault::new(message, advice))
 }
 
 /// Reads percent from the first column and values from column `index`.

@@ -3,6 +3,7 @@
 use condyle::{machine::knee::KNEE, parameter::unit_of};
 
 use super::columns::{growing, misnamed_first, repeated, too_few, unless};
+use crate::case::parts_of_a_cycle;
 use crate::config::*;
 
 choice! {
@@ -106,13 +107,8 @@ fn curves(text: &str, file: &str) -> Result<Vec<MeasuredCurve>, Vec<Placed>> {
     }
     unless(problems, ())?;
     let percents = growing(&columns, within(0.0, 100.0), "0 to 100")?;
-    if let Some(last) = percents
-        .last()
-        .filter(|last| percents.len() > 2 && **last <= 1.0)
-    {
-        let message = format!("the rows end at {last} % of the cycle");
-        let advice = "give percent from 0 to 100, not parts of the cycle from 0 to 1";
-        return Err(vec![(columns.name_span(0), Fault::new(message, advice))]);
+    if let Some(fault) = parts_of_a_cycle(percents.iter().copied()) {
+        return Err(vec![(columns.name_span(0), fault)]);
     }
     let (mut curves, mut problems) = (Vec::new(), Vec::new());
     for index in 1..columns.names().len() {

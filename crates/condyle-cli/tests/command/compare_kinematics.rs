@@ -201,7 +201,7 @@ fn bad_motions_are_refused_with_their_place() {
     refuses(
         "percent,ap_mm\n0,1\n0.5,2\n1,1\n",
         &[
-            "the rows end at 1 % of the cycle",
+            "the points end at 1 % of the cycle",
             "motion.csv:1:1",
             "percent from 0 to 100",
         ],

@@ -1,5 +1,9 @@
 //! Machines by joints at the command: their list, their files, their reports.
 
+use std::fs;
+
+use condyle_mesh::{TriangleMesh, formats::write_stl};
+
 use crate::bench::{Bench, SMALL};
 
 const ORBITAL: &str = "[femur]\nshape = \"sphere\"\nradius_mm = 14.0\n\
@@ -11,7 +15,7 @@ const ORBITAL: &str = "[femur]\nshape = \"sphere\"\nradius_mm = 14.0\n\
 fn the_report_of_a_hip_has_a_curve_of_every_joint() {
     let bench = Bench::with_case(ORBITAL);
     bench.run_into("out");
-    let report = std::fs::read_to_string(bench.path("out/report.html")).unwrap();
+    let report = fs::read_to_string(bench.path("out/report.html")).unwrap();
     for joint in [
         "lateral_mm",
         "anterior_mm",
@@ -47,7 +51,7 @@ fn machines_are_listed_shown_and_checked() {
 
 /// Returns the lines of a file of results without those of computing time and inputs.
 fn computed(bench: &Bench, file: &str) -> Vec<String> {
-    let bytes = std::fs::read(bench.path(file)).unwrap();
+    let bytes = fs::read(bench.path(file)).unwrap();
     let text = String::from_utf8_lossy(&bytes);
     let lines = text.lines().map(str::to_owned);
     lines
@@ -99,6 +103,32 @@ fn factors_of_file_machine_and_activity_are_multiplied_once() {
     for (activity, factor) in activities.iter().zip([6.0, 3.0]) {
         let peak_n = activity.peak_axial_force_n;
         assert!((peak_n / (70.0 * factor) - 1.0).abs() < 1e-3, "{peak_n}");
+    }
+}
+
+#[test]
+fn contact_above_a_void_of_the_insert_is_doubtful() {
+    let bench = Bench::new();
+    let block = |low: [f64; 3], high: [f64; 3]| TriangleMesh::block(low.into(), high.into());
+    let solid = block([-12.0, 0.0, -12.0], [12.0, 8.0, 12.0]);
+    let mut void = block([-5.0, 2.0, -5.0], [5.0, 3.0, 5.0]);
+    for triangle in &mut void.triangles {
+        triangle.swap(0, 1);
+    }
+    for (name, body) in [("solid", solid.clone()), ("hollow", solid.joined(&void))] {
+        let mut stl = Vec::new();
+        write_stl(&mut stl, &body).unwrap();
+        fs::write(bench.path("insert.stl"), stl).unwrap();
+        let case = format!(
+            "[femur]\nshape = \"sphere\"\nradius_mm = 20\n[insert]\nshape = \"mesh\"\nfile = \"insert.stl\"\nlength_unit = \"mm\"\n\
+             axes = [\"anterior\", \"superior\", \"right\"]\nedge_mm = 1.0\nlayers = 2\n[march]\ncycles = 1\nupdates = 1\n[time]\nincrements = 20\n[accuracy]\nestimate = false\n[machine]\ntests = \"specimen\"\n\
+             [[machine.joints]]\nname = \"press\"\nkind = \"translation\"\naxis = [0, -1, 0]\ndrive = \"loaded\"\n{LOAD}"
+        );
+        bench.write("case.toml", &case);
+        bench.run_into(name);
+        let doubts = bench.summary(name).plausibility;
+        let is_hollow = doubts.iter().any(|doubt| doubt.check == "hollow_insert");
+        assert_eq!(is_hollow, name == "hollow", "{doubts:?}");
     }
 }
 
@@ -189,7 +219,7 @@ fn a_specimen_that_rides_on_its_rim_is_doubtful_and_the_end_of_a_pin_is_not() {
         bench.write("case.toml", text);
         bench.run_into("out");
         let doubts = bench.summary("out").plausibility;
-        std::fs::remove_dir_all(bench.path("out")).unwrap();
+        fs::remove_dir_all(bench.path("out")).unwrap();
         let at_rim = doubts.iter().map(|one| one.check.as_str());
         at_rim.filter(|check| check.ends_with("at_rim")).count()
     };

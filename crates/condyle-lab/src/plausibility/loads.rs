@@ -209,22 +209,22 @@ fn noisy_motion(
     (percent > MAX_NOISE_PERCENT).then(|| warning("motion_noisy", value, message, advice))
 }
 
-/// Warns of sliding that is not fast compared with the slip tolerance, below which friction vanishes. Once it has vanished, the error
+/// Warns of sliding that is not fast compared with the slip tolerance, below which friction is small. Once it has vanished, the error
 /// estimate, which doubles the tolerance, changes nothing more.
 pub(crate) fn slides_slowly(finished: &Finished<'_>) -> Option<PlausibilityWarning> {
     let test = finished.march.test();
     let tolerance_mm_per_s = test.contact.slip_tolerance_mm_per_s()?;
     let slips_mm = finished.march.fields().sliding_distance_mm.iter();
-    let farthest_mm = slips_mm.copied().fold(0.0, f64::max);
-    let speed_mm_per_s = farthest_mm / test.cycle_seconds();
-    let least = MIN_SPEED_OVER_TOLERANCE * tolerance_mm_per_s;
+    let path_mm = slips_mm.copied().fold(0.0, f64::max);
+    let cycle_s = test.cycle_seconds();
+    let least_mm = MIN_SPEED_OVER_TOLERANCE * tolerance_mm_per_s * cycle_s;
     let message = format!(
-        "the fastest place slides at {speed_mm_per_s:.3} mm/s on average, and friction vanishes below slip_tolerance_mm_per_s = \
-         {tolerance_mm_per_s}; at least {least} mm/s is acceptable"
+        "the longest path under pressure is {path_mm:.3} mm in a cycle of {cycle_s:.2} s; at least {least_mm:.3} mm is acceptable, since \
+         friction has 71 % of its full value at slip_tolerance_mm_per_s = {tolerance_mm_per_s}, and less at lower speeds"
     );
     let advice = "Take a smaller slip_tolerance_mm_per_s, and compare both runs.";
-    let value = (speed_mm_per_s, least, "mm/s");
-    let is_slow = farthest_mm > MIN_PATH_MM && speed_mm_per_s < least;
+    let value = (path_mm, least_mm, "mm");
+    let is_slow = path_mm > MIN_PATH_MM && path_mm < least_mm;
     is_slow.then(|| warning("slides_slowly", value, message, advice))
 }
 
@@ -243,16 +243,18 @@ pub(crate) fn coarse_increments(finished: &Finished<'_>) -> Vec<PlausibilityWarn
                 Drive::Loaded(waveform) => ("peak", missed_peak(waveform, count)),
             };
             let message = format!(
-                "the increments resolve the {of} of `{}`{} with an error of {percent:.1} %: it has a jump or a peak within an increment",
+                "the increments resolve the {of} of `{}`{} with an error of {percent:.1} %",
                 machine.mechanism.joint(index).symbol,
                 finished.activity_in_words(&cycle)
             );
-            let advice = "Use more increments, or a waveform whose jumps take several of them.";
+            let advice = "Use more increments, interpolation = \"spline\" for samples, or a waveform whose jumps take several increments.";
             let value = (percent, MAX_MISSED_PERCENT, "%");
             (percent > MAX_MISSED_PERCENT)
                 .then(|| warning("increments_coarse", value, message, advice))
         };
-        warnings.extend(finished.cycles().find_map(coarse));
+        // The last cycle has the same waveforms.
+        let mut first = finished.cycles().filter(|cycle| cycle.name == "first");
+        warnings.extend(first.find_map(coarse));
     }
     warnings
 }
@@ -274,23 +276,30 @@ fn missed_path(waveform: &Waveform, kind: JointKind, increments: usize) -> f64 {
         (JointKind::Rotation, step) => step.sin().atan2(step.cos()).abs(),
     };
     let path: f64 = fine.windows(2).map(step).sum();
-    let rates = (0..increments).map(|place| waveform.at(place as f64 / increments as f64).1.abs());
-    let by_rates = rates.sum::<f64>() / increments as f64;
     // A constant curve varies by round-off.
     if path < 1e-6 {
         return 0.0;
     }
+    let rates = (0..increments).map(|place| waveform.at(place as f64 / increments as f64).1.abs());
+    let by_rates = rates.sum::<f64>() / increments as f64;
     100.0 * (by_rates / path - 1.0).abs()
 }
 
-/// Returns the part of the largest load that the ends of increments do not have, %.
+/// Returns the part of the largest load by which the ends of increments miss the highest or the lowest load, %.
 fn missed_peak(waveform: &Waveform, increments: usize) -> f64 {
-    let peak = |count: usize| sampled(waveform, count).map(f64::abs).fold(0.0, f64::max);
-    let fine = peak(FINE * increments);
-    if fine == 0.0 {
+    let extremes = |count: usize| {
+        let (low, high) = (f64::INFINITY, f64::NEG_INFINITY);
+        let loads = sampled(waveform, count);
+        loads.fold([low, high], |[low, high], load| {
+            [low.min(load), high.max(load)]
+        })
+    };
+    let ([low, high], [low_here, high_here]) = (extremes(FINE * increments), extremes(increments));
+    let largest = high.max(-low);
+    if largest == 0.0 {
         return 0.0;
     }
-    100.0 * (1.0 - peak(increments) / fine)
+    100.0 * (low_here - low).max(high - high_here) / largest
 }
 
 pub(crate) fn not_reached(finished: &Finished<'_>) -> Vec<PlausibilityWarning> {

@@ -95,13 +95,29 @@ impl<'a> VerticalLines<'a> {
         Some((triangle, (b - a).cross(&(c - a)).norm() / 2.0, over))
     }
 
-    /// Returns the height of the voids on the line over a place, between a face that looks down and the next one that looks up, mm.
+    /// Returns the height of the voids on the line over a place, mm: where it has left all parts of the body, and meets one again below.
     pub(super) fn void_mm(&self, place: Place) -> f64 {
-        let mut faces: Vec<Over> = self.over(place).map(|(_, over)| over).collect();
-        faces.sort_by(|a, b| b.height.total_cmp(&a.height));
-        let pairs = faces.windows(2);
-        let voids = pairs.filter(|pair| pair[0].upward < 0.0 && pair[1].upward > 0.0);
-        voids.map(|pair| pair[0].height - pair[1].height).sum()
+        // Places on an edge belong to both of its triangles.
+        const SAME_MM: f64 = 1e-6;
+        let faces = self
+            .over(place)
+            .map(|(_, over)| (over.height, over.upward > 0.0));
+        let mut faces: Vec<(f64, bool)> = faces.collect();
+        faces.sort_by(|a, b| b.0.total_cmp(&a.0));
+        faces.dedup_by(|a, b| a.1 == b.1 && b.0 - a.0 < SAME_MM);
+        let (mut parts_entered, mut left_at_mm, mut void_mm) = (0, None, 0.0);
+        for (height_mm, is_upper) in faces {
+            if is_upper {
+                void_mm += left_at_mm
+                    .take()
+                    .map_or(0.0, |left_mm: f64| left_mm - height_mm);
+            }
+            parts_entered += if is_upper { 1 } else { -1 };
+            if parts_entered == 0 {
+                left_at_mm = Some(height_mm);
+            }
+        }
+        void_mm
     }
 
     /// Returns the same without a second attempt next to the place.
@@ -239,11 +255,22 @@ mod tests {
         // A foot below is apart from the body by a gap, which is a void too, and a block that overlaps the body is not.
         let foot = block([5.0, -3.0, -10.0], [10.0, -1.0, 10.0]);
         let boss = block([-10.0, 6.0, -10.0], [-6.0, 9.0, 10.0]);
+        // Two parts inside the body, above each other, leave no void between them.
+        let inner = [2.0, 5.0].map(|low| block([7.0, low, 4.0], [9.0, low + 1.0, 8.0]));
         let body = body.joined(&foot).joined(&boss);
+        let body = body.joined(&inner[0]).joined(&inner[1]);
         let lines = VerticalLines::new(&body, true);
-        for (x_mm, void_mm) in [(0.0, 3.0), (4.5, 0.0), (7.0, 1.0), (-8.0, 0.0)] {
-            let found = lines.void_mm(Place::new(x_mm, 0.3));
-            assert!((found - void_mm).abs() < 1e-9, "{x_mm}: {found}");
+        for (x_mm, z_mm, void_mm) in [
+            (0.0, 0.3, 3.0),
+            // On the diagonal of the faces, which belongs to two triangles.
+            (0.0, 0.0, 3.0),
+            (4.5, 0.3, 0.0),
+            (7.5, 0.3, 1.0),
+            (7.5, 5.3, 1.0),
+            (-8.0, 0.3, 0.0),
+        ] {
+            let found = lines.void_mm(Place::new(x_mm, z_mm));
+            assert!((found - void_mm).abs() < 1e-9, "{x_mm} {z_mm}: {found}");
         }
     }
 }

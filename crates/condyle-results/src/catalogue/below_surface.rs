@@ -7,7 +7,7 @@ use condyle::{
     evolve::{PlasticRecord, UnderSurfaceRecord},
 };
 
-use super::finished::FinishedRun;
+use super::finished::{FinishedRun, largest};
 use super::{Scalar, scalar::scalars};
 
 scalars! { "Below the surface";
@@ -97,12 +97,11 @@ fn first(run: &FinishedRun<'_>) -> Option<UnderSurfaceRecord> {
 }
 
 fn most_stressed(run: &FinishedRun<'_>) -> Option<UnderSurfaceRecord> {
-    let records = records(run).map(|(_, record)| record);
-    records.max_by(|a, b| a.von_mises_mpa.total_cmp(&b.von_mises_mpa))
+    largest(records(run), |record| record.von_mises_mpa).map(|(_, record)| record)
 }
 
 fn most_sheared(run: &FinishedRun<'_>) -> Option<(f64, UnderSurfaceRecord)> {
-    records(run).max_by(|a, b| a.1.max_shear_mpa.total_cmp(&b.1.max_shear_mpa))
+    largest(records(run), |record| record.max_shear_mpa)
 }
 
 /// Returns the yield up to the final cycle; `None` for an insert that does not yield.

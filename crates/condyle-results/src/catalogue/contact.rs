@@ -1,12 +1,14 @@
 //! Contact at the surface.
 
 
-use super::finished::FinishedRun;
+use condyle::evolve::CyclePeaks;
+
+use super::finished::{FinishedRun, largest};
 use super::{Scalar, scalar::scalars};
 
 scalars! { "Contact";
     /// Highest contact pressure. Anywhere on the surface, also between nodes, at any instant of any solved cycle.
-    PEAK_PRESSURE_MPA = Scalar::new("peak_pressure_mpa", "peak pressure", 1, |run| peak_pressure(run).1)
+    PEAK_PRESSURE_MPA = Scalar::new("peak_pressure_mpa", "peak pressure", 1, |run| peak_pressure(run).1.peak_pressure_mpa)
         .headline()
         .estimated()
         .in_cycle("peak_pressure_cycle");
@@ -28,7 +30,7 @@ scalars! { "Contact";
         .exact();
 
     /// Largest contact area. At any instant of any solved cycle, all regions together.
-    PEAK_CONTACT_AREA_MM2 = Scalar::new("peak_contact_area_mm2", "largest contact area", 0, |run| largest_area(run).1)
+    PEAK_CONTACT_AREA_MM2 = Scalar::new("peak_contact_area_mm2", "largest contact area", 0, |run| largest_area(run).1.contact_area_mm2)
         .headline()
         .estimated()
         .in_cycle("peak_contact_area_cycle");
@@ -48,10 +50,10 @@ scalars! { "Contact";
         .continued();
 }
 
-fn peak_pressure(run: &FinishedRun<'_>) -> (f64, f64) {
-    run.largest(|peaks| peaks.peak_pressure_mpa)
+fn peak_pressure(run: &FinishedRun<'_>) -> (f64, CyclePeaks) {
+    largest(run.peaks(), |peaks| peaks.peak_pressure_mpa).expect("a run has a final cycle")
 }
 
-fn largest_area(run: &FinishedRun<'_>) -> (f64, f64) {
-    run.largest(|peaks| peaks.contact_area_mm2)
+fn largest_area(run: &FinishedRun<'_>) -> (f64, CyclePeaks) {
+    largest(run.peaks(), |peaks| peaks.contact_area_mm2).expect("a run has a final cycle")
 }

@@ -44,7 +44,7 @@ scalars! { "Creep";
     /// Rise of the deepest place of scans without load. The slope of a line through the updates from a million cycles on, which laboratories take for wear.
     SCAN_RISE_MM_PER_MILLION_CYCLES = Scalar::sometimes("scan_rise_mm_per_million_cycles", "rise of unloaded scans", 4, |run| Some(line_of_scans(&run.state().updates)?[1]));
 
-    /// The same line at no cycles. Laboratories take it for creep and bedding in.
+    /// Deepest place of unloaded scans, extrapolated to no cycles. By the same line; laboratories take it for creep and bedding in.
     SCAN_AT_NO_CYCLES_MM = Scalar::sometimes("scan_at_no_cycles_mm", "at no cycles", 4, |run| Some(line_of_scans(&run.state().updates)?[0]))
         .continued();
 }

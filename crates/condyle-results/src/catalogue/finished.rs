@@ -68,15 +68,19 @@ impl<'a> FinishedRun<'a> {
         let solved = updates.map(|(number, update)| (state.cycles_before(number), update.peaks));
         solved.chain([(self.last.cycles, self.final_cycle)])
     }
+}
 
-    /// The first cycle with the largest `value`: cycles done before it, and the value.
-    pub fn largest(&self, value: fn(&CyclePeaks) -> f64) -> (f64, f64) {
-        let mut values = self.peaks().map(|(cycles, peaks)| (cycles, value(&peaks)));
-        let first = values.next().expect("a run has an update");
-        // Strictly larger, so that of equal cycles the first counts; `max_by` would return the last.
-        values.fold(
-            first,
-            |largest, own| if own.1 > largest.1 { own } else { largest },
-        )
-    }
+/// Returns the one with the largest `value` of extremes with the cycles done before each; of equals the first, not the last as
+/// `max_by` does.
+pub(super) fn largest<T>(
+    extremes: impl Iterator<Item = (f64, T)>,
+    value: fn(&T) -> f64,
+) -> Option<(f64, T)> {
+    extremes.reduce(|largest, own| {
+        if value(&own.1) > value(&largest.1) {
+            own
+        } else {
+            largest
+        }
+    })
 }

@@ -104,7 +104,7 @@ pub trait ContactLaw: Debug + Send + Sync {
         None
     }
 
-    /// Returns the sliding speed below which its friction vanishes, mm/s; none for a law without regularised friction.
+    /// Returns the sliding speed at which its friction has 71 % of its full value, mm/s; none for a law without regularised friction.
     fn slip_tolerance_mm_per_s(&self) -> Option<f64> {
         None
     }

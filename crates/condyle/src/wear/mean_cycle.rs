@@ -73,7 +73,7 @@ impl<'a> MeanCycle<'a> {
         })
     }
 
-    /// Returns the part of sum of p |ds|, 0 to 1, more than 1 % above `pressure_mpa`; 0 where nothing slid.
+    /// Returns the part, 0 to 1, of the sum of p |ds| at pressures that exceed `pressure_mpa` by more than 1 %; 0 where nothing slid.
     pub fn part_above(&self, pressure_mpa: f64) -> f64 {
         // Limits of fits are rounded to two digits: the test behind 1.1 MPa is 70 N on a pin of 9 mm, 1.1003 MPa.
         const ROUNDED: f64 = 1.01;
