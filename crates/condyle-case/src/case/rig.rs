@@ -38,9 +38,9 @@ settings! {
         tests: TestedJoint;
         /// Cycles a second.
         frequency_hz: f64 = 1.0, in within(0.001, 100.0);
-        /// Factor on every load and torque, 1 if not given. Those of a machine file, of [machine] and of an activity are multiplied.
+        /// Factor on every load and torque, 1 if not given. Those of a machine file, of the case and of an activity are multiplied.
         load_scale: f64 = 1.0, in within(0.01, 100.0);
-        /// Factor on every motion along a waveform, 1 if not given. Those of a machine file, of [machine] and of an activity are multiplied.
+        /// Factor on every motion along a waveform, 1 if not given. Those of a machine file, of the case and of an activity are multiplied.
         motion_scale: f64 = 1.0, in within(0.0, 100.0);
         /// Names of all joints from the bearing to the counterface; that of the file if not given.
         order: Option<Names> = None;
