@@ -117,6 +117,42 @@ fn verify_contact_of_a_ball_on_the_foundation() {
     assert!((table["axial_force_n"][0] - LOAD_N).abs() < 0.02);
 }
 
+/// Without lateral strain a pin is a bar: its grid has nodes with three faces, whose load must be a uniform pressure too.
+#[test]
+fn verify_the_pressure_at_the_end_of_a_pin_without_poissons_ratio_is_uniform() {
+    let bench = Bench::with_case(
+        "\
+[femur]
+shape = \"plane\"
+[insert]
+shape = \"pin\"
+radius_mm = 4.5
+thickness_mm = 10.0
+layers = 2
+edge_mm = 1.0
+[material]
+poissons_ratio = 0.0
+[contact]
+friction = 0.0
+model = \"deformable\"
+[machine]
+preset = \"pin-on-disc\"
+[march]
+updates = 1
+[accuracy]
+estimate = false
+",
+    );
+    bench.run_into("out");
+    let table = bench.table("out", "kinematics.csv");
+    let mean_mpa = table["axial_force_n"][0] / (PI * 4.5 * 4.5);
+    let peak_mpa = table["peak_pressure_mpa"][0];
+    assert!(
+        (peak_mpa / mean_mpa - 1.0).abs() < 1e-6,
+        "{peak_mpa} of {mean_mpa}"
+    );
+}
+
 /// Condyles on a flat insert under a constant load without friction, everything still.
 fn standing(medial_mm: f64, more: &str) -> Bench {
     Bench::with_case(&format!(

@@ -74,6 +74,10 @@ pub struct Share {
     pub edge_b: Vec3,
     /// Area, mm2.
     pub area_mm2: f64,
+    /// Integral of the node's shape function over the faces, mm2: the load on the node by a pressure of 1 MPa.
+    ///
+    /// It differs from the area where the faces around the node are no parallelograms.
+    pub tributary_mm2: f64,
     /// A quarter of the trace of the second moment over the area, mm2: a 24th of a square's area.
     pub spread_mm2: f64,
 }
@@ -104,8 +108,9 @@ fn shares_and_normals(positions: &[Vec3], around: &FacesAround) -> (Vec<Share>, 
         // centroid's offset from the node, the part along the normal counts a third.
         let third = F64x4::splat(1.0 / 3.0);
         let centre = scale_add(&flat.rise, third, &(own + flat.offset));
-        let mut normal = zero_vector();
+        let (mut tributary_mm2, mut normal) = (F64x4::splat(0.0), zero_vector());
         for patch in &patches {
+            tributary_mm2 += patch.tributary_mm2;
             normal += patch.normal;
         }
         let normal = unit(&normal);
@@ -118,6 +123,7 @@ fn shares_and_normals(positions: &[Vec3], around: &FacesAround) -> (Vec<Share>, 
                 edge_a: of_lane(&edge_a),
                 edge_b: of_lane(&edge_b),
                 area_mm2: flat.area_mm2.lane(lane),
+                tributary_mm2: tributary_mm2.lane(lane),
                 spread_mm2: spread_mm2.lane(lane),
             });
         }
@@ -160,6 +166,8 @@ struct CornerPatch {
     /// Normal of the quarter, as long as its area.
     area_vector: Vector<F64x4>,
     area_mm2: F64x4,
+    /// Integral of the node's shape function over the face, mm2.
+    tributary_mm2: F64x4,
 }
 
 impl CornerPatch {
@@ -174,7 +182,15 @@ impl CornerPatch {
             scale_add(before, three, &(across - next)) * eighth,
         ];
         let area_vector = cross(&edges[0], &edges[1]);
+        // A uniform pressure loads the node by the integral of its shape function. The map's
+        // Jacobian is linear, so that its value at the function's centroid (1/3, 1/3) counts.
+        let sixth = F64x4::splat(1.0 / 6.0);
+        let at_third = [
+            (next * F64x4::splat(2.0) + across - before) * sixth,
+            (before * F64x4::splat(2.0) + across - next) * sixth,
+        ];
         Self {
+            tributary_mm2: length(&cross(&at_third[0], &at_third[1])),
             normal: unit(&cross(across, &(before - next))),
             centre: scale_add(&(next + before), three, across) * F64x4::splat(1.0 / 16.0),
             edges,
@@ -296,6 +312,8 @@ mod tests {
         .unwrap();
         let surface = insert.surface();
         assert!((surface.area_mm2() - 24.0).abs() < 1e-12);
+        let tributary_mm2 = surface.shares.iter().map(|share| share.tributary_mm2);
+        assert!((tributary_mm2.sum::<f64>() - 24.0).abs() < 1e-12);
         for (position, share) in surface.positions.iter().zip(&surface.shares) {
             let at_rim = position.x.abs() == 3.0 || position.z.abs() == 2.0;
             if !at_rim {
