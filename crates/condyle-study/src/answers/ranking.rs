@@ -8,7 +8,7 @@ use crate::{
     answers::data::Data,
     error::StudyError,
     plan::designs,
-    search::{Standing, standing},
+    search::{Standing, standing, starting_test},
     statistics::{extent, mean, standard_deviation, wilson_interval},
     store::{Column, Store},
 };
@@ -216,7 +216,7 @@ pub(crate) struct Best {
     pub progress: Vec<(f64, f64)>,
 }
 
-/// A value of the best test, and that of the first one: the case itself, if it lies within the ranges.
+/// A value of the best test, and that of the one that the search starts from: the case itself, if it lies within the ranges.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub(crate) struct Valued {
     pub name: String,
@@ -225,11 +225,11 @@ pub(crate) struct Valued {
 }
 
 impl Valued {
-    pub fn new(name: &str, values: &[f64], row: usize) -> Self {
+    pub fn new(name: &str, values: &[f64], [row, first]: [usize; 2]) -> Self {
         Self {
             name: name.to_owned(),
             value: values[row],
-            first: values[0],
+            first: values[first],
         }
     }
 }
@@ -267,6 +267,8 @@ impl Best {
         }
         let values = store.column(plan, minimised.key)?.values;
         let (row, progress) = least(&values, &data.within);
+        let known = store.known(plan, 0)?;
+        let start = starting_test(plan, &known);
         let mut best = Self {
             minimised: minimised.key,
             unit: minimised.unit(),
@@ -274,11 +276,11 @@ impl Best {
             inputs: Vec::new(),
             outputs: Vec::new(),
             margins: Vec::new(),
-            standing: standing(plan, &store.known(plan, 0)?),
+            standing: standing(plan, &known),
             progress,
         };
         if let Some(row) = row {
-            let valued = |name: &str, values: &[f64]| Valued::new(name, values, row);
+            let valued = |name: &str, values: &[f64]| Valued::new(name, values, [row, start]);
             let inputs = plan.study().inputs.iter().zip(&data.inputs);
             let inputs = inputs.map(|(input, column)| valued(&input.key, &column.values));
             best.inputs = inputs.collect();

@@ -14,7 +14,7 @@ use crate::{
     store::Store,
 };
 
-/// The robust optimum compared with the design of the first test.
+/// The robust optimum compared with the design that the search starts from.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub(crate) struct Robust {
     pub minimised: &'static str,
@@ -57,8 +57,8 @@ impl Robust {
         let bounds = study.answers.bounds.iter();
         let required = bounds.flat_map(|bound| bound.sides().map(|_| bound.probability));
         let chosen = study.inputs[..study.chosen()].iter().zip(&data.inputs);
-        let valued = chosen
-            .map(|(input, column)| Valued::new(&input.key, &column.values, comparison.optimum.row));
+        let rows = [comparison.optimum.row, comparison.first.row];
+        let valued = chosen.map(|(input, column)| Valued::new(&input.key, &column.values, rows));
         Ok(Some(Self {
             minimised: minimised.key,
             unit: minimised.unit(),

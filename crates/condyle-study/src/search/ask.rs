@@ -113,6 +113,19 @@ fn first_left(plan: &Plan, seed: u64, known: &[Known], pending: &[Vec<f64>]) -> 
     tests
 }
 
+/// Returns the place of the test that a search starts from: the first proposed one, wherever results that ended in another
+/// order put it, or the first result if that one is not known.
+pub(crate) fn starting_test(plan: &Plan, known: &[Known]) -> usize {
+    let Design::Optimise(keys) = &plan.study().design else {
+        return 0;
+    };
+    let proposed = tests_at(plan, 0, first_places(plan.study(), keys.seed));
+    let start = plan.numbers(&proposed[0]);
+    let mut known = known.iter();
+    let place = known.position(|(test, _)| plan.numbers(test) == start);
+    place.unwrap_or(0)
+}
+
 fn level(value: f64) -> Option<Level> {
     Some(Level::Number(value))
 }
@@ -232,6 +245,9 @@ mod tests {
         assert_eq!(store.count().unwrap(), 24);
         let known = store.known(&plan, 0).unwrap();
         let observed = observed(&plan, &known);
+        let start = plan.numbers(&known[starting_test(&plan, &known)].0);
+        assert_eq!(start, *all.first().unwrap());
+        assert_ne!(start, plan.numbers(&known[0].0));
         let best = plan.numbers(&known[observed.best()[0]].0);
         assert!((best[0] - 0.08).abs() < 1e-4 && best[1] == 9.0, "{best:?}");
         assert!(next_tests(&plan, &known).is_none());

@@ -11,14 +11,15 @@ use condyle_case::study::{Design, Input, Study};
 use condyle_results::catalogue::Scalar;
 use serde::Serialize;
 
+pub(crate) use self::{
+    ask::starting_test,
+    places::ends,
+    robust::{Comparison, Estimate, comparison},
+};
 use self::{
     observed::{Observed, space_filling},
     places::{along, levels, place_along},
     worth::{Emulators, SHARP, WIDE},
-};
-pub(crate) use self::{
-    places::ends,
-    robust::{Comparison, Estimate, comparison},
 };
 use crate::{
     distribution::{Place, level_at_share},

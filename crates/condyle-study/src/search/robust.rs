@@ -8,6 +8,7 @@ use super::{
     Known, disturbances, observed,
     observed::Observed,
     outlook::{Outlook, percentile_weights},
+    starting_test,
     worth::Emulators,
 };
 use crate::{
@@ -54,7 +55,7 @@ pub(crate) struct Judged {
     pub outputs: Vec<f64>,
 }
 
-/// The robust optimum and the design of the first test.
+/// The robust optimum and the design that the search starts from.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub(crate) struct Comparison {
     pub optimum: Judged,
@@ -76,7 +77,7 @@ pub(crate) fn comparison(plan: &Plan, known: &[Known]) -> Option<Comparison> {
         disturbances,
         ..observed
     };
-    observed.comparison()
+    observed.comparison(starting_test(plan, known))
 }
 
 /// The draws of an output: for each draw, the output of both designs under each disturbance.
@@ -90,13 +91,14 @@ struct Sampled {
 }
 
 impl Observed {
-    fn comparison(&self) -> Option<Comparison> {
+    /// Compares the optimum with the design of test `start`.
+    fn comparison(&self, start: usize) -> Option<Comparison> {
         let emulators = Emulators::new(self)?;
         let ([minimised], [best]) = (&emulators.minimised[..], &emulators.seen.best()[..]) else {
             return None;
         };
         let mut numbers = Random::stream(SEED, 0);
-        let mut draws = |outlook: &Outlook| self.draws(outlook, *best, &mut numbers);
+        let mut draws = |outlook: &Outlook| self.draws(outlook, [*best, start], &mut numbers);
         let outputs = draws(minimised)?;
         let excess = emulators.limits.iter().map(draws).collect::<Option<_>>()?;
         let count = self.disturbances.len();
@@ -127,17 +129,17 @@ impl Observed {
         Some(Comparison {
             beats: sampled.share(beats),
             optimum: judged(0, *best),
-            first: judged(1, 0),
+            first: judged(1, start),
         })
     }
 
-    /// Draws an output of the design of a test and of the first design.
-    fn draws(&self, outlook: &Outlook, best: usize, numbers: &mut Random) -> Option<Draws> {
+    /// Draws an output of the designs of two tests.
+    fn draws(&self, outlook: &Outlook, tests: [usize; 2], numbers: &mut Random) -> Option<Draws> {
         let at = |row: usize| {
             let under = self.disturbances.iter();
             under.map(move |one| [self.design(row), one].concat())
         };
-        let points: Vec<Vec<f64>> = at(best).chain(at(0)).collect();
+        let points: Vec<Vec<f64>> = tests.into_iter().flat_map(at).collect();
         let emulator = outlook.emulator.clone().calibrated();
         let draws = emulator.draws(&points, DRAWS, numbers)?.into_iter();
         let halves = |draw: DVector<f64>| {
@@ -257,7 +259,7 @@ mod tests {
             let exact = (x - 0.3_f64).powi(2) + scale * (x - 0.8_f64).powi(2) + y;
             for seed in 1..=3 {
                 let observed = searched(share, 60, seed);
-                let found = observed.comparison().unwrap();
+                let found = observed.comparison(0).unwrap();
                 let design = observed.design(found.optimum.row);
                 println!(
                     "{} tests: {design:.3?} of {x:.3} {y:.3}",
