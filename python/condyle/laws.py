@@ -35,7 +35,7 @@ class NodeCycle(NamedTuple):
     peak_pressure_mpa: float
     """The highest mean pressure on the node's whole share of the surface, MPa."""
     sliding_distance_mm: float
-    """Sum of the slip while any of the node's share of the surface is loaded, by the shares of the activities, mm."""
+    """Sum of share times slip, mm: the mean sliding distance under pressure over the node's share of the surface."""
     pressure_slip_mpa_mm: float
     """Sum of share times pressure times slip, MPa mm."""
     cross_shear: float

@@ -49,8 +49,13 @@ class Plots:
         return self._map("wear_depth_mm", "wear depth, mm", update, ax)
 
     def pressure(self, update: int = -1, ax: Axes | None = None) -> Axes:
-        """Highest pressure of the cycle at every node of the articulating surface, from above, MPa."""
-        return self._map("peak_pressure_mpa", "peak pressure, MPa", update, ax)
+        """Highest pressure in the cycle repeated up to an update, or in the final cycle, from above, MPa."""
+        axes = self._map("peak_pressure_mpa", "peak pressure, MPa", update, ax)
+        cycles = self._result.update_cycles
+        place = range(len(cycles))[update]
+        is_last = place == len(cycles) - 1
+        axes.set_title(f"cycle at {cycles[place if is_last else max(place - 1, 0)] / 1e6:g} million cycles", fontsize="medium")
+        return axes
 
     def wear_curve(self, ax: Axes | None = None) -> Axes:
         """Mass loss over the cycles, mg, with its discretisation error if that was estimated."""
@@ -71,7 +76,8 @@ class Plots:
         pyplot = extra("matplotlib.pyplot", "plot")
         result = self._result
         table = result.kinematics
-        labels = _MOTIONS if result.joint == "knee" else _of_joint(result)
+        is_known = result.summary.get("joint", "knee") == "knee"
+        labels = _MOTIONS if is_known else _of_joint(result)
         shown = {name: label for name, label in labels.items() if name in table}
         lines = -(-len(shown) // 3)
         figure, grid = pyplot.subplots(lines, 3, figsize=(11, 2.75 * lines), sharex=True, squeeze=False, layout="constrained")
@@ -82,8 +88,9 @@ class Plots:
             axes.set_title(label, fontsize="medium")
         for axes in list(grid.flat)[len(shown) :]:
             axes.remove()
-        for axes in grid[-1]:
+        for axes in list(grid.flat)[: len(shown)][-3:]:
             axes.set_xlabel("% of the cycle")
+            axes.tick_params(labelbottom=True)
         grid.flat[0].legend(frameon=False)
         return figure
 
@@ -98,9 +105,10 @@ class Plots:
         colours = axes.tripcolor(from_above, result.fields[field][update], shading="gouraud", cmap="magma_r", vmin=0.0)
         axes.get_figure().colorbar(colours, ax=axes, label=label, shrink=0.7)
         label_x, label_z = "x, mm", "z, mm"
-        if result.joint in ("knee", "hip", "ankle"):
+        joint = result.summary.get("joint")
+        if joint in ("knee", "hip", "ankle"):
             # Hips and ankles stand upside down in their machines: a left one has lateral at +z.
-            lateral_at = "right" if result.joint == "knee" else "left"
+            lateral_at = "right" if joint == "knee" else "left"
             left, right = ("medial", "lateral") if result.case["side"] == lateral_at else ("lateral", "medial")
             label_x, label_z = "x, anterior up, mm", f"{left}  <  z, mm  >  {right}"
         axes.set(xlabel=label_z, ylabel=label_x, aspect="equal")

@@ -41,9 +41,9 @@ class Result(Summary):
     True
     """
 
-    def __init__(self, run: RawRun, folder: Path | None = None) -> None:
+    def __init__(self, run: RawRun, folder: Path | None = None, case: Case | None = None) -> None:
         """Use :func:`condyle.run` or :func:`condyle.open`."""
-        self._run, self._folder = run, folder
+        self._run, self._folder, self._case = run, folder, case
         summary = run["summary"]
         self.summary: dict[str, Any] = json.loads(summary) if summary else {}
         """The content of ``summary.json``."""
@@ -65,9 +65,12 @@ class Result(Summary):
             raise AttributeError(f"a result has no {name}{reason}")
 
         def __setattr__(self, name: str, value: object) -> None:
-            if name in self.__dict__ or name not in ("_run", "_folder", "summary", "tables"):
+            if name in self.__dict__ or name not in ("_run", "_folder", "_case", "summary", "tables"):
                 raise AttributeError(f"a result is read-only: {name} cannot be assigned")
             object.__setattr__(self, name, value)
+
+        def __dir__(self) -> list[str]:
+            return [*super().__dir__(), *self.summary]
 
     @property
     def is_done(self) -> bool:
@@ -82,6 +85,8 @@ class Result(Summary):
     @property
     def case(self) -> Case:
         """The case as run."""
+        if self._case is not None:
+            return self._case
         return Case.from_text(self._run["case"], folder=self._folder or ".", name="case of the run")
 
     @property
@@ -132,7 +137,9 @@ class Result(Summary):
 
         ``wear_depth_mm``, ``depth_per_cycle_mm``, ``peak_pressure_mpa``, ``sliding_distance_mm``, ``cross_shear``,
         ``thickness_mm``, ``principal_direction``; 0 at nodes outside of the articulating surface. NaN at updates without the field,
-        such as ``von_mises_mpa`` of the unworn insert.
+        such as ``von_mises_mpa`` of the unworn insert. Depth, thickness and positions are those after the update. Fields of a
+        cycle, such as pressure, are those of the cycle that was repeated up to the update: update ``k`` has the cycle at
+        ``update_cycles[k - 1]``, and the last update the final cycle.
         """
         return self._run["fields"]
 

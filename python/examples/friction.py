@@ -10,7 +10,7 @@ def mass_loss_mg(case: condyle.Case) -> float:
 
 
 def main() -> None:
-    case = condyle.Case.from_dict({"march": {"updates": 3}, "accuracy": {"estimate": False}})
+    case = condyle.Case.from_dict({"march": {"updates": 10}, "accuracy": {"estimate": False}})
     frictions = [0.01, 0.04, 0.07, 0.10, 0.13]
     with ThreadPoolExecutor(2) as pool:
         masses = pool.map(mass_loss_mg, [case.replace({"contact.friction": friction}) for friction in frictions])

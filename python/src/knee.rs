@@ -65,7 +65,7 @@ impl RawKnee {
 
     /// Positions of the nodes of the articulating surface.
     fn surface_points<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
-        let positions = self.march.insert().surface().positions;
+        let positions = self.march.surface().positions;
         let values: Vec<f64> = positions.iter().flatten().copied().collect();
         array(py, values, [positions.len(), 3])
     }
@@ -79,7 +79,7 @@ impl RawKnee {
     ) -> PyResult<Bound<'py, PyDict>> {
         let rotation = Mat3::from_row_slice(rotation.as_flattened());
         let motion = RelativeMotion::at_rest(Pose::new(rotation, Vec3::from(translation)));
-        let surface = self.march.insert().surface();
+        let surface = self.march.surface();
         let law = &self.march.test().contact;
         let mut contact = law.contact(self.march.bodies(&surface), ContactMemory::default());
         settle(contact.as_mut(), &motion)?;

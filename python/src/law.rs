@@ -70,7 +70,7 @@ fn node_cycle<'py>(py: Python<'py>, cycle: &MeanCycle<'_>) -> PyResult<Bound<'py
         array(py, slips, [instants, 2])?,
         array(py, shares, [instants])?,
         cycle.peak_pressure_mpa,
-        cycle.sliding_distance_mm,
+        cycle.pressed_distance_mm,
         cycle.pressure_slip_mpa_mm,
         cycle.slip_work.cross_shear(),
     ))

@@ -20,7 +20,7 @@ pub struct Callback {
 
 impl Callback {
     /// Calls the function with an instance of `class` of `condyle.progress`. Stops on Ctrl-C, on an exception, and when
-    /// the function returns `False`.
+    /// the function returns `False` or another false value than `None`.
     pub fn call(&mut self, class: &str, fields: impl for<'py> PyCallArgs<'py>) -> ControlFlow<()> {
         let goes_on = Python::attach(|py| {
             py.check_signals()?;
@@ -29,7 +29,7 @@ impl Callback {
             };
             let class = py.import("condyle.progress")?.getattr(class)?;
             let answer = function.bind(py).call1((class.call1(fields)?,))?;
-            Ok(!answer.is(pyo3::types::PyBool::new(py, false).as_any()))
+            Ok(answer.is_none() || answer.is_truthy()?)
         });
         match goes_on {
             Ok(true) => ControlFlow::Continue(()),

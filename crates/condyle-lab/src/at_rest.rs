@@ -84,7 +84,7 @@ impl AtRest {
         }
         let chain = Chain::new(test.machine(), march.state().zero_mm, test.flexion_axis_mm);
         let motion = RelativeMotion::at_rest(chain.at(&positions).pose);
-        let surface = march.insert().surface();
+        let surface = march.surface();
         let bodies = march.bodies(&surface);
         let mut contact = test.contact.contact(bodies, ContactMemory::default());
         // The response settles the contact; the evaluation after it reads its pressures.

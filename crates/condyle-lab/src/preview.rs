@@ -338,7 +338,7 @@ impl Expected {
 /// Returns the time of a contact evaluation under the mean load with derivatives, s: the shorter of two times on a
 /// path.
 fn evaluation_s(march: &March, at_rest: &AtRest) -> f64 {
-    let surface = march.insert().surface();
+    let surface = march.surface();
     let memory = ContactMemory::default();
     let mut contact = march.test().contact.contact(march.bodies(&surface), memory);
     let pose = lowered(contact.as_mut(), at_rest, mean_load_n(march));

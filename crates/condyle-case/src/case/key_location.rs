@@ -32,7 +32,8 @@ impl Case {
         let mut errors = Vec::new();
         // A mesh that cannot be used may be another body than its table says.
         if error.file().is_some() && error.keys == ["file"] {
-            errors.extend(self.misfits_at_their_keys());
+            let misfits = self.misfits_at_their_keys();
+            errors.extend(misfits.filter(|((of, _), _)| *of == table));
         }
         errors.push(((table, error.keys), error.to_string()));
         self.errors_at(&errors)

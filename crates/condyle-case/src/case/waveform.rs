@@ -119,10 +119,14 @@ settings! {
         remove_drift: bool = false;
         /// Keeps the mean and this many harmonics, for noisy samples.
         low_pass_harmonics: Option<u64> = None, in within(1.0, 50.0);
-        /// From point to point; half-cosine, but spline for a file or a low pass.
+        /// From point to point; half-cosine, but spline for a file, a low pass or more than 20 points.
         interpolation: Option<Interpolation> = None;
     }
 }
+
+/// Most points that are taken for those where a curve turns, as in standards. More are samples, between which half-cosines
+/// would stop: their false accelerations raise cross-shear, and wear by half.
+const MAX_TURNS: usize = 20;
 
 /// The waveform of a knee simulator without activities whose case names none.
 const DEFAULT_WAVEFORM: &str = "iso-like";
@@ -288,11 +292,15 @@ fn samples(
     if let Some(Points(points)) = points {
         let place = |index| section.item_span(knots.name, index);
         let knot = |&(percent, value): &(f64, f64)| Knot { percent, value };
+        let interpolation = match points.len() > MAX_TURNS {
+            true => Interpolation::Spline,
+            false => Interpolation::HalfCosine,
+        };
         return Some(Samples {
             knots: points.iter().map(knot).collect(),
             spans: (0..points.len()).map(place).collect(),
             source: None,
-            interpolation: Interpolation::HalfCosine,
+            interpolation,
         });
     }
     // Activities do not inherit waveforms, and machine files have none.
@@ -408,7 +416,9 @@ impl Samples {
 /// Returns the fault of points whose cycle runs from 0 to 1.
 pub(crate) fn parts_of_a_cycle(percents: impl ExactSizeIterator<Item = f64>) -> Option<Fault> {
     let is_enough = percents.len() > 2;
-    let last = percents.last().filter(|last| is_enough && *last <= 1.0)?;
+    let last = percents
+        .reduce(f64::max)
+        .filter(|last| is_enough && *last <= 1.0)?;
     let message = format!("the points end at {last} % of the cycle");
     let advice = "give percent from 0 to 100, not parts of the cycle from 0 to 1";
     Some(Fault::new(message, advice))

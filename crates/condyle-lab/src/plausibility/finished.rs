@@ -67,7 +67,7 @@ impl<'a> Finished<'a> {
         side: Side,
         of_build: &'a [BuildWarning],
     ) -> Self {
-        let surface = march.insert().surface();
+        let surface = march.surface();
         let rim = rim_of(march.insert());
         Self {
             rim_nodes: rim.iter().flatten().copied().collect(),

@@ -94,7 +94,7 @@ fn check_holes(
     mut pressed: impl Iterator<Item = usize>,
     when: &str,
 ) -> Result<(), RunError> {
-    let places = march.insert().surface().positions;
+    let places = march.surface().positions;
     let hole_at = |node: usize| {
         let place = [places[node].x, places[node].z];
         warnings.iter().find_map(|warning| warning.hole_at(place))

@@ -11,7 +11,15 @@ use condyle_fem::{HEX_FACES, HexMesh};
 use indexmap::IndexMap;
 
 use super::{error::MeshFileError, text::At};
-use crate::Vec3;
+use crate::{
+    Vec3,
+    triangle_mesh::{TriangleMesh, bounds},
+};
+
+/// Distance of two nodes at the same place, relative to the diagonal of the mesh: exports round to six digits or so.
+const SAME_PLACE: f64 = 1e-5;
+/// A direction along which no usual mesh has planes of nodes.
+const OBLIQUE: Vec3 = Vec3::new(0.613, 0.371, 0.697);
 
 pub(crate) struct HexDraft<'a> {
     path: &'a Path,
@@ -135,6 +143,13 @@ impl<'a> HexDraft<'a> {
                 )));
             }
         }
+        self.refuse_coincident_nodes(&mesh, &kept)?;
+        let bodies = bodies(&mesh);
+        if bodies > 1 {
+            return Err(At::file(self.path).error(format!(
+                "holds {bodies} bodies that share no nodes; export the insert alone, with its elements connected"
+            )));
+        }
         let number = |label: &u64| kept[*self.node_of_label.get(label)?];
         let surfaces = self.outward_surfaces(&mesh, number)?;
         Ok(HexFile { mesh, surfaces })
@@ -166,6 +181,40 @@ impl<'a> HexDraft<'a> {
         let hexes = hexes.map(|hex| hex.map(|node| kept[node].unwrap_or_default()));
         let hexes = hexes.collect();
         Ok((HexMesh { nodes, hexes }, kept))
+    }
+
+    /// Refuses nodes at the same place: there the mesh is cut, and both sides of the cut would count as its surface.
+    fn refuse_coincident_nodes(
+        &self,
+        mesh: &HexMesh,
+        kept: &[Option<u32>],
+    ) -> Result<(), MeshFileError> {
+        let (low, high) = bounds(&mesh.nodes);
+        let within = SAME_PLACE * (high - low).norm();
+        // Along an oblique direction the planes of a mesh do not coincide, so that few nodes are neighbours.
+        let along = |node: u32| mesh.nodes[node as usize].dot(&OBLIQUE);
+        let mut order: Vec<u32> = (0..mesh.nodes.len() as u32).collect();
+        order.sort_by(|&one, &other| along(one).total_cmp(&along(other)));
+        let distance =
+            |[one, other]: [u32; 2]| (mesh.nodes[one as usize] - mesh.nodes[other as usize]).norm();
+        let pairs = order.iter().enumerate().flat_map(|(place, &one)| {
+            let after = order[place + 1..].iter().map(move |&other| [one, other]);
+            after.take_while(|&[one, other]| along(other) - along(one) <= within)
+        });
+        let mut pairs = pairs.filter(|&pair| distance(pair) <= within);
+        let Some(pair) = pairs.next() else {
+            return Ok(());
+        };
+        let label = |node: u32| {
+            let mut labels = self.node_of_label.iter();
+            labels.find_map(|(label, &index)| (kept[index] == Some(node)).then_some(*label))
+        };
+        let [one, other] = pair.map(|node| label(node).unwrap_or_default());
+        let (one, other, count) = (one.min(other), one.max(other), 1 + pairs.count());
+        Err(At::file(self.path).error(format!(
+            "node {other} lies at the place of node {one} (pairs of such nodes: {count}), which cuts the mesh there; merge \
+             coincident nodes, and export the insert alone"
+        )))
     }
 
     /// Returns the surfaces with each quad once, as the mesh's boundary has it.
@@ -200,6 +249,30 @@ impl<'a> HexDraft<'a> {
     }
 }
 
+/// Returns the number of bodies that share no nodes.
+fn bodies(mesh: &HexMesh) -> usize {
+    let mut parent: Vec<u32> = (0..mesh.nodes.len() as u32).collect();
+    let mut count = mesh.nodes.len();
+    for [first, others @ ..] in mesh.hexes.iter() {
+        for other in others {
+            let [one, other] = [*first, *other].map(|node| root(&mut parent, node));
+            count -= usize::from(one != other);
+            parent[other as usize] = one;
+        }
+    }
+    count
+}
+
+/// Returns the node at the root of a tree of connected nodes, and halves the path to it, which keeps the trees flat.
+fn root(parent: &mut [u32], mut node: u32) -> u32 {
+    while parent[node as usize] != node {
+        let above = parent[parent[node as usize] as usize];
+        parent[node as usize] = above;
+        node = above;
+    }
+    node
+}
+
 pub(crate) fn sorted<T: Ord>(mut quad: [T; 4]) -> [T; 4] {
     quad.sort_unstable();
     quad
@@ -232,6 +305,11 @@ pub struct HexFile {
 }
 
 impl HexFile {
+    /// Returns the boundary of the hexahedra as triangles, facing outwards.
+    pub fn mesh_of_boundary(&self) -> TriangleMesh {
+        TriangleMesh::of_quads(self.mesh.nodes.clone(), self.mesh.boundary_quads())
+    }
+
     /// Returns the surface of that name; case is ignored.
     pub fn surface(&self, name: &str) -> Option<&NamedSurface> {
         let mut surfaces = self.surfaces.iter();

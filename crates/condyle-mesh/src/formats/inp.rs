@@ -421,6 +421,29 @@ mod tests {
         assert_eq!(inverted, expected);
     }
 
+    /// The second hexahedron with nodes of its own, shifted along x by the given decimals.
+    fn apart(decimals: &str) -> String {
+        let of_second = " 8, 102, 3, 13, 112,\n 122, 23, 33, 132";
+        let twins = [102, 112, 122, 132].map(|twin| {
+            let [y, z] = [i32::from(twin % 20 == 12), i32::from(twin > 120)];
+            format!(" {twin}, 1.{decimals}, {y}., {z}.\n")
+        });
+        let text = TEXT.replace(" 8, 2, 3, 13, 12,\n 22, 23, 33, 32", of_second);
+        text.replace("*Element", &format!("{}*Element", twins.concat()))
+    }
+
+    #[test]
+    fn hexahedra_that_are_not_connected_are_refused() {
+        let cut = message(read(&apart("000001")));
+        let expected = "a.inp: node 102 lies at the place of node 2 (pairs of such nodes: 4), which cuts the mesh there";
+        assert!(cut.starts_with(expected), "{cut}");
+        let two = message(read(&apart("1")));
+        assert!(
+            two.starts_with("a.inp: holds 2 bodies that share no nodes"),
+            "{two}"
+        );
+    }
+
     #[test]
     fn nodes_that_are_wrong_are_named_with_their_line() {
         let missing = reported("22, 23, 33, 32", "22, 23, 34, 32");

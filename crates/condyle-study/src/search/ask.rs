@@ -73,7 +73,7 @@ impl Store {
             let test = plan.test_with(row, &values)?;
             let lacks = |outputs: &TestOutputs| {
                 let mut needed = needed.iter();
-                needed.find(|output| study.outputs.value(&outputs.values, output).is_nan())
+                needed.find(|output| !study.outputs.value(&outputs.values, output).is_finite())
             };
             if let Some(output) = result.as_ref().ok().and_then(lacks) {
                 return Err(lacking(output));
@@ -93,7 +93,7 @@ impl Store {
 
 fn lacking(output: &Scalar) -> StudyError {
     StudyError::Plan(format!(
-        "the results of a test lack `{}`, which the search minimises or limits; add it, or give the reason of a failure as text",
+        "the results of a test lack `{}` as a finite number, which the search minimises or limits; add it, or give the reason of a failure as text",
         output.key
     ))
 }

@@ -72,6 +72,11 @@ pub trait ContactLaw: Debug + Send + Sync {
         memory: ContactMemory,
     ) -> Box<dyn ContactModel + 'a>;
 
+    /// Returns the articulating surface of an insert, with the areas that the pressures of the contact act on.
+    fn surface(&self, insert: &Insert) -> ArticulatingSurface {
+        insert.surface()
+    }
+
     /// Returns the fall of the pressure at a surface node as that node alone is worn, MPa/mm. It determines how fast wear
     /// flattens the pressure.
     fn stiffness_mpa_per_mm(&self, insert: &Insert, node: usize) -> f64;

@@ -55,7 +55,7 @@ impl March {
     /// # Errors
     /// Bodies that do not meet, that overlap deeply, or that do not come to rest.
     pub fn start(test: WearTest) -> Result<Self, PlacementError> {
-        let (counterface, surface) = (prepared(&test), test.insert.surface());
+        let (counterface, surface) = (prepared(&test), test.contact.surface(&test.insert));
         let mut counters = SolverCounters::default();
         let bodies = Bodies {
             counterface: &counterface,
@@ -143,6 +143,11 @@ impl March {
     /// Returns the insert as worn so far.
     pub fn insert(&self) -> &Insert {
         &self.insert
+    }
+
+    /// Returns the articulating surface as worn so far, with the areas that the pressures of its contact act on.
+    pub fn surface(&self) -> ArticulatingSurface {
+        self.test.contact.surface(&self.insert)
     }
 
     /// Returns the counterface prepared for the shares of the insert.
@@ -351,7 +356,7 @@ impl March {
             state: self.state.contact.clone(),
             cache: std::mem::take(&mut self.cache),
         };
-        let surface = self.insert.surface();
+        let surface = self.surface();
         let mut contact = self.test.contact.contact(self.bodies(&surface), memory);
         let (test, state, chains) = (&self.test, &self.state, &self.chains);
         let solved = solve(test, state, chains, contact.as_mut(), spent, watch)?;

@@ -186,11 +186,8 @@ impl SolvedCycles {
         let touched = cycle.history.instant(&cycle.instants[row]).iter();
         touched
             .map(|record| {
-                let share = &self.surface.shares[record.node as usize];
-                (
-                    record.node,
-                    record.moment.pressure_mpa * share.tributary_mm2,
-                )
+                let area_mm2 = self.surface.shares[record.node as usize].area_mm2;
+                (record.node, record.moment.pressure_mpa * area_mm2)
             })
             .collect()
     }

@@ -35,6 +35,14 @@ impl ArticulatingSurface {
         self.shares.iter().map(|share| share.area_mm2).sum()
     }
 
+    /// Returns the same with tributary areas, for pressures that are unknowns at the nodes.
+    pub(crate) fn with_tributary_areas(mut self) -> Self {
+        for share in &mut self.shares {
+            share.area_mm2 = share.tributary_mm2;
+        }
+        self
+    }
+
     /// Returns the heights of the lowest and the highest node, mm.
     pub fn height_range_mm(&self) -> (f64, f64) {
         let heights = || self.positions.iter().map(|position| position.y);

@@ -16,7 +16,7 @@ use condyle_mesh::{FittedSphere, Roundness};
 
 use super::checks::off_centre;
 use super::error::{Body, BuildError, BuildWarning, Finding};
-use super::placing::{checked, checks_of, middle_of_mesh, middle_of_points, shell, warn};
+use super::placing::{Placing, checked, checks_of, middle_of_mesh, middle_of_points, shell, warn};
 use super::size::{check_points, check_triangles};
 use crate::case::contents::Case;
 use crate::case::insert::{
@@ -216,15 +216,13 @@ impl Case {
         built.map_err(|error| BuildError::shell_insert(path, &error))
     }
 
-    fn insert_from_hexahedra(
+    /// Returns the hexahedra of a file in the frame of a right knee, mm.
+    pub(super) fn placed_hexahedra(
         &self,
         insert: &HexahedralInsert,
-        of: &Insert,
-        warnings: &mut Vec<BuildWarning>,
-    ) -> Result<geometry::Insert, BuildError> {
+    ) -> Result<(HexFile, Placing), BuildError> {
         let placing = insert.placing(self.side_in_frame())?;
-        let path = insert.file.path();
-        let mut file = read_hexahedra(insert.file.files(), path)?;
+        let mut file = read_hexahedra(insert.file.files(), insert.file.path())?;
         for node in &mut file.mesh.nodes {
             *node = placing.point(node);
         }
@@ -236,9 +234,20 @@ impl Case {
             let quads = surfaces.flat_map(|surface| &mut surface.quads);
             quads.for_each(|quad| quad.reverse());
         }
+        Ok((file, placing))
+    }
+
+    fn insert_from_hexahedra(
+        &self,
+        insert: &HexahedralInsert,
+        of: &Insert,
+        warnings: &mut Vec<BuildWarning>,
+    ) -> Result<geometry::Insert, BuildError> {
+        let path = insert.file.path();
+        let (mut file, placing) = self.placed_hexahedra(insert)?;
         check_points(path, &file.mesh.nodes, insert.length_unit)?;
         check_nodes(file.mesh.nodes.len() as f64, &self.limits)?;
-        let boundary = TriangleMesh::of_quads(file.mesh.nodes.clone(), file.mesh.boundary_quads());
+        let boundary = file.mesh_of_boundary();
         self.check_orientation(Body::Insert, &insert.file, &boundary, &placing, warnings)?;
         let articulating = match &insert.articulating_surface {
             Some(name) => {

@@ -65,11 +65,22 @@ impl Case {
     }
 
     fn placed_insert(&self) -> Option<Placed<'_>> {
-        let InsertShape::Mesh(insert) = &self.insert.shape else {
-            return None;
-        };
-        let placing = insert.placing(self.side_in_frame()).ok()?;
-        Placed::read(Body::Insert, &insert.file, placing)
+        match &self.insert.shape {
+            InsertShape::Mesh(insert) => {
+                let placing = insert.placing(self.side_in_frame()).ok()?;
+                Placed::read(Body::Insert, &insert.file, placing)
+            }
+            InsertShape::Hexahedra(insert) => {
+                let (file, placing) = self.placed_hexahedra(insert).ok()?;
+                Some(Placed {
+                    body: Body::Insert,
+                    file: &insert.file,
+                    placing,
+                    mesh: file.mesh_of_boundary(),
+                })
+            }
+            _ => None,
+        }
     }
 }
 

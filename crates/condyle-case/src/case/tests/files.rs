@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use condyle::machine::knee;
+use condyle::machine::{Interpolation, knee};
 
 use super::assert_shows;
 use crate::case::{Case, PressureLawChoice};
@@ -235,6 +235,20 @@ fn files_of_other_cycles_columns_and_ranges_are_refused() {
         &error.to_string(),
         &["outside its range", "the low pass, leaves the range"],
     );
+}
+
+#[test]
+fn many_points_in_the_case_are_samples() {
+    let interpolation = |count: u32| {
+        let point = |n| format!("[{}, {}]", f64::from(n) / f64::from(count) * 100.0, n % 2);
+        let points: Vec<String> = (0..count).map(point).collect();
+        let text = format!("[machine.flexion]\nknots_deg = [{}]\n", points.join(", "));
+        let case = Case::parse(&text, "case.toml", Path::new("")).unwrap();
+        let flexion = case.machine.waveforms.get(&knee::FLEXION_MOTION).unwrap();
+        flexion.interpolation()
+    };
+    assert_eq!(interpolation(20), Interpolation::HalfCosine);
+    assert_eq!(interpolation(22), Interpolation::Spline);
 }
 
 #[test]

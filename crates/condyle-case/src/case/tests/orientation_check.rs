@@ -470,6 +470,36 @@ fn bodies_of_different_sizes_are_reported() {
     assert!(said.contains("unlike those of one implant"), "{said}");
 }
 
+#[test]
+fn oblique_hexahedra_are_reported_as_an_oblique_mesh_is() {
+    let meshing = Meshing {
+        edge_mm: 2.5,
+        layers: 1,
+    };
+    let insert = GenericInsertShape::default().insert(meshing).unwrap();
+    let (sine, cosine) = 15f64.to_radians().sin_cos();
+    let turn = Mat3::new(cosine, 0.0, sine, 0.0, 1.0, 0.0, -sine, 0.0, cosine);
+    let mut text = "*NODE\n".to_owned();
+    for (number, node) in (1..).zip(&insert.mesh().nodes) {
+        let [x, y, z] = <[f64; 3]>::from(turn * node);
+        text += &format!("{number}, {x}, {y}, {z}\n");
+    }
+    text += "*ELEMENT, TYPE=C3D8\n";
+    for (number, hex) in (1..).zip(insert.mesh().hexes.iter()) {
+        let nodes = hex.map(|node| (node + 1).to_string()).join(", ");
+        text += &format!("{number}, {nodes}\n");
+    }
+    let folder = tempfile::tempdir().unwrap();
+    std::fs::write(folder.path().join("insert.inp"), text).unwrap();
+    let text = "[insert]\nshape = \"hexahedra\"\nfile = \"insert.inp\"\n";
+    let case = Case::parse(text, "case.toml", folder.path()).unwrap();
+    let said = case.misfit_remarks().join("\n");
+    assert!(
+        said.contains("this insert lies 15 degrees off its axes"),
+        "{said}"
+    );
+}
+
 /// A part of a tenth of a millimetre that differs from vertex to vertex, as the noise of a scan.
 fn scanned(mesh: &TriangleMesh, noise_mm: f64) -> TriangleMesh {
     mesh.clone().mapped(|v| {

@@ -33,18 +33,11 @@ impl ShareBlock {
             .collect()
     }
 
-    /// Returns the same with each share shrunk to its node: the centre lies there, the spread is 0, and the area is the
-    /// tributary one.
+    /// Returns the same with each share shrunk to its node: the centre lies there, and the spread is 0.
     pub fn from_nodes(insert: &Insert, surface: &ArticulatingSurface) -> Vec<Self> {
-        // An unused lane has no area.
-        let tributary_mm2 = |block: &Self, lane: usize| match block.area_mm2.lane(lane) {
-            0.0 => 0.0,
-            _ => surface.shares[block.nodes[lane] as usize].tributary_mm2,
-        };
         let at_nodes = |block: Self| Self {
             centre: vector_from_lanes(|lane| &surface.positions[block.nodes[lane] as usize]),
             spread_mm2: F64x4::splat(0.0),
-            area_mm2: F64x4::from_lanes(|lane| tributary_mm2(&block, lane)),
             ..block
         };
         Self::from_shares(insert, surface)

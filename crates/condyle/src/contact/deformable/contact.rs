@@ -253,7 +253,7 @@ impl ContactModel for DeformableContact<'_> {
         let pressures = NodePressures::new(self.bodies, &touched);
         for node in &mut touched {
             let share = &self.bodies.surface.shares[node.node as usize];
-            node.covered_mm2 = pressures.part(node.node) * share.tributary_mm2;
+            node.covered_mm2 = pressures.part(node.node) * share.area_mm2;
         }
         ContactResult {
             peak_pressure_mpa: pressures.highest_mpa(&touched),

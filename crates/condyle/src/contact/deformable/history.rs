@@ -153,7 +153,7 @@ impl SurfaceLoads<'_> {
         let shares = &self.bodies.surface.shares;
         let pressures = self.loads.iter();
         pressures
-            .map(|&(node, load_n)| load_n / shares[node as usize].tributary_mm2)
+            .map(|&(node, load_n)| load_n / shares[node as usize].area_mm2)
             .fold(0.0, f64::max)
     }
 

@@ -41,7 +41,10 @@ use super::{
     law::{Bodies, ContactLaw, ContactSettings, KnownCompliance, UnderSurface},
     model::{ContactMemory, ContactModel, ContactState},
 };
-use crate::{Vec3, geometry::Insert};
+use crate::{
+    Vec3,
+    geometry::{ArticulatingSurface, Insert},
+};
 use backside::{Floor, RestingInsert};
 use contact::DeformableContact;
 use elastic_surface::ElasticSurface;
@@ -323,6 +326,10 @@ impl ContactLaw for Deformable {
         let compliance = Arc::clone(&surface.normal);
         let contact = DeformableContact::new(memory, bodies, settings, compliance, histories);
         Box::new(contact)
+    }
+
+    fn surface(&self, insert: &Insert) -> ArticulatingSurface {
+        insert.surface().with_tributary_areas()
     }
 
     /// Returns the stiffness of a node of an elastic half-space: what deflects along with a node alone is no deeper
