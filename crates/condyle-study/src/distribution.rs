@@ -32,7 +32,7 @@ pub(crate) fn level_at_share(input: &Input, share: f64) -> Level {
             let place = (share * count as f64) as usize;
             keys.levels.0[place.min(count - 1)].clone()
         }
-        other => input.level(quantile(other, share)),
+        _ => input.level(value_at_share(input, share)),
     }
 }
 
@@ -40,7 +40,18 @@ pub(crate) fn level_at_share(input: &Input, share: f64) -> Level {
 pub(crate) fn number_at_share(input: &Input, share: f64) -> f64 {
     match &input.variation {
         Variation::Levels(_) => level_at_share(input, share).number().unwrap_or(f64::NAN),
-        other if input.is_whole => quantile(other, share).round(),
+        _ if input.is_whole => value_at_share(input, share).round(),
+        _ => value_at_share(input, share),
+    }
+}
+
+fn value_at_share(input: &Input, share: f64) -> f64 {
+    match &input.variation {
+        // So that the whole numbers at the ends have the share of the others after rounding.
+        Variation::Uniform(keys) if input.is_whole => {
+            let value = keys.low - 0.5 + share * (keys.high - keys.low + 1.0);
+            value.clamp(keys.low, keys.high)
+        }
         other => quantile(other, share),
     }
 }
@@ -184,6 +195,22 @@ mod tests {
             };
             assert!((found - exact).abs() < 1e-4, "{found}");
         }
+    }
+
+    #[test]
+    fn verify_whole_numbers_have_equal_shares() {
+        let keys = UniformKeys {
+            low: 1.0,
+            high: 4.0,
+        };
+        let mut input = Input::new("march.updates", Variation::Uniform(keys));
+        input.is_whole = true;
+        let mut counts = [0; 4];
+        for n in 0..1000 {
+            let value = number_at_share(&input, (f64::from(n) + 0.5) / 1000.0);
+            counts[value as usize - 1] += 1;
+        }
+        assert_eq!(counts, [250; 4]);
     }
 
     #[test]

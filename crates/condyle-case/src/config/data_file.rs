@@ -293,8 +293,9 @@ fn without_comment(text: &str, span: Range<usize>) -> Range<usize> {
 }
 
 fn unit_in_brackets(text: &str) -> Option<&'static str> {
-    let unit = text.strip_suffix([')', ']'])?;
-    unit_of(&format!("_{}", unit.trim().to_lowercase()))
+    let unit = text.strip_suffix([')', ']'])?.to_lowercase();
+    // A newton metre is also written N m, N.m, N*m or with a raised dot.
+    unit_of(&format!("_{}", unit.replace([' ', '.', '*', '-', '·'], "")))
 }
 
 /// Reports a row with more cells than the header has names: of a decimal comma, a comma for thousands, or another table.

@@ -121,6 +121,18 @@ fn csv_in_another_unit_is_refused_at_its_header() {
 }
 
 #[test]
+fn units_in_brackets_have_many_spellings() {
+    for unit in ["Nm", "N m", "N\u{b7}m", "N*m"] {
+        let folder = tempfile::tempdir().unwrap();
+        let csv = format!("percent,torque [{unit}]\n{}", samples(|_| 0.0));
+        std::fs::write(folder.path().join("wave.csv"), csv).unwrap();
+        let text = "[machine.ie_torque]\nfile = \"wave.csv\"\n";
+        let read = Case::parse(text, "case.toml", folder.path());
+        assert!(read.is_ok(), "{unit}: {}", read.unwrap_err());
+    }
+}
+
+#[test]
 fn csv_without_header_percent_or_second_column_is_refused() {
     let shown = refused("0,1\n100,1\n", "");
     assert_shows(
