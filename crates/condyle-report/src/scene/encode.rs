@@ -72,26 +72,21 @@ impl Scene {
         }
     }
 
-    /// Adds the fields that every update has, and returns their names, labels and units.
+    /// Adds the fields of the last update, and returns their names, labels and units.
     fn add_fields(&self, arrays: &mut Arrays) -> Vec<Value> {
         let fields = self.updates.last().map(|last| last.fields.as_slice());
-        let names = fields.unwrap_or_default().iter();
-        let names = names.map(|(name, _)| name.as_str());
         let mut kept = Vec::new();
-        for name in names.filter(|name| *name != ARTICULATING) {
+        for (name, last) in fields.unwrap_or_default() {
+            if name == ARTICULATING {
+                continue;
+            }
+            // The unworn insert has no stress yet.
             let of_update = |update: &SceneUpdate| {
                 let mut fields = update.fields.iter();
                 let found = fields.find(|(known, _)| known == name);
-                found.map(|(_, values)| values.clone())
+                found.map_or_else(|| vec![0.0; last.len()], |(_, values)| values.clone())
             };
-            let Some(found) = self
-                .updates
-                .iter()
-                .map(of_update)
-                .collect::<Option<Vec<_>>>()
-            else {
-                continue;
-            };
+            let found: Vec<_> = self.updates.iter().map(of_update).collect();
             // One range for all updates: the colours keep their meaning from one to the next.
             let of_all = range(found.iter().flatten().copied());
             for (update, values) in found.into_iter().enumerate() {

@@ -191,7 +191,7 @@ pub(crate) struct Elementary {
     pub walks: usize,
 }
 
-/// Returns the elementary effects of a Morris design; empty for other designs.
+/// Returns the elementary effects of a Morris design, of inputs that have any; empty for other designs.
 pub(crate) fn elementary_effects(data: &Data<'_>) -> Vec<Elementary> {
     let study = data.plan.study();
     let Design::Morris(keys) = &study.design else {
@@ -207,6 +207,8 @@ pub(crate) fn elementary_effects(data: &Data<'_>) -> Vec<Elementary> {
     for (output, values) in &data.outputs {
         let effects = of_walks(inputs, &walk, &part, values);
         let pairs = study.inputs.iter().zip(effects);
+        // Without a step between two solved tests nothing is known of an input, not even that it has no effect.
+        let pairs = pairs.filter(|(_, effects)| !effects.is_empty());
         all.extend(pairs.map(|(input, effects)| Elementary::new(output.key, &input.key, &effects)));
     }
     all
@@ -376,6 +378,21 @@ mod tests {
         let beyond =
             |effect: &&Effect| effect.span_by_chance.is_some_and(|most| effect.span > most);
         effects.iter().filter(beyond).count()
+    }
+
+    #[test]
+    fn inputs_whose_every_step_failed_have_no_elementary_effects() {
+        let plan = plan("[design]\nkind = \"morris\"\nwalks = 4\nlevels = 4\nseed = 1");
+        // All tests after the step of the first input fail.
+        let inputs = KEYS.len();
+        let is_solved = |row: u64| {
+            let walk = Walk::new(row / (inputs as u64 + 1), inputs, 4, 1);
+            let steps = row as usize % (inputs + 1);
+            (0..steps).all(|step| walk.step(step).0 != 0)
+        };
+        let of = |row, _: &[f64]| if is_solved(row) { row as f64 } else { f64::NAN };
+        let found = elementary_effects(&data(&plan, &|_| vec![0.0; inputs], &of));
+        assert!(!found.is_empty() && found.iter().all(|one| one.input != KEYS[0].0));
     }
 
     #[test]

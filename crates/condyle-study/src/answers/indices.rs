@@ -52,7 +52,7 @@ fn in_words(index: f64, [low, _]: [f64; 2], most: f64) -> String {
     format!("{index}{noise}")
 }
 
-/// Returns the indices of a Saltelli design; empty for other designs.
+/// Returns the indices of a Saltelli design; empty for other designs, and of outputs with fewer than two bases.
 pub(crate) fn indices(data: &Data<'_>) -> Vec<Indices> {
     let study = data.plan.study();
     if !matches!(study.design, Design::Saltelli(_)) {
@@ -71,6 +71,10 @@ pub(crate) fn indices(data: &Data<'_>) -> Vec<Indices> {
 
 fn of_output(output: &'static str, inputs: &[&str], values: &[f64]) -> Vec<Indices> {
     let bases = Bases::new(inputs.len(), values);
+    // A single base has no scatter, and none has no index.
+    if bases.0.len() < 2 {
+        return Vec::new();
+    }
     let all: Vec<usize> = (0..bases.0.len()).collect();
     let resamples: Vec<Vec<usize>> = (0..RESAMPLES)
         .map(|number| bases.resample(number))
@@ -190,6 +194,22 @@ mod tests {
                 "{found:?} {total}"
             );
         }
+    }
+
+    #[test]
+    fn outputs_without_two_bases_have_no_indices() {
+        let solved = |bases: u64| {
+            let of = |row: u64| {
+                if row < bases * 4 {
+                    row as f64
+                } else {
+                    f64::NAN
+                }
+            };
+            let values: Vec<f64> = (0..16).map(of).collect();
+            of_output("y", &["a", "b"], &values).len()
+        };
+        assert_eq!([0, 1, 2].map(solved), [0, 0, 2]);
     }
 
     #[test]
