@@ -46,12 +46,23 @@ pub fn run(arguments: &Run) -> Done {
 }
 
 fn resuming_command(arguments: &Run, out: &Path) -> String {
-    let (case, out) = (arguments.case.display(), out.display());
-    let changes = arguments.changes.set.iter().map(|change| {
-        let quoted = change.to_string().replace('\'', r"'\''");
-        format!(" --set '{quoted}'")
-    });
-    let changes: String = changes.collect();
+    let quoted = |text: String| format!("'{}'", text.replace('\'', r"'\''"));
+    let path = |path: &Path| {
+        let text = path.display().to_string();
+        let is_plain = |one: char| one.is_alphanumeric() || "/._-".contains(one);
+        if text.chars().all(is_plain) {
+            text
+        } else {
+            quoted(text)
+        }
+    };
+    let changes = arguments.changes.set.iter();
+    let changes = changes.map(|change| format!(" --set {}", quoted(change.to_string())));
+    let (case, out, changes) = (
+        path(&arguments.case),
+        path(out),
+        changes.collect::<String>(),
+    );
     format!("condyle run {case} --out {out} --resume{changes}")
 }
 

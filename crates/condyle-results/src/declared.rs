@@ -17,7 +17,8 @@ pub fn results_schema() -> String {
     let mut required = Vec::new();
     for scalar in catalogue::scalars() {
         properties.insert(scalar.key.to_owned(), schema_of(scalar));
-        required.extend(scalar.is_always_there().then_some(scalar.key));
+        let is_required = scalar.is_always_there() && scalar.joints.is_empty();
+        required.extend(is_required.then_some(scalar.key));
     }
     for part in PARTS {
         let mut schema = match part.kind {
@@ -111,6 +112,7 @@ mod tests {
         assert!(
             required.contains(&json!("plausibility"))
                 && !required.contains(&json!("max_penetration_mm"))
+                && !required.contains(&json!("ap_range_mm"))
         );
     }
 }

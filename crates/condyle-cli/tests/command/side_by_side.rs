@@ -62,6 +62,28 @@ fn two_runs_differ_by_what_their_summaries_say_ranked_beside_their_errors() {
 }
 
 #[test]
+fn other_cycles_and_other_meshes_of_equal_cases_are_noted() {
+    let bench = Bench::with_case(SMALL);
+    bench.run_into("out");
+    bench.run_into("other");
+    let replace = |file: &str, from: &str, to: &str| {
+        let text = fs::read_to_string(bench.path(file)).unwrap();
+        assert!(text.contains(from), "{file}: {from}");
+        bench.write(file, &text.replace(from, to));
+    };
+    let hash = bench.summary("other").inputs_blake3;
+    replace("other/summary.json", &hash, &"0".repeat(64));
+    replace("other/wear.csv", "\n5000000,", "\n4000000,");
+    let notes = json(&bench.say(&["diff", "out", "other", "--json"]))["notes"].to_string();
+    for words in [
+        "compared after 5000000 and 4000000 cycles",
+        "the meshes that they name were not",
+    ] {
+        assert!(notes.contains(words), "{words}: {notes}");
+    }
+}
+
+#[test]
 fn a_difference_of_discretisation_says_so_and_equal_runs_differ_in_nothing() {
     let bench = two_runs("time.increments=52");
     let told = json(&bench.say(&["diff", "out", "other", "--json"]));

@@ -228,7 +228,7 @@ impl Frame {
         let (name, at_left, at_right) = match self.view {
             View::Front => ("From the front".to_owned(), right, left),
             View::Right => {
-                let name = format!("From the right, {}", right.to_lowercase());
+                let name = format!("From the {} side", right.to_lowercase());
                 (name, back, front)
             }
             View::Above => {

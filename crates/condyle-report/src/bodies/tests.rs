@@ -66,7 +66,7 @@ fn sides_axes_and_scale_are_named() {
     let words = [
         "A knee &lt;made&gt; of sheets",
         "From the front",
-        "From the right, lateral",
+        "From the lateral side",
         "From above, anterior up",
         "flexion axis",
         "VV axis",
@@ -79,7 +79,7 @@ fn sides_axes_and_scale_are_named() {
         assert!(svg.contains(word), "{word}");
     }
     assert_eq!(svg.matches("data:image/png;base64,").count(), 3);
-    assert!(drawn(&femur, &insert, Side::Left).contains("From the right, medial"));
+    assert!(drawn(&femur, &insert, Side::Left).contains("From the medial side"));
 }
 
 #[test]

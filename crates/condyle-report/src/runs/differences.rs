@@ -218,6 +218,22 @@ fn notes(first: &Run, second: &Run) -> Vec<String> {
             "Maps of {one} and {two} cannot be subtracted: {why}."
         ));
     }
+    let last_cycle = |run: &Run| run.results.wear.as_ref()?.column("cycles")?.last().copied();
+    if let (Some(one), Some(two)) = (last_cycle(first), last_cycle(second))
+        && one != two
+    {
+        notes.push(format!(
+            "Last cycles and maps are compared after {one} and {two} cycles."
+        ));
+    }
+    let hash = |run: &Run| Some(run.results.summary.as_ref()?.inputs_blake3.clone());
+    let are_equal = |one: Option<String>, two: Option<String>| one.zip(two).map(|(a, b)| a == b);
+    let [one, two] = [first, second].map(|run| run.results.case.clone());
+    if are_equal(one, two) == Some(true) && are_equal(hash(first), hash(second)) == Some(false) {
+        let meshes =
+            "The cases are equal, but the meshes that they name were not: the files have changed.";
+        notes.push(meshes.to_owned());
+    }
     let [one, two] = [first, second].map(|run| run.results.directions());
     if one.joint == two.joint && one.side != two.side {
         let sides = "One is a right joint and the other a left one: medial is on opposite sides.";
@@ -320,8 +336,8 @@ pub struct CurveDifference {
     pub title: String,
     /// Its unit.
     pub unit: &'static str,
-    /// The cycle: "first" or "last".
-    pub cycle: &'static str,
+    /// The cycle, "first" or "last", after the name of the activity where a run has several.
+    pub cycle: String,
     /// Root mean square of second minus first, at the instants of the first.
     pub rms: f64,
     /// The difference with the largest absolute value.
@@ -336,30 +352,42 @@ type Points = Vec<(f64, f64)>;
 
 /// Motions and loads of the first and last cycle that both runs have and that differ, ranked by difference over range.
 fn curves(first: &Results, second: &Results) -> Vec<CurveDifference> {
-    let (Some(one), Some(two)) = (&first.kinematics, &second.kinematics) else {
-        return Vec::new();
-    };
-    let cycles = ["first", "last"].into_iter();
-    let mut curves: Vec<_> = cycles
-        .flat_map(|cycle| one.names().iter().map(move |name| (cycle, name)))
-        .filter_map(|(cycle, name)| {
+    let mut curves = Vec::new();
+    for (activity, one) in tables(first) {
+        let Some((_, two)) = tables(second).into_iter().find(|(own, _)| *own == activity) else {
+            continue;
+        };
+        let cycles = ["first", "last"].into_iter();
+        let channels = cycles.flat_map(|cycle| one.names().iter().map(move |name| (cycle, name)));
+        curves.extend(channels.filter_map(|(cycle, name)| {
             let channel = Channel::find(name, first.motions())?;
-            curve(one, two, cycle, channel)
-        })
-        .collect();
+            curve([one, two], cycle, activity, channel)
+        }));
+    }
     let rank = |curve: &CurveDifference| curve.rms_percent_of_range.unwrap_or(0.0);
     curves.sort_by(|one, two| rank(two).total_cmp(&rank(one)));
     curves
 }
 
+/// Returns the motions and loads of each activity with its name, which is empty where there is one activity.
+fn tables(results: &Results) -> Vec<(&str, &Table)> {
+    let only = results.kinematics.iter().map(|table| ("", table));
+    if results.activities.is_empty() {
+        return only.collect();
+    }
+    let all = results.activities.iter();
+    all.filter_map(|(activity, table)| Some((activity.name.as_str(), table.as_ref()?)))
+        .collect()
+}
+
 fn curve(
-    one: &Table,
-    two: &Table,
-    cycle: &'static str,
+    tables: [&Table; 2],
+    cycle: &str,
+    activity: &str,
     channel: Channel,
 ) -> Option<CurveDifference> {
-    let name = &channel.column;
-    let [here, there] = [points(one, cycle, name)?, points(two, cycle, name)?];
+    let [here, there] = tables.map(|table| points(table, cycle, &channel.column));
+    let (here, there) = (here?, there?);
     let apart = |&(percent, value): &(f64, f64)| Some((percent, at(&there, percent)? - value));
     let apart: Points = here.iter().filter_map(apart).collect();
     let largest = apart
@@ -372,7 +400,7 @@ fn curve(
         column: channel.column.into_owned(),
         title: channel.title.into_owned(),
         unit: channel.unit,
-        cycle,
+        cycle: format!("{activity} {cycle}").trim_start().to_owned(),
         rms,
         largest: largest.1,
         largest_at_percent: largest.0,
@@ -396,15 +424,16 @@ fn points(table: &Table, cycle: &str, name: &str) -> Option<Points> {
     (!points.is_empty()).then_some(points)
 }
 
-/// Returns the value of a curve at an instant, by linear interpolation; none before its first or after its last
-/// point.
+/// Returns the value of a curve at an instant, by linear interpolation; none after its last point.
 fn at(points: &Points, percent: f64) -> Option<f64> {
     let after = points.partition_point(|point| point.0 < percent);
     let &(x, y) = points.get(after)?;
     if x == percent {
         return Some(y);
     }
-    let &(x0, y0) = points.get(after.checked_sub(1)?)?;
+    // Cycles repeat: before the first instant lies the last one of the cycle before.
+    let before = after.checked_sub(1).map(|before| points[before]);
+    let (x0, y0) = before.or_else(|| points.last().map(|&(x, y)| (x - 100.0, y)))?;
     Some(y0 + (percent - x0) / (x - x0) * (y - y0))
 }
 
@@ -513,6 +542,29 @@ mod tests {
             kinematics: Some(Table::parse(&text, Path::new("k.csv")).expect("is a table")),
             ..Results::default()
         }
+    }
+
+    #[test]
+    fn curves_of_every_activity_are_compared() {
+        let of = |walks: &str, climbs: &str| {
+            let activity = |name: &str, rows: &str| {
+                let summary = serde_json::json!({
+                    "name": name, "share_of_cycles": 0.5, "kinematics_file": "k.csv", "mass_loss_mg": 1.0,
+                    "volume_loss_mm3": 1.0, "volume_loss_alone_mm3": 1.0, "peak_pressure_mpa": 1.0,
+                    "peak_contact_area_mm2": 1.0, "peak_axial_force_n": 1.0
+                });
+                let summary = serde_json::from_value(summary).unwrap();
+                (summary, results(rows).kinematics)
+            };
+            Results {
+                activities: vec![activity("walking", walks), activity("stairs", climbs)],
+                ..results(walks)
+            }
+        };
+        let same = "0,50,1\n0,100,3\n";
+        let found = curves(&of(same, same), &of(same, "0,50,1\n0,100,4\n"));
+        let cycles: Vec<&str> = found.iter().map(|curve| curve.cycle.as_str()).collect();
+        assert_eq!(cycles, ["stairs first", "stairs last"]);
     }
 
     #[test]

@@ -179,7 +179,7 @@ fn curve_cells(one: &CurveDifference) -> Row {
     let percent = one.rms_percent_of_range;
     vec![
         Some(one.title.clone()),
-        Some(one.cycle.to_owned()),
+        Some(one.cycle.clone()),
         Some(one.unit.to_owned()),
         Some(significant(one.rms, 3)),
         percent.map(|percent| significant(percent, 3)),

@@ -112,24 +112,22 @@ pub struct ActivityWear {
     /// Volume that its cycles would have worn as the only activity, mm3, with the principal direction of its
     /// own paths. It differs from the part above where the law depends on cross-shear.
     pub alone_mm3: f64,
-    /// Highest pressure in any of its cycles, anywhere on the surface, MPa.
+    /// Highest pressure in any of its cycles, the final one included, anywhere on the surface, MPa.
     pub peak_pressure_mpa: f64,
-    /// Largest contact area in any of its cycles, mm2.
+    /// Largest contact area in any of its cycles, the final one included, mm2.
     pub peak_contact_area_mm2: f64,
 }
 
 /// Returns the wear of each of several activities in a step; nothing for a single one, which causes all wear.
 pub(super) fn wear_of_each(law: &dyn WearLaw, interval: &SolvedStep<'_>) -> Vec<ActivityWear> {
-    let solved = interval.cycles;
-    if solved.len() < 2 {
+    if interval.shared.len() < 2 {
         return Vec::new();
     }
-    let each = interval.shared.iter().zip(solved);
-    each.map(|(activity, solved)| ActivityWear {
+    let each = interval.shared.iter();
+    each.map(|activity| ActivityWear {
         volume_mm3: part_mm3(interval, *activity),
         alone_mm3: alone_mm3(law, interval, *activity),
-        peak_pressure_mpa: solved.max(|row| row.peak_pressure_mpa),
-        peak_contact_area_mm2: solved.max(|row| row.contact_area_mm2),
+        ..ActivityWear::default()
     })
     .collect()
 }
@@ -167,8 +165,7 @@ impl ActivityWear {
         Self {
             volume_mm3: self.volume_mm3 + more.volume_mm3,
             alone_mm3: self.alone_mm3 + more.alone_mm3,
-            peak_pressure_mpa: self.peak_pressure_mpa.max(more.peak_pressure_mpa),
-            peak_contact_area_mm2: self.peak_contact_area_mm2.max(more.peak_contact_area_mm2),
+            ..self
         }
     }
 }

@@ -293,7 +293,6 @@ impl March {
         self.state.under_surface = under_surface;
         let solved_step = SolvedStep {
             surface: &solved.surface,
-            cycles: &solved.cycles,
             shared: &shared,
             mean: &mean,
             worn: &worn,

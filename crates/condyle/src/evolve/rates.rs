@@ -5,7 +5,6 @@ use serde::{Deserialize, Serialize};
 use crate::{
     contact::ContactLaw,
     geometry::{ArticulatingSurface, Insert},
-    machine::Cycle,
     wear::{MeanCycle, NodeWear, SharedCycle, WearLaw},
 };
 
@@ -201,7 +200,6 @@ impl WearStep {
 pub(super) struct SolvedStep<'a> {
     /// The surface that the cycles loaded.
     pub surface: &'a ArticulatingSurface,
-    pub cycles: &'a [Cycle],
     /// One cycle of every activity.
     pub shared: &'a [SharedCycle<'a>],
     /// Their mean at every node.

@@ -69,7 +69,7 @@ pub struct ActivityState {
     pub warm_starts: Vec<Option<WarmStart>>,
     /// The first cycle and the last one solved.
     pub first_and_last: Option<(CycleRecord, CycleRecord)>,
-    /// Its wear; zero for a single activity, which causes all wear.
+    /// Its wear; without volumes for a single activity, which causes all wear.
     pub wear: ActivityWear,
 }
 
@@ -86,6 +86,11 @@ impl ActivityState {
     /// Keeps a cycle as the last one, and the first of all as the first.
     pub(super) fn keep(&mut self, cycles: f64, cycle: &Cycle) {
         self.machine = cycle.end;
+        let wear = &mut self.wear;
+        let pressure_mpa = cycle.max(|row| row.peak_pressure_mpa);
+        wear.peak_pressure_mpa = wear.peak_pressure_mpa.max(pressure_mpa);
+        let area_mm2 = cycle.max(|row| row.contact_area_mm2);
+        wear.peak_contact_area_mm2 = wear.peak_contact_area_mm2.max(area_mm2);
         self.warm_starts.clone_from(&cycle.warm_starts);
         let rows = cycle.rows.clone();
         let last = CycleRecord { cycles, rows };
