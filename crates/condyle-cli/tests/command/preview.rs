@@ -46,7 +46,7 @@ fn check_draws_both_bodies() {
     let said = bench.say(&["check", "case.toml", "--picture", "bodies.svg"]);
     assert_eq!(said.code, Some(0), "{}", said.err);
     let svg = fs::read_to_string(bench.path("bodies.svg")).unwrap();
-    assert!(svg.contains("A &lt; B") && svg.contains("From the right, medial"));
+    assert!(svg.contains("A &lt; B") && svg.contains("From the medial side"));
     assert!(svg.len() < 1_000_000, "{}", svg.len());
     let nowhere = bench.say(&["check", "case.toml", "--picture", "no/bodies.svg"]);
     assert_eq!(nowhere.code, Some(2));
