@@ -177,8 +177,14 @@ fn add_surface(surface: &SurfaceComparison, lines: &mut Lines) {
     add_place("deepest predicted", &surface.deepest_predicted, lines);
     add_place("deepest scanned", &surface.deepest_scanned, lines);
     lines.line(format!(
-        "volume over the area scanned: {:.2} mm3 scanned, {:.2} mm3 predicted",
-        surface.scanned_volume_mm3, surface.predicted_volume_mm3
+        "volume over the area scanned: {:.2} +/- {:.2} mm3 scanned, {:.2} mm3 predicted",
+        surface.scanned_volume_mm3,
+        surface.scanned_volume_standard_error_mm3,
+        surface.predicted_volume_mm3
+    ));
+    lines.line(format!(
+        "  +/-: standard error of the position times the area; {} of {} points left out, off those around them",
+        surface.outliers, surface.scan_points
     ));
     lines.notes(&surface.notes);
     lines.line("");

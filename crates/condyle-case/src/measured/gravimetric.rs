@@ -35,6 +35,8 @@ const SOAK: &str = "soak";
 /// Smallest plausible mass of a specimen, mg: a smaller one is in g, or its comma separates thousands. Our choice: a small pin weighs
 /// 100 mg.
 const MIN_MASS_MG: f64 = 50.0;
+/// Largest plausible mass of a specimen, mg: a larger one is in micrograms.
+const MAX_MASS_MG: f64 = 1e6;
 /// Smallest plausible number of cycles at the last weighing; our choice.
 const MIN_CYCLES: f64 = 10_000.0;
 /// A line with an interval needs one weighing more than it has parameters.
@@ -171,11 +173,11 @@ fn specimen(columns: &Columns<'_>, index: usize) -> Result<Specimen, Vec<Placed>
         return Err(vec![(columns.name_span(index), fault)]);
     };
     let cells = columns.numbers(index)?;
-    let limits = within(MIN_MASS_MG, f64::INFINITY);
+    let limits = within(MIN_MASS_MG, MAX_MASS_MG);
     let specimen = Specimen {
         name: name.to_owned(),
         masses_mg: cells.iter().map(|cell| cell.value).collect(),
     };
-    let problems = outside(column, &cells, limits, "a mass of 50 mg or more");
+    let problems = outside(column, &cells, limits, "a mass of 50 mg to 1 kg");
     unless(problems, specimen)
 }

@@ -1,6 +1,6 @@
 //! A scan of a worn insert: a surface, or points as CSV.
 
-use condyle::Vec3;
+use condyle::{Vec3, geometry::TriangleMesh};
 
 use super::columns::too_few;
 use crate::case::{Axes, LengthUnit, Side, check_axes};
@@ -108,7 +108,23 @@ fn surface(
     });
     let mesh = mesh.ok()?;
     let vertices = mesh.vertices.iter().map(|vertex| vertex * in_mm);
-    Some((vertices.collect(), Some(mesh.vertex_normals())))
+    let outward = if is_inside_out(&mesh) { -1.0 } else { 1.0 };
+    let normals = mesh.vertex_normals().into_iter();
+    let normals = normals.map(|normal| outward * normal).collect();
+    Some((vertices.collect(), Some(normals)))
+}
+
+/// Returns whether the triangles of a closed body face inwards.
+fn is_inside_out(mesh: &TriangleMesh) -> bool {
+    /// Largest sum of the directed areas, relative to that of the areas, of a body that is closed but for holes.
+    const NEARLY_CLOSED: f64 = 0.1;
+    let directed = |triangle: usize| {
+        let [a, b, c] = mesh.corners(triangle);
+        (b - a).cross(&(c - a))
+    };
+    let all = || (0..mesh.triangles.len()).map(directed);
+    let area: f64 = all().map(|one| one.norm()).sum();
+    all().sum::<Vec3>().norm() < NEARLY_CLOSED * area && mesh.signed_volume() < 0.0
 }
 
 fn rows(text: &str, file: &str) -> Result<Vec<Vec3>, Vec<Placed>> {
@@ -152,5 +168,26 @@ fn check_region(keys: &ScanKeys, section: &Section<'_>, log: &mut Log<'_>) {
             "add one, such as `fit_x_mm = [-20, 20]`",
         );
         log.problem(section.value_span("fit"), fault);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_body_whose_triangles_face_inwards_is_inside_out_and_a_sheet_is_not() {
+        let (o, x, y, z) = (Vec3::zeros(), Vec3::x(), Vec3::y(), Vec3::z());
+        let mut body = TriangleMesh {
+            vertices: vec![o, x, y, z],
+            triangles: vec![[0, 1, 2], [0, 2, 3], [0, 3, 1], [1, 3, 2]],
+        };
+        assert!(is_inside_out(&body));
+        body.triangles
+            .iter_mut()
+            .for_each(|corners| corners.swap(0, 1));
+        assert!(!is_inside_out(&body));
+        body.triangles.truncate(1);
+        assert!(!is_inside_out(&body));
     }
 }

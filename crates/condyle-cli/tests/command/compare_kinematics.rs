@@ -304,3 +304,28 @@ fn what_a_results_folder_lacks_is_said() {
     let said = bench.say(&["compare", "out", "nowhere.toml"]);
     said.assert_refused(2, &["nowhere.toml", "cannot be read"]);
 }
+
+#[test]
+fn motions_of_another_unit_or_sign_are_remarked_on() {
+    let bench = measured_bench();
+    let run = bench.table("out", "kinematics.csv");
+    let remarks = |factor: f64| {
+        let mut text = String::from("percent,flexion_deg\n");
+        for (percent, value) in run["percent"].iter().zip(&run["flexion_deg"]).take(50) {
+            writeln!(text, "{percent},{}", factor * value).unwrap();
+        }
+        bench.write("motion.csv", &text);
+        compared(&bench, "[kinematics]\nfile = \"motion.csv\"\n")["remarks"].to_string()
+    };
+    let (unit, sign) = (
+        "check that the measured values have the unit",
+        "check its sign",
+    );
+    assert!(!remarks(1.2).contains(unit) && !remarks(1.2).contains(sign));
+    assert!(
+        remarks(0.017_453_3).contains(unit),
+        "{}",
+        remarks(0.017_453_3)
+    );
+    assert!(remarks(-1.0).contains(sign) && !remarks(-1.0).contains(unit));
+}

@@ -286,7 +286,89 @@ fn a_part_of_the_insert_is_compared_where_it_was_scanned() {
     );
     assert!(number(json, ["everywhere", "rms_mm"]) < ALIKE_MM);
     let svg = read(&bench.path("out/compare/compare_surface.svg"));
+    let first = json["notes"].to_string();
+    let lateral = points.iter().filter(|point| point[2] > -2.0).copied();
+    bench.write("scan.csv", &csv(lateral));
+    let json = &compared(&bench, "[surface]\nfile = \"scan.csv\"\n")["surface"];
+    // The deepest place is in one of the two scans only.
+    let said = [first, json["notes"].to_string()];
+    let outside = said.map(|notes| notes.contains("lies on the rim or outside the scan"));
+    assert_ne!(outside[0], outside[1]);
     assert!(svg.contains("Scanned") && !svg.contains("NaN") && !svg.contains("inf"));
+}
+
+#[test]
+fn a_scan_of_another_insert_or_scale_is_doubtful() {
+    let bench = measured_bench();
+    let points = nodes(&worn(&bench), 0.0, 0.0);
+    let scaled = |by: f64, up: f64| {
+        let larger = move |[x, y, z]: &Point| [by * x, by * y + up, by * z];
+        csv(points.iter().map(larger))
+    };
+    let notes = |keys: &str| {
+        let table = format!("[surface]\nfile = \"scan.csv\"\n{keys}");
+        let json = compared(&bench, &table);
+        json["surface"]["notes"].to_string()
+    };
+    let doubt = "doubtful: where no wear is predicted";
+    bench.write("scan.csv", &scaled(1.02, 0.0));
+    assert!(notes("").contains(doubt), "{}", notes(""));
+    bench.write("scan.csv", &scaled(1.0, 0.0));
+    assert!(!notes("").contains(doubt), "{}", notes(""));
+    bench.write("scan.csv", &scaled(1.0, 0.2));
+    let negative = "the scanned volume is negative";
+    assert!(!notes("").contains(negative));
+    assert!(notes("fit = \"nothing\"\n").contains(negative));
+}
+
+#[test]
+fn a_scan_of_another_unit_or_inside_out_is_refused_with_this_reason() {
+    let bench = measured_bench();
+    let surface = worn(&bench);
+    let points = nodes(&surface, 0.0, 0.0);
+    let in_m: Vec<Point> = points.iter().map(|p| p.map(|one| one / 1000.0)).collect();
+    bench.write("scan.stl", &as_stl(&surface, &in_m));
+    let table = "[surface]\nfile = \"scan.stl\"\n";
+    assert_refused(
+        &bench,
+        table,
+        &["the scan is 0.0", "mm large", "check length_unit"],
+    );
+    let mut reversed = surface.clone();
+    reversed.quads.iter_mut().for_each(|quad| quad.reverse());
+    bench.write("scan.stl", &as_stl(&reversed, &points));
+    assert_refused(
+        &bench,
+        table,
+        &["only 0 of", "reverse the triangles of the scan"],
+    );
+}
+
+#[test]
+fn spikes_of_a_scan_are_left_out_and_counted() {
+    let bench = measured_bench();
+    let mut points = nodes(&worn(&bench), 0.0, 0.0);
+    points
+        .iter_mut()
+        .skip(7)
+        .step_by(50)
+        .for_each(|point| point[1] -= 1.0);
+    bench.write("scan.csv", &csv(points.iter().copied()));
+    let table = "[surface]\nfile = \"scan.csv\"\n";
+    let json = &compared(&bench, table)["surface"];
+    let [scanned, predicted] =
+        ["scanned_volume_mm3", "predicted_volume_mm3"].map(|key| json[key].as_f64().unwrap());
+    assert!(
+        (scanned / predicted - 1.0).abs() < 0.05,
+        "{scanned} {predicted}"
+    );
+    assert!(json["outliers"].as_u64().unwrap() > 0);
+    let said = bench.say(&["compare", "out", "measured.toml"]);
+    assert!(
+        said.out.contains("points left out") && said.out.contains("+/-"),
+        "{}",
+        said.out
+    );
 }
 
 #[test]

@@ -260,3 +260,19 @@ fn a_bad_table_of_weighings_is_refused_with_its_place() {
     std::fs::remove_file(bench.path("out/wear.csv")).unwrap();
     refuses("", &["wear.csv: there is no such file", "[gravimetric]"]);
 }
+
+#[test]
+fn rates_of_another_unit_are_remarked_on() {
+    let bench = measured_bench();
+    let remarks = |rates: &[f64]| {
+        bench.write("masses.csv", &masses(rates));
+        compared(&bench, TABLE)["remarks"].to_string()
+    };
+    let predicted = predicted_rate(&bench);
+    let words = "check that the masses are in mg";
+    assert!(remarks(&[100.0 * predicted]).contains(words));
+    assert!(remarks(&[predicted / 100.0]).contains(words));
+    assert!(!remarks(&[5.0 * predicted]).contains(words));
+    bench.write("masses.csv", &masses(&[12.0]).replace(",21", ",21000"));
+    assert_refused(&bench, TABLE, &["a mass of 50 mg to 1 kg"]);
+}

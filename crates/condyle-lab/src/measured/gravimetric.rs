@@ -74,6 +74,15 @@ pub struct Rate {
     pub r_squared: Option<f64>,
 }
 
+/// Factor by which a measured and a predicted number differ only if their units do. Our choice: tests of one implant differ by less,
+/// and units by a thousand, or 57 for degrees and radians.
+pub(crate) const OTHER_UNIT: f64 = 30.0;
+
+/// Returns whether two positive numbers may have the same unit.
+pub(crate) fn is_alike(one: f64, other: f64) -> bool {
+    (1.0 / OTHER_UNIT..OTHER_UNIT).contains(&(one / other))
+}
+
 /// Compares weighed specimens with the run's `wear.csv`.
 pub(crate) fn compare(
     measured: &Gravimetric,
@@ -132,7 +141,7 @@ pub(crate) fn compare(
 }
 
 impl GravimetricComparison {
-    /// Returns remarks on weighings that the run does not reach, and on specimens that gain mass.
+    /// Returns remarks on weighings that the run does not reach, on specimens that gain mass, and on rates of another unit.
     pub(crate) fn remarks(&self) -> impl Iterator<Item = String> {
         let missed = self.weighings.iter();
         let missed = missed.filter(|weighing| weighing.predicted_loss_mg.is_none());
@@ -150,7 +159,16 @@ impl GravimetricComparison {
                 "{name} gains mass: if it is a soak control, list its column in `soak_controls`"
             )
         });
-        missed.into_iter().chain(gaining)
+        let [measured, predicted] =
+            [&self.all, &self.predicted].map(|rate| rate.mg_per_million_cycles);
+        let is_other = measured > 0.0 && predicted > 0.0 && !is_alike(measured, predicted);
+        let other = is_other.then(|| {
+            format!(
+                "the measured rate, {measured:.3} mg/Mc, and the predicted, {predicted:.3} mg/Mc, differ by more than a factor of \
+                 {OTHER_UNIT}: check that the masses are in mg, and that the cycles are whole cycles, not thousands"
+            )
+        });
+        missed.into_iter().chain(gaining).chain(other)
     }
 
     /// Returns the measured rate that calibration fits, with its interval.

@@ -4,7 +4,10 @@ use condyle_case::measured::{AlignWord, CycleWord, Kinematics, MeasuredCurve, Sa
 use condyle_report::Table;
 use serde::Serialize;
 
-use crate::measured::{CompareError, gravimetric::mean};
+use crate::measured::{
+    CompareError,
+    gravimetric::{OTHER_UNIT, is_alike, mean},
+};
 
 /// A predicted and a measured cycle. Errors are predicted minus measured, in the unit of their column.
 #[derive(Clone, Debug, Serialize)]
@@ -67,6 +70,50 @@ pub struct PhaseErrors {
     pub end_percent: f64,
     /// The errors; none if the phase has no measurements.
     pub errors: Option<Errors>,
+}
+
+/// Correlation of measured and predicted values below which the sign is likely to be reversed. Our choice.
+const REVERSED: f64 = -0.8;
+/// Smallest range of a motion or load that is not round-off.
+const MIN_RANGE: f64 = 1e-6;
+
+impl KinematicsComparison {
+    /// Returns remarks on columns that seem to have another unit or sign.
+    pub(crate) fn remarks(&self) -> impl Iterator<Item = String> {
+        self.columns.iter().flat_map(ColumnComparison::remarks)
+    }
+}
+
+impl ColumnComparison {
+    fn remarks(&self) -> Vec<String> {
+        let name = &self.column;
+        let (measured, predicted) = (self.measured_range, self.predicted_range);
+        let mut remarks = Vec::new();
+        if measured.min(predicted) > MIN_RANGE && !is_alike(measured, predicted) {
+            remarks.push(format!(
+                "the measured `{name}` has a range of {measured:.3}, and the predicted of {predicted:.3}, which differ by more than a factor of \
+                 {OTHER_UNIT}: check that the measured values have the unit of the column's name"
+            ));
+        }
+        let correlation = self.correlation();
+        if correlation < REVERSED {
+            remarks.push(format!(
+                "the measured `{name}` goes down where the predicted goes up (correlation {correlation:.2}): check its sign, and the side of \
+                 the joint"
+            ));
+        }
+        remarks
+    }
+
+    fn correlation(&self) -> f64 {
+        let middle = |i: usize| mean(&self.points.iter().map(|point| point[i]).collect::<Vec<_>>());
+        let (predicted, measured) = (middle(1), middle(2));
+        let sum = |of: fn(f64, f64) -> f64| -> f64 {
+            let product = |point: &[f64; 3]| of(point[1] - predicted, point[2] - measured);
+            self.points.iter().map(product).sum()
+        };
+        sum(|p, m| p * m) / (sum(|p, _| p * p) * sum(|_, m| m * m)).sqrt()
+    }
 }
 
 /// Compares every measured column with the run's table, at the run's own instants.

@@ -72,13 +72,14 @@ pub fn compare(results: &Path, measured: &Path) -> Result<Comparison, CompareErr
         .scan
         .as_ref()
         .map(|scan| surface::compare(scan, results));
-    let gravimetric = gravimetric.transpose()?;
+    let (kinematics, gravimetric) = (kinematics.transpose()?, gravimetric.transpose()?);
     let doubts = run.summary.iter().flat_map(|summary| &summary.plausibility);
     let doubts = doubts.map(|doubt| format!("the run is doubtful: {}", doubt.message));
-    let remarks = gravimetric.iter().flat_map(GravimetricComparison::remarks);
+    let weighed = gravimetric.iter().flat_map(GravimetricComparison::remarks);
+    let moved = kinematics.iter().flat_map(KinematicsComparison::remarks);
     Ok(Comparison {
-        kinematics: kinematics.transpose()?,
-        remarks: doubts.chain(remarks).collect(),
+        remarks: doubts.chain(weighed).chain(moved).collect(),
+        kinematics,
         gravimetric,
         surface: surface.transpose()?,
         directions: run.directions(),

@@ -2,9 +2,9 @@
 
 pub(crate) mod register;
 
-use std::path::Path;
+use std::{collections::HashSet, path::Path};
 
-use condyle::{Mat3, Vec3};
+use condyle::{Mat3, Vec3, geometry::bounds};
 use condyle_case::measured::{FitWord, Scan};
 use condyle_mesh::formats::read_vtu_points;
 use condyle_report::SurfaceFields;
@@ -14,7 +14,9 @@ use serde::Serialize;
 
 use crate::measured::{
     CompareError,
-    surface::register::{MIN_COSINE, Sheet, register, triangulated},
+    surface::register::{
+        MIN_COSINE, SCALE_OF_MEDIAN, Sheet, TUKEY, median, register, triangulated,
+    },
 };
 
 pub use crate::measured::surface::register::Registration;
@@ -30,7 +32,8 @@ pub(crate) fn compare(scan: &Scan, folder: &Path) -> Result<SurfaceComparison, C
     let depth = unload(&unworn, &mut worn);
     let (unworn_mesh, worn_mesh) = (triangulated(&unworn), triangulated(&worn));
     let (unworn_sheet, worn_sheet) = (Sheet::new(&unworn_mesh), Sheet::new(&worn_mesh));
-    let registration = register(scan, &worn_sheet, &depth)?;
+    let registration = register(scan, &worn_sheet, &depth, edge_mm(&unworn))
+        .map_err(|error| with_sizes(error, &scan.points, &unworn.nodes))?;
     let registered: Vec<Vec3> = scan.points.iter().map(|p| registration.moved(p)).collect();
     let normals = scan.normals.as_ref();
     let normals: Option<Vec<Vec3>> = normals.map(|all| {
@@ -127,6 +130,13 @@ const SCAR_SHARE: f64 = 0.05;
 const MAX_STANDARD_ERROR_MM: f64 = 0.02;
 /// A scan that covers a smaller share of the surface is noted.
 const MIN_COVERED: f64 = 0.9;
+/// A scan that lies farther off unworn places than this share of the deepest predicted wear is noted. Our choice: scars are on average
+/// about a third as deep as at their deepest, so that a misfit of this size changes their volume by a third.
+const MAX_MISFIT: f64 = 0.1;
+/// A scan that is deeper than the prediction by this factor may contain points of walls.
+const MUCH_DEEPER: f64 = 2.0;
+/// Sizes of a scan, relative to the insert, that are likely with the right unit; inches and centimetres differ by 2.54.
+const LIKELY_SIZES: std::ops::Range<f64> = 0.4..2.0;
 
 /// Scanned and predicted depths, both measured from the unworn surface along its normal. Differences are scanned minus
 /// predicted.
@@ -136,6 +146,8 @@ pub struct SurfaceComparison {
     pub registration: Registration,
     /// Points of the scan.
     pub scan_points: usize,
+    /// Points left out of the depths, since they lie off those around them.
+    pub outliers: usize,
     /// Part of the articulating surface that the scan covers, by area, 0 to 1.
     pub covered_area_share: f64,
     /// Nodes compared.
@@ -154,6 +166,8 @@ pub struct SurfaceComparison {
     pub predicted_volume_mm3: f64,
     /// Scanned volume over the same area.
     pub scanned_volume_mm3: f64,
+    /// Standard error of the position of the scan, that of its least determined motion, times this area.
+    pub scanned_volume_standard_error_mm3: f64,
     /// Remarks on the interpretation.
     pub notes: Vec<String>,
     /// The unworn surface with the three fields `predicted_mm`, `scanned_mm`, `difference_mm`, NaN
@@ -229,10 +243,13 @@ pub(crate) fn summarised(
     };
     let everywhere = errors(compared, &nodes);
     let covered_area_share = everywhere.area_mm2 / area;
-    Ok(SurfaceComparison {
-        notes: notes(&registration, covered_area_share),
+    let mut found = SurfaceComparison {
+        scanned_volume_standard_error_mm3: registration.weakest_standard_error_mm
+            * everywhere.area_mm2,
+        notes: Vec::new(),
         registration,
         scan_points: scan.points.len(),
+        outliers: compared.outliers,
         covered_area_share,
         nodes: nodes.len(),
         everywhere,
@@ -243,24 +260,81 @@ pub(crate) fn summarised(
         predicted_volume_mm3: volume(&compared.predicted_mm),
         scanned_volume_mm3: volume(&compared.scanned_mm),
         fields: fields(unworn, compared),
-    })
+    };
+    found.notes = notes(&found, compared, scan, &nodes);
+    Ok(found)
 }
 
-fn notes(registration: &Registration, covered_area_share: f64) -> Vec<String> {
+/// Returns remarks on the numbers of a comparison.
+fn notes(
+    found: &SurfaceComparison,
+    compared: &Compared,
+    scan: &Scan,
+    nodes: &[usize],
+) -> Vec<String> {
     let mut notes = Vec::new();
-    let standard_error_mm = registration.weakest_standard_error_mm;
+    let standard_error_mm = found.registration.weakest_standard_error_mm;
     if standard_error_mm > MAX_STANDARD_ERROR_MM {
         notes.push(format!(
             "the fitted surface leaves one motion of the scan uncertain by {standard_error_mm:.3} mm (standard error)"
         ));
     }
-    if covered_area_share < MIN_COVERED {
-        let percent = 100.0 * covered_area_share;
+    if found.covered_area_share < MIN_COVERED {
+        let percent = 100.0 * found.covered_area_share;
         notes.push(format!(
             "the scan covers {percent:.0} % of the articulating surface"
         ));
     }
+    let deepest_mm = found.deepest_predicted.predicted_mm;
+    let is_unworn = |node: &&usize| compared.predicted_mm[**node] <= scan.keys.unworn_depth_mm;
+    let unworn: Vec<usize> = nodes.iter().filter(is_unworn).copied().collect();
+    let off_mm = errors(compared, &unworn).rms_mm;
+    if off_mm > MAX_MISFIT * deepest_mm {
+        notes.push(format!(
+            "doubtful: where no wear is predicted, the scan lies {off_mm:.3} mm (rms) off the unworn insert, and the deepest predicted \
+             wear is {deepest_mm:.3} mm; check that the scan is of this insert, of this side and scale, and that it wore only where \
+             predicted"
+        ));
+    }
+    if found.scanned_volume_mm3 < -found.scanned_volume_standard_error_mm3 {
+        notes.push(
+            "the scanned volume is negative: on average, the scan lies above the unworn insert; check that it is of this insert and scale"
+                .to_owned(),
+        );
+    }
+    let scanned_mm = found.deepest_scanned.scanned_mm;
+    if scan.normals.is_none() && scanned_mm > MUCH_DEEPER * deepest_mm {
+        notes.push(format!(
+            "the deepest scanned place, {scanned_mm:.3} mm, is more than twice as deep as the deepest predicted: points without normals on \
+             walls, recesses and the backside count as wear if they are within farthest_mm; lower it, or give a surface file"
+        ));
+    }
+    // The largest ignores depths that are not numbers.
+    let anywhere_mm = compared.predicted_mm.iter().copied().fold(0.0, f64::max);
+    if anywhere_mm > deepest_mm {
+        notes.push(format!(
+            "the deepest predicted wear, {anywhere_mm:.3} mm, lies on the rim or outside the scan, where nothing is compared"
+        ));
+    }
     notes
+}
+
+/// Adds to an error of the registration that the scan has another size than the insert, as one in another unit has.
+fn with_sizes(error: CompareError, scan: &[Vec3], insert: &[Vec3]) -> CompareError {
+    let size_mm = |points: &[Vec3]| {
+        let (low, high) = bounds(points);
+        (high - low).norm()
+    };
+    let [scan_mm, insert_mm] = [scan, insert].map(size_mm);
+    match error {
+        CompareError::NotComparable(text) if !LIKELY_SIZES.contains(&(scan_mm / insert_mm)) => {
+            CompareError::NotComparable(format!(
+                "the scan is {scan_mm:.3} mm large, and the insert {insert_mm:.0} mm: check length_unit in [surface], or the unit of the \
+                 columns of a CSV file; {text}"
+            ))
+        }
+        other => other,
+    }
 }
 
 fn place(unworn: &SurfaceFields, compared: &Compared, node: usize) -> NodeDepths {
@@ -316,16 +390,30 @@ const SPACINGS: f64 = 1.5;
 const MAX_FOR_SPACING: usize = 2000;
 /// Smallest determinant of a plane's normal equations, relative to their weight, that determines its slope.
 const MIN_DETERMINANT: f64 = 1e-3;
+/// Largest variance of a plane's depth at the node over that of the mean of its points: a larger one extrapolates.
+const MAX_LEVERAGE: f64 = 5.0;
+/// Factors of the radius, tried in this order until the points determine a plane: points of scan lines are near each other in one
+/// direction only.
+const WIDER: [f64; 6] = [1.0, 1.25, 1.6, 2.0, 2.6, 3.4];
+/// Smallest scale of the residuals of a plane, in radii: points within 9 % of the radius count even where the others fit the plane
+/// exactly, as at the rim of a scar.
+const MIN_PLANE_SCALE: f64 = 0.02;
+/// Largest scale of these residuals, mm: points that are farther apart are those of a wall, which has no depth here.
+const MAX_PLANE_SCALE_MM: f64 = 0.3;
+/// Times that outliers are found anew from the plane of the others.
+const ROUNDS: usize = 6;
 
 /// Depths at the nodes of the unworn surface; NaN where the scan does not reach.
 pub(crate) struct Compared {
     pub predicted_mm: Vec<f64>,
     pub scanned_mm: Vec<f64>,
     pub areas_mm2: Vec<f64>,
+    /// Points that lie off the others around them.
+    pub outliers: usize,
 }
 
-/// A place of the unworn surface with the scanned depth.
-type Sounding = GeomWithData<[f64; 3], f64>;
+/// A place of the unworn surface with the number and the depth of a scanned point.
+type Sounding = GeomWithData<[f64; 3], (usize, f64)>;
 
 /// Both depths at every node: that of the worn node below the unworn surface, and that of the scanned points around it,
 /// so that both are measured alike.
@@ -341,17 +429,23 @@ pub(crate) fn compared(
     let radius = edge_mm(unworn).max(SPACINGS * spacing_mm(&soundings));
     let tree = RTree::bulk_load(soundings);
     let depth_of = |point: &Vec3| sheet.foot(point).map_or(f64::NAN, |foot| -foot.height_mm);
-    let scanned = |node: usize| {
+    let mut outliers = HashSet::new();
+    let mut scanned = |node: usize| {
         // At the border half of the points around a node are missing, which would tilt its plane.
         if sheet.is_border(node) {
             return f64::NAN;
         }
-        sounded(&tree, &unworn.nodes[node], radius).unwrap_or(f64::NAN)
+        let Some(plane) = Plane::near(&tree, &unworn.nodes[node], radius) else {
+            return f64::NAN;
+        };
+        outliers.extend(plane.outliers);
+        plane.depth_mm
     };
     Compared {
         predicted_mm: worn_nodes.iter().map(depth_of).collect(),
-        scanned_mm: (0..unworn.nodes.len()).map(scanned).collect(),
+        scanned_mm: (0..unworn.nodes.len()).map(&mut scanned).collect(),
         areas_mm2: areas(unworn),
+        outliers: outliers.len(),
     }
 }
 
@@ -365,7 +459,7 @@ fn soundings(
         let foot = sheet.foot(point)?;
         let faces = normals.is_none_or(|all| all[index].dot(&foot.normal) > MIN_COSINE);
         let counts = faces && !foot.on_border && foot.height_mm.abs() <= farthest_mm;
-        counts.then(|| Sounding::new(foot.point.into(), -foot.height_mm))
+        counts.then(|| Sounding::new(foot.point.into(), (index, -foot.height_mm)))
     };
     points.iter().enumerate().filter_map(sounding).collect()
 }
@@ -397,29 +491,85 @@ fn spacing_mm(soundings: &[Sounding]) -> f64 {
     distances.get(distances.len() / 2).copied().unwrap_or(0.0)
 }
 
-/// Returns the depth at a node by the plane of weighted least squares through the soundings around it, or by their
-/// weighted mean where they do not determine its slope; none without soundings.
-fn sounded(tree: &RTree<Sounding>, node: &Vec3, radius: f64) -> Option<f64> {
-    let place = [node.x, node.y, node.z];
-    let mut matrix = Mat3::zeros();
-    let mut right_side = Vec3::zeros();
-    for sounding in tree.locate_within_distance(place, radius * radius) {
+/// A plane of weighted least squares through the soundings around a node, without those that lie off it.
+struct Plane {
+    depth_mm: f64,
+    /// Numbers of the points left out.
+    outliers: Vec<usize>,
+}
+
+/// A sounding in the neighbourhood of a node.
+struct Near {
+    number: usize,
+    /// 1, and the distance from the node along x and z, in radii.
+    row: Vec3,
+    weight: f64,
+    depth_mm: f64,
+}
+
+impl Near {
+    fn new(sounding: &Sounding, node: &Vec3, radius: f64) -> Self {
         let away = (Vec3::from(*sounding.geom()) - node) / radius;
         // Wendland's function: 1 at the node, smoothly 0 at the radius.
         let part = away.norm();
-        let weight = (1.0 - part).max(0.0).powi(4) * (4.0 * part + 1.0);
-        // Steep surfaces are rare on an insert, so x and z approximate directions along it.
-        let row = Vec3::new(1.0, away.x, away.z);
-        matrix += row * row.transpose() * weight;
-        right_side += row * (weight * sounding.data);
+        let (number, depth_mm) = sounding.data;
+        Self {
+            number,
+            // Steep surfaces are rare on an insert, so x and z approximate directions along it.
+            row: Vec3::new(1.0, away.x, away.z),
+            weight: (1.0 - part).max(0.0).powi(4) * (4.0 * part + 1.0),
+            depth_mm,
+        }
+    }
+}
+
+impl Plane {
+    /// Fits the plane within the smallest radius that determines it, from `radius` on.
+    fn near(tree: &RTree<Sounding>, node: &Vec3, radius: f64) -> Option<Self> {
+        let around = |factor: &f64| Self::around(tree, node, factor * radius);
+        WIDER.iter().find_map(around)
+    }
+
+    /// Fits the plane; none where the soundings do not determine it at the node.
+    fn around(tree: &RTree<Sounding>, node: &Vec3, radius: f64) -> Option<Self> {
+        let near = tree.locate_within_distance([node.x, node.y, node.z], radius * radius);
+        let near: Vec<Near> = near.map(|one| Near::new(one, node, radius)).collect();
+        // The median withstands outliers that would tilt a first plane of least squares.
+        let level = median(near.iter().map(|one| (one.depth_mm, one.weight)));
+        let mut plane = Vec3::new(level, 0.0, 0.0);
+        let mut kept = Vec::new();
+        for _ in 0..ROUNDS {
+            let off = |one: &Near| (one.depth_mm - plane.dot(&one.row)).abs();
+            let scale = SCALE_OF_MEDIAN * median(near.iter().map(|one| (off(one), one.weight)));
+            if scale > MAX_PLANE_SCALE_MM {
+                return None;
+            }
+            let limit = TUKEY * scale.max(MIN_PLANE_SCALE * radius);
+            kept = near.iter().map(|one| off(one) < limit).collect();
+            let counting = near.iter().zip(&kept).filter(|(_, is_kept)| **is_kept);
+            plane = fitted(counting.map(|(one, _)| one))?;
+        }
+        let is_wall = radius < MIN_COSINE * Vec3::new(radius, plane.y, plane.z).norm();
+        let left_out = near.iter().zip(&kept).filter(|(_, is_kept)| !**is_kept);
+        (!is_wall).then(|| Self {
+            depth_mm: plane.x,
+            outliers: left_out.map(|(one, _)| one.number).collect(),
+        })
+    }
+}
+
+/// Returns the plane of weighted least squares; none if the soundings do not determine it at the node.
+fn fitted<'a>(near: impl Iterator<Item = &'a Near>) -> Option<Vec3> {
+    let (mut matrix, mut right_side) = (Mat3::zeros(), Vec3::zeros());
+    for one in near {
+        matrix += one.row * one.row.transpose() * one.weight;
+        right_side += one.row * (one.weight * one.depth_mm);
     }
     let weight = matrix[(0, 0)];
-    if weight <= 0.0 {
-        return None;
-    }
     let is_fixed = matrix.determinant() > MIN_DETERMINANT * weight.powi(3);
-    let plane = matrix.cholesky().filter(|_| is_fixed);
-    Some(plane.map_or(right_side.x / weight, |plane| plane.solve(&right_side).x))
+    let matrix = matrix.cholesky().filter(|_| is_fixed)?;
+    let leverage = weight * matrix.solve(&Vec3::x()).x;
+    (leverage < MAX_LEVERAGE).then(|| matrix.solve(&right_side))
 }
 
 /// Returns a quarter of each face for each of its nodes.
@@ -438,6 +588,60 @@ fn areas(surface: &SurfaceFields) -> Vec<f64> {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    /// Returns a tree of points (x, z, depth) over the plane y = 0.
+    fn over_a_plane(points: impl Iterator<Item = [f64; 3]>) -> RTree<Sounding> {
+        let sounding = |(number, [x, z, depth]): (usize, [f64; 3])| {
+            Sounding::new([x, 0.0, z], (number, depth))
+        };
+        RTree::bulk_load(points.enumerate().map(sounding).collect())
+    }
+
+    /// Returns places of a grid of 0.3 mm.
+    fn grid() -> impl Iterator<Item = [f64; 2]> {
+        (0..81).map(|i| [0.3 * f64::from(i % 9) - 1.2, 0.3 * f64::from(i / 9) - 1.2])
+    }
+
+    #[test]
+    fn verify_dust_and_spikes_are_left_out_of_the_depth() {
+        for spike in [-1.5, -0.5, 0.5, 1.5] {
+            let depth = |(number, [x, z]): (usize, [f64; 2])| {
+                let off = if number % 20 == 0 { spike } else { 0.0 };
+                [x, z, 0.2 + 0.05 * x + off]
+            };
+            let tree = over_a_plane(grid().enumerate().map(depth));
+            let plane = Plane::near(&tree, &Vec3::zeros(), 1.0).unwrap();
+            assert!((plane.depth_mm - 0.2).abs() < 1e-9, "{}", plane.depth_mm);
+            assert!(!plane.outliers.is_empty() && plane.outliers.iter().all(|n| n % 20 == 0));
+        }
+    }
+
+    #[test]
+    fn a_wall_has_no_depth() {
+        let deeper_and_deeper =
+            |(number, [x, z]): (usize, [f64; 2])| [0.01 * x, z, 0.02 * number as f64];
+        let tree = over_a_plane(grid().enumerate().map(deeper_and_deeper));
+        assert!(Plane::near(&tree, &Vec3::zeros(), 1.0).is_none());
+        let steep = over_a_plane(grid().map(|[x, z]| [0.1 * x, z, x]));
+        assert!(Plane::near(&steep, &Vec3::zeros(), 1.0).is_none());
+    }
+
+    #[test]
+    fn verify_scan_lines_farther_apart_than_the_mesh_give_the_depth_of_the_node() {
+        let lines = (0..400).map(|i| {
+            [
+                0.1 * f64::from(i % 100) - 5.0,
+                2.0 * f64::from(i / 100) - 3.0,
+            ]
+        });
+        let tree = over_a_plane(lines.map(|[x, z]| [x, z, 0.2 + 0.1 * z]));
+        for z in [0.0, 0.4, 0.8, -0.9] {
+            let plane = Plane::near(&tree, &Vec3::new(0.05, 0.0, z), 1.0).unwrap();
+            assert!((plane.depth_mm - 0.2 - 0.1 * z).abs() < 1e-9, "{z}");
+        }
+        // Beyond the last line nothing is known.
+        assert!(Plane::near(&tree, &Vec3::new(0.0, 0.0, 6.0), 1.0).is_none());
+    }
 
     #[test]
     fn verify_an_unloaded_insert_has_its_wear_the_creep_left_and_the_permanent_set() {

@@ -1,5 +1,7 @@
 //! Registration of a scan on the predicted surface: iterated closest points, point to plane.
 
+use std::collections::HashMap;
+
 use condyle::{
     Mat3, Vec3,
     geometry::{CurvedMesh, TriangleMesh},
@@ -14,7 +16,7 @@ use serde::Serialize;
 use crate::measured::CompareError;
 
 /// Points of the scan that are registered; more cost time and gain nothing.
-const MAX_POINTS: usize = 8000;
+const MAX_POINTS: usize = 20_000;
 /// Distance within which points find the surface at the start, mm.
 const REACH_MM: f64 = 15.0;
 /// Factor by which that distance shrinks in each step, down to `farthest_mm`, to exclude points that do not belong to
@@ -28,9 +30,12 @@ const NEARLY_REST_MM: f64 = 1e-3;
 /// Cosine of the largest angle between the normals of scan and surface, 60 degrees.
 pub(crate) const MIN_COSINE: f64 = 0.5;
 /// Residuals beyond this many scales have no weight; 95 % efficient for normal noise.
-const TUKEY: f64 = 4.685;
+pub(crate) const TUKEY: f64 = 4.685;
 /// Standard deviation of normal noise over the median of its absolute values.
-const SCALE_OF_MEDIAN: f64 = 1.4826;
+pub(crate) const SCALE_OF_MEDIAN: f64 = 1.4826;
+/// Smallest scale of residuals, relative to the shrinking reach: flat places fit exactly wherever they slide, and would soon be the
+/// only ones with weight in a scan without noise.
+const SCALE_OF_REACH: f64 = 0.05;
 /// Smallest scale of residuals, mm: round-off of a scan without noise.
 const MIN_SCALE_MM: f64 = 1e-7;
 const SCAN_SLIDES: &str = "the fitted surface does not determine the position of the scan, which can slide or rotate along \
@@ -73,30 +78,31 @@ impl Registration {
     }
 }
 
-/// Registers a scan on `target`, whose nodes are worn by `depth`.
+/// Registers a scan on `target`, whose nodes are worn by `depth` and whose edges are about `edge_mm` long.
 pub(crate) fn register(
     scan: &Scan,
     target: &Sheet<'_>,
     depth: &[f64],
+    edge_mm: f64,
 ) -> Result<Registration, CompareError> {
-    let places = Places::of(scan);
+    let places = Places::of(scan, edge_mm);
     let mut motion = Isometry3::identity();
     let is_fitted = scan.keys.fit != FitWord::Nothing;
-    let mut reach = if is_fitted {
-        REACH_MM.max(scan.keys.farthest_mm)
-    } else {
-        scan.keys.farthest_mm
-    };
+    let mut shrinking_mm = if is_fitted { REACH_MM } else { 0.0 };
     let mut step_mm = f64::INFINITY;
     for steps in 1..=MAX_STEPS {
-        let pairs = places.pairs(&motion, target, reach, |foot| fits(&scan.keys, foot, depth));
-        let fit = Fit::of(&pairs).ok_or_else(|| {
-            let (near, points) = (pairs.len(), places.points.len());
-            CompareError::NotComparable(format!(
-                "only {near} of {points} points of the scan are near the fitted part of the insert; check \
-                 length_unit, axes, start_mm and the fit region in [surface]; an insert that is worn everywhere has no unworn \
-                 place to fit: write fit = \"nothing\" or \"all\""
-            ))
+        // A wide reach finds the surface from afar; the narrow one at the end excludes other parts of the scan.
+        let reach = shrinking_mm.max(scan.keys.farthest_mm);
+        let is_used = |foot: &Foot| fits(&scan.keys, foot, depth);
+        let pairs = places.pairs(&motion, target, reach, is_used);
+        let fit = Fit::of(&pairs, SCALE_OF_REACH * shrinking_mm).ok_or_else(|| {
+            let facing_anywhere = Places {
+                normals: None,
+                ..places.clone()
+            };
+            let near_any = facing_anywhere.pairs(&motion, target, reach, is_used);
+            let counts = [&pairs, &near_any].map(Vec::len);
+            CompareError::NotComparable(too_few_near(counts, places.points.len()))
         })?;
         if !is_fitted {
             let placed = fit.registration(motion, 0);
@@ -109,17 +115,32 @@ pub(crate) fn register(
         let step = fit.step().ok_or_else(slides)?;
         motion = step * motion;
         step_mm = fit.length_of(&step);
-        let is_last = reach <= scan.keys.farthest_mm && step_mm < REST_MM;
+        let is_settled = reach <= scan.keys.farthest_mm && !fit.is_widened;
+        let is_last = is_settled && step_mm < REST_MM;
         if is_last || (steps == MAX_STEPS && step_mm < NEARLY_REST_MM) {
             return Ok(fit.registration(motion, steps));
         }
-        // A wide reach finds the surface from afar; the narrow one at the end excludes other parts of the scan.
-        reach = (reach * REACH_SHRINKS).max(scan.keys.farthest_mm);
+        shrinking_mm *= REACH_SHRINKS;
     }
     Err(CompareError::NotComparable(format!(
         "the registration of the scan does not converge within {MAX_STEPS} steps: the last moved it by {step_mm:.4} mm; start \
          it nearer with axes and start_mm in [surface]"
     )))
+}
+
+/// Describes a scan of which too few points are near the fitted part.
+fn too_few_near([near, near_any]: [usize; 2], points: usize) -> String {
+    if near_any > points / 2 {
+        return format!(
+            "only {near} of {points} points of the scan face like the fitted part of the insert, and {near_any} are near it: reverse the \
+             triangles of the scan, or check axes in [surface]"
+        );
+    }
+    format!(
+        "only {near} of {points} points of the scan are near the fitted part of the insert; check \
+         length_unit, axes, start_mm and the fit region in [surface]; an insert that is worn everywhere has no unworn \
+         place to fit: write fit = \"nothing\" or \"all\""
+    )
 }
 
 /// Returns whether a place of the prediction is used for the registration.
@@ -136,10 +157,12 @@ fn fits(keys: &ScanKeys, foot: &Foot, depth: &[f64]) -> bool {
     }
 }
 
-/// The registered points of a scan with their normals.
+/// The registered points of a scan with their normals and weights.
+#[derive(Clone)]
 struct Places {
     points: Vec<Vec3>,
     normals: Option<Vec<Vec3>>,
+    weights: Vec<f64>,
 }
 
 /// A point of the scan, and its distance from the surface.
@@ -147,15 +170,34 @@ struct Pair {
     point: Vec3,
     normal: Vec3,
     height_mm: f64,
+    weight: f64,
 }
 
 impl Places {
-    fn of(scan: &Scan) -> Self {
-        let every = scan.points.len().div_ceil(MAX_POINTS).max(1);
-        let some = |all: &Vec<Vec3>| all.iter().step_by(every).copied().collect();
+    /// Takes points of equal weight per area: each cube with edges of `edge_mm` that has points counts once. The vertices of an
+    /// STL file cluster where the surface is curved most, and the mesh of the run is least accurate there.
+    fn of(scan: &Scan, edge_mm: f64) -> Self {
+        let mut counts: HashMap<[i64; 3], usize> = HashMap::new();
+        let cube = |point: &Vec3| <[f64; 3]>::from(point / edge_mm).map(|part| part.floor() as i64);
+        let mut rank = |point: &Vec3| {
+            let count = counts.entry(cube(point)).or_default();
+            *count += 1;
+            *count
+        };
+        let ranks: Vec<usize> = scan.points.iter().map(&mut rank).collect();
+        let mut sorted = ranks.clone();
+        sorted.sort_unstable();
+        let most = sorted.get(MAX_POINTS).map_or(usize::MAX, |rank| rank - 1);
+        let most = most.max(1);
+        let chosen = (0..ranks.len()).filter(|&index| ranks[index] <= most);
+        let every = chosen.clone().count().div_ceil(MAX_POINTS).max(1);
+        let chosen: Vec<usize> = chosen.step_by(every).collect();
+        let some = |all: &Vec<Vec3>| chosen.iter().map(|&index| all[index]).collect();
+        let weight = |&index: &usize| 1.0 / counts[&cube(&scan.points[index])].min(most) as f64;
         Self {
             points: some(&scan.points),
             normals: scan.normals.as_ref().map(some),
+            weights: chosen.iter().map(weight).collect(),
         }
     }
 
@@ -179,6 +221,7 @@ impl Places {
                 point,
                 normal: foot.normal,
                 height_mm: foot.height_mm,
+                weight: self.weights[index],
             })
         };
         self.points.iter().enumerate().filter_map(pair).collect()
@@ -194,22 +237,28 @@ struct Fit {
     right_side: Vector6<f64>,
     points: usize,
     residual_rms_mm: f64,
+    /// Variance of the mean over that of a mean of as many points as the weights add to.
+    inflation: f64,
+    /// True if the scale is larger than that of the residuals.
+    is_widened: bool,
 }
 
 impl Fit {
     /// Fits the motion; none for fewer pairs than a rigid motion requires.
-    fn of(pairs: &[Pair]) -> Option<Self> {
+    fn of(pairs: &[Pair], least_scale_mm: f64) -> Option<Self> {
         const MIN_PAIRS: usize = 12;
         if pairs.len() < MIN_PAIRS {
             return None;
         }
-        let count = pairs.len() as f64;
-        let middle = pairs.iter().map(|pair| pair.point).sum::<Vec3>() / count;
+        let whole: f64 = pairs.iter().map(|pair| pair.weight).sum();
+        let places = pairs.iter().map(|pair| pair.point * pair.weight);
+        let middle = places.sum::<Vec3>() / whole;
         let squares = pairs
             .iter()
-            .map(|pair| (pair.point - middle).norm_squared());
-        let gyration_mm = (squares.sum::<f64>() / count).sqrt();
-        let scale = scale(pairs);
+            .map(|pair| pair.weight * (pair.point - middle).norm_squared());
+        let gyration_mm = (squares.sum::<f64>() / whole).sqrt();
+        let own_scale = scale(pairs);
+        let scale = own_scale.max(least_scale_mm);
         let mut fit = Self {
             middle,
             gyration_mm,
@@ -217,10 +266,12 @@ impl Fit {
             right_side: Vector6::zeros(),
             points: 0,
             residual_rms_mm: 0.0,
+            inflation: 0.0,
+            is_widened: own_scale < least_scale_mm,
         };
         let mut weights = 0.0;
         for pair in pairs {
-            let weight = tukey(pair.height_mm / scale);
+            let weight = pair.weight * tukey(pair.height_mm / scale);
             let turn = (pair.point - middle).cross(&pair.normal) / gyration_mm;
             let shift = pair.normal;
             let row = Vector6::new(turn.x, turn.y, turn.z, shift.x, shift.y, shift.z);
@@ -228,9 +279,11 @@ impl Fit {
             fit.right_side -= row * (weight * pair.height_mm);
             fit.residual_rms_mm += weight * pair.height_mm.powi(2);
             fit.points += usize::from(weight > 0.0);
+            fit.inflation += weight * pair.weight;
             weights += weight;
         }
         fit.residual_rms_mm = (fit.residual_rms_mm / weights).sqrt();
+        fit.inflation /= weights;
         Some(fit)
     }
 
@@ -265,7 +318,7 @@ impl Fit {
             shift_mm: (self.middle - start).norm(),
             points: self.points,
             residual_rms_mm: self.residual_rms_mm,
-            weakest_standard_error_mm: self.residual_rms_mm / weakest.sqrt(),
+            weakest_standard_error_mm: self.residual_rms_mm * (self.inflation / weakest).sqrt(),
             steps,
             motion,
         }
@@ -274,10 +327,20 @@ impl Fit {
 
 /// Standard deviation of the residuals, by their median.
 fn scale(pairs: &[Pair]) -> f64 {
-    let mut sizes: Vec<f64> = pairs.iter().map(|pair| pair.height_mm.abs()).collect();
-    let middle = sizes.len() / 2;
-    let (_, median, _) = sizes.select_nth_unstable_by(middle, f64::total_cmp);
-    (SCALE_OF_MEDIAN * *median).max(MIN_SCALE_MM)
+    let sizes = pairs.iter().map(|pair| (pair.height_mm.abs(), pair.weight));
+    (SCALE_OF_MEDIAN * median(sizes)).max(MIN_SCALE_MM)
+}
+
+/// Median of values with weights; 0 without any.
+pub(crate) fn median(values: impl Iterator<Item = (f64, f64)>) -> f64 {
+    let mut values: Vec<(f64, f64)> = values.collect();
+    values.sort_by(|a, b| a.0.total_cmp(&b.0));
+    let mut above = values.iter().map(|(_, weight)| weight).sum::<f64>() / 2.0;
+    let middle = values.iter().find(|(_, weight)| {
+        above -= weight;
+        above < 0.0
+    });
+    middle.map_or(0.0, |(value, _)| *value)
 }
 
 /// Tukey's weight of a residual in units of the scale.
@@ -418,6 +481,7 @@ mod tests {
                 point: Vec3::new(x, 0.0, z),
                 normal: normal(x, z),
                 height_mm: 0.1,
+                weight: 1.0,
             }
         };
         (0..36).map(pair).collect()
@@ -425,7 +489,7 @@ mod tests {
 
     #[test]
     fn a_plane_leaves_the_scan_free_to_slide() {
-        let fit = Fit::of(&pairs(|_, _| Vec3::y())).unwrap();
+        let fit = Fit::of(&pairs(|_, _| Vec3::y()), 0.0).unwrap();
         assert!(fit.step().is_none());
         assert!(SCAN_SLIDES.contains("can slide or rotate along it"));
     }
@@ -438,14 +502,14 @@ mod tests {
         let mut all = pairs(normals);
         all.iter_mut()
             .for_each(|pair| pair.height_mm = -shift.dot(&pair.normal));
-        let step = Fit::of(&all).unwrap().step().unwrap();
+        let step = Fit::of(&all, 0.0).unwrap().step().unwrap();
         assert!((step.translation.vector - shift).norm() < 1e-9);
         assert!(step.rotation.angle() < 1e-9);
     }
 
     #[test]
     fn fewer_pairs_than_a_motion_takes_are_no_fit() {
-        assert!(Fit::of(&pairs(|_, _| Vec3::y())[..11]).is_none());
+        assert!(Fit::of(&pairs(|_, _| Vec3::y())[..11], 0.0).is_none());
     }
 
     #[test]
@@ -506,12 +570,32 @@ mod tests {
         let depth = vec![0.0; mesh.vertices.len()];
         // Chaos: with another compiler it may be another of these scans.
         let restless = (3..8).find_map(|seed| {
-            let said = register(&noisy(seed), &sheet, &depth).err()?.to_string();
+            let said = register(&noisy(seed), &sheet, &depth, 1.0)
+                .err()?
+                .to_string();
             said.contains("does not converge").then_some(said)
         });
         let said = restless.expect("one of them");
         assert!(said.contains("within 300 steps"), "{said}");
         assert!(said.contains("axes and start_mm in [surface]"), "{said}");
+    }
+
+    #[test]
+    fn verify_vertices_that_cluster_where_the_mesh_is_off_do_not_move_the_scan() {
+        let mesh = wavy();
+        let sheet = Sheet::new(&mesh);
+        let spread = mesh.vertices.iter().copied();
+        // Ten times as many points on 2 x 2 mm, 0.05 mm above the surface.
+        let cluster = (0..4410).map(|i| {
+            let place = Vec3::new(0.03 * f64::from(i % 66), 5.0, 0.03 * f64::from(i / 66));
+            let foot = sheet.foot(&place).unwrap();
+            foot.point + 0.05 * foot.normal
+        });
+        let mut scan = noisy(1);
+        scan.keys.fit = FitWord::All;
+        scan.points = spread.chain(cluster).collect();
+        let found = register(&scan, &sheet, &vec![0.0; mesh.vertices.len()], 1.0).unwrap();
+        assert!(found.shift_mm < 1e-3 && found.angle_deg < 1e-2, "{found:?}");
     }
 
     /// Returns a piece of a ball of radius 30 mm about the origin, as quads of about 1.5 mm.
