@@ -87,7 +87,7 @@ fn approach_mm(ours: &Pressed, theirs: &Theirs) -> f64 {
 /// Condyle at the same poses.
 fn ours() -> Vec<Pressed> {
     let (march, law) = started(&case_in(include_str!("dm-knee-uniform.toml"), &folder()));
-    let surface = march.surface();
+    let surface = march.insert().surface();
     let mut contact = contact_of(&law, bodies_of(&march, &surface));
     let at = |line: &str| press(contact.as_mut(), &at_rest(&numbers(line)));
     POSES.lines().skip(1).map(at).collect()

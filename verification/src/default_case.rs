@@ -72,7 +72,7 @@ impl DefaultCase {
             repeat_tolerance_rad: REPEATS_RAD,
             ..test.time
         };
-        let surface = self.march.surface();
+        let surface = self.march.insert().surface();
         let mut contact = Observed::new(&self.law, bodies_of(&self.march, &surface));
         let mut simulator = Simulator::new(test.machine(), &chain, &mut contact, &time);
         let mut watch = |_| ControlFlow::Continue(());
