@@ -2,12 +2,12 @@
 
 use std::{iter::once, path::Path};
 
+use condyle_case::study::Design;
 use condyle_report::{
     Plot, plots_svg,
     study::{Bar, Distribution, bars_svg, distributions_svg, write_study_page},
 };
 use condyle_results::split_unit;
-
 use serde::Serialize;
 
 use crate::{
@@ -52,8 +52,12 @@ pub fn write_answers(plan: &Plan, folder: &Path) -> Result<Answers, StudyError> 
     let title = Some(answers.title.as_str()).filter(|title| !title.is_empty());
     let doubts = answers.doubts().unwrap_or_default();
     let answer = answers.sentence().unwrap_or_default();
-    let tests = match plan.study().objectives().is_empty() {
+    let (all, study) = (plan.tests(), plan.study());
+    // An adaptive study may know its output before its last test.
+    let may_end = matches!(study.design, Design::Adaptive(_));
+    let tests = match study.objectives().is_empty() {
         false => format!("A search of {kept} tests"),
+        true if kept < all && !may_end => format!("{kept} of {all} tests, design {design}"),
         true => format!("{kept} tests, design {design}"),
     };
     let ended = answers.end_of_search().unwrap_or_default();

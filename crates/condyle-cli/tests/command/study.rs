@@ -245,6 +245,10 @@ fn shards_put_together_are_the_whole() {
         fs::read_to_string(parts.path("out/table.csv")).unwrap(),
         whole
     );
+    let merge = ["study", "merge", "study.toml", "part-1", "part-2"];
+    parts.say(&[&merge[..], &["--out", "some"]].concat());
+    let page = fs::read_to_string(parts.path("some/study.html")).unwrap();
+    assert!(page.contains("5 of 7 tests, design"), "{page}");
 }
 
 #[test]
