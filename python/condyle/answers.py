@@ -123,7 +123,7 @@ class Answers(Answer):
         if self.best is None or self.best.row is None:
             return spreads
         values = [(one.name, one.value, one.first) for one in (*self.best.inputs, *self.best.outputs)]
-        return spreads + _html.table(f"Best test, row {self.best.row}", ("", "value", "first test"), values)
+        return spreads + _html.table(f"Best test, row {self.best.row}", ("", "value", "first design"), values)
 
 
 def _value(value: Any) -> Any:

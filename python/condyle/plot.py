@@ -53,8 +53,8 @@ class Plots:
         axes = self._map("peak_pressure_mpa", "peak pressure, MPa", update, ax)
         cycles = self._result.update_cycles
         place = range(len(cycles))[update]
-        is_last = place == len(cycles) - 1
-        axes.set_title(f"cycle at {cycles[place if is_last else max(place - 1, 0)] / 1e6:g} million cycles", fontsize="medium")
+        is_final = self._result.is_done and place == len(cycles) - 1
+        axes.set_title(f"cycle at {cycles[place if is_final else max(place - 1, 0)] / 1e6:g} million cycles", fontsize="medium")
         return axes
 
     def wear_curve(self, ax: Axes | None = None) -> Axes:
@@ -76,8 +76,8 @@ class Plots:
         pyplot = extra("matplotlib.pyplot", "plot")
         result = self._result
         table = result.kinematics
-        is_known = result.summary.get("joint", "knee") == "knee"
-        labels = _MOTIONS if is_known else _of_joint(result)
+        is_knee = result.summary.get("joint", "knee") == "knee"
+        labels = _MOTIONS if is_knee else _of_joint(result)
         shown = {name: label for name, label in labels.items() if name in table}
         lines = -(-len(shown) // 3)
         figure, grid = pyplot.subplots(lines, 3, figsize=(11, 2.75 * lines), sharex=True, squeeze=False, layout="constrained")

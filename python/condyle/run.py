@@ -35,7 +35,8 @@ def run(
     Args:
         case: a :class:`Case`, the path of a case file, its text, or nested dictionaries.
         progress: ``True`` for a bar, or a function that is called with a :class:`Progress` after every update and about
-            twenty times a second. The run stops with :class:`Interrupted` if it returns ``False`` or raises.
+            twenty times a second. The run stops with :class:`Interrupted` if it returns ``False``, or another
+            false value than ``None``, or raises.
         out: a results folder as the command writes it: results for ParaView, a report, and a checkpoint.
         resume: resume the run in ``out``.
         force: overwrite the run in ``out``.

@@ -4,16 +4,19 @@ import { Vector3 } from "three";
 import type { Pressed } from "./scene";
 import type { Force } from "./stage";
 
-// The share of each node of the surface as it is seen from above, mm²: a quarter of each face around it, by which a slope presses
-// downwards.
+// The share of each node of the surface as it is seen from above, mm²: the integral of its shape function over the faces around it,
+// by which a slope presses downwards.
 export function shares(places: Float32Array, quads: ArrayLike<number>): Float32Array {
   const share = new Float32Array(places.length / 3);
   const at = (node: number) => new Vector3().fromArray(places, 3 * node);
-  for (let i = 0; i < quads.length; i += 4) {
-    const corners = [0, 1, 2, 3].map((corner) => quads[i + corner]!);
-    const [a, b, c, d] = corners.map(at);
-    const area = c!.sub(a!).cross(d!.sub(b!)).y / 2;
-    for (const node of corners) share[node]! += area / 4;
+  for (let i = 0; i < quads.length; i += 1) {
+    const corner = (step: number) => quads[i - (i % 4) + ((i + step) % 4)]!;
+    const own = at(corner(0));
+    const [next, across, before] = [1, 2, 3].map((step) => at(corner(step)).sub(own)) as [Vector3, Vector3, Vector3];
+    // The Jacobian of a face is linear: its value at the centroid of the shape function counts.
+    const one = across.clone().sub(before).addScaledVector(next, 2);
+    const other = across.clone().sub(next).addScaledVector(before, 2);
+    share[corner(0)]! += one.cross(other).y / 36;
   }
   return share;
 }

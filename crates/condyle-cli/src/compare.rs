@@ -176,14 +176,17 @@ fn add_surface(surface: &SurfaceComparison, lines: &mut Lines) {
     add_place("worst difference", &surface.worst, lines);
     add_place("deepest predicted", &surface.deepest_predicted, lines);
     add_place("deepest scanned", &surface.deepest_scanned, lines);
+    let error_mm3 = surface.scanned_volume_standard_error_mm3;
+    let error = error_mm3.map_or_else(String::new, |error_mm3| format!(" +/- {error_mm3:.2}"));
     lines.line(format!(
-        "volume over the area scanned: {:.2} +/- {:.2} mm3 scanned, {:.2} mm3 predicted",
-        surface.scanned_volume_mm3,
-        surface.scanned_volume_standard_error_mm3,
-        surface.predicted_volume_mm3
+        "volume over the area scanned: {:.2}{error} mm3 scanned, {:.2} mm3 predicted",
+        surface.scanned_volume_mm3, surface.predicted_volume_mm3
     ));
+    if error_mm3.is_some() {
+        lines.line("  +/-: standard error of the position times the area");
+    }
     lines.line(format!(
-        "  +/-: standard error of the position times the area; {} of {} points left out, off those around them",
+        "  {} of {} points lie off those around them and are left out",
         surface.outliers, surface.scan_points
     ));
     lines.notes(&surface.notes);

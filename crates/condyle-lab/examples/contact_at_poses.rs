@@ -33,7 +33,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     let bodies = Bodies {
         counterface: march.counterface(),
         insert: march.insert(),
-        surface: &march.insert().surface(),
+        surface: &march.surface(),
     };
     let law = &march.test().contact;
     let mut contact = law.contact(bodies, ContactMemory::default());

@@ -40,7 +40,7 @@ fn balanced(march: &March, phase: f64, force_n: f64) -> Result<Pose, String> {
     let bodies = Bodies {
         counterface: march.counterface(),
         insert: march.insert(),
-        surface: &march.insert().surface(),
+        surface: &march.surface(),
     };
     let mut contact = test.contact.contact(bodies, ContactMemory::default());
     let mut machine = test.machine().clone();

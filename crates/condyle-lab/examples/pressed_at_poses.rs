@@ -105,7 +105,7 @@ impl Answer {
 }
 
 fn answer(march: &March, pose: &Pose) -> Result<Answer, Box<dyn Error>> {
-    let surface = march.insert().surface();
+    let surface = march.surface();
     let law = &march.test().contact;
     let mut contact = law.contact(march.bodies(&surface), ContactMemory::default());
     let start = Instant::now();

@@ -35,7 +35,7 @@ const SOAK: &str = "soak";
 /// Smallest plausible mass of a specimen, mg: a smaller one is in g, or its comma separates thousands. Our choice: a small pin weighs
 /// 100 mg.
 const MIN_MASS_MG: f64 = 50.0;
-/// Largest plausible mass of a specimen, mg: a larger one is in micrograms.
+/// Largest plausible mass of a specimen, mg: a larger one is in micrograms. Our choice.
 const MAX_MASS_MG: f64 = 1e6;
 /// Smallest plausible number of cycles at the last weighing; our choice.
 const MIN_CYCLES: f64 = 10_000.0;

@@ -187,7 +187,8 @@ mod tests {
             .iter_mut()
             .for_each(|corners| corners.swap(0, 1));
         assert!(!is_inside_out(&body));
-        body.triangles.truncate(1);
+        // A sheet away from the origin, towards which it faces.
+        body.triangles = vec![[1, 3, 2]];
         assert!(!is_inside_out(&body));
     }
 }

@@ -78,7 +78,7 @@ impl<'a> Gait<'a> {
         Self {
             march,
             chain,
-            surface: march.insert().surface(),
+            surface: march.surface(),
         }
     }
 

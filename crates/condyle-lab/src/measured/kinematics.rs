@@ -89,10 +89,13 @@ impl ColumnComparison {
         let name = &self.column;
         let (measured, predicted) = (self.measured_range, self.predicted_range);
         let mut remarks = Vec::new();
-        if measured.min(predicted) > MIN_RANGE && !is_alike(measured, predicted) {
+        if measured.min(predicted) <= MIN_RANGE {
+            return remarks;
+        }
+        if !is_alike(measured, predicted) {
             remarks.push(format!(
-                "the measured `{name}` has a range of {measured:.3}, and the predicted of {predicted:.3}, which differ by more than a factor of \
-                 {OTHER_UNIT}: check that the measured values have the unit of the column's name"
+                "the range of the measured `{name}` is {measured:.3}, and that of the prediction {predicted:.3}: they differ by more than a \
+                 factor of {OTHER_UNIT}; check that the measured values have the unit of the column's name"
             ));
         }
         let correlation = self.correlation();

@@ -226,23 +226,25 @@ fn notes(first: &Run, second: &Run) -> Vec<String> {
             "Last cycles and maps are compared after {one} and {two} cycles."
         ));
     }
-    let hash = |run: &Run| Some(run.results.summary.as_ref()?.inputs_blake3.clone());
-    let are_equal = |one: Option<String>, two: Option<String>| one.zip(two).map(|(a, b)| a == b);
-    let [one, two] = [first, second].map(|run| run.results.case.clone());
-    if are_equal(one, two) == Some(true) && are_equal(hash(first), hash(second)) == Some(false) {
-        let meshes =
-            "The cases are equal, but the meshes that they name were not: the files have changed.";
-        notes.push(meshes.to_owned());
+    let [one, two] = [&first.results, &second.results];
+    let both = one.summary.as_ref().zip(two.summary.as_ref());
+    let have_other_inputs = both.is_some_and(|(one, two)| one.inputs_blake3 != two.inputs_blake3);
+    if have_other_inputs && one.case.is_some() && one.case == two.case {
+        notes.push("The cases are equal, but their meshes differ.".to_owned());
+    }
+    if one.activities.is_empty() != two.activities.is_empty() {
+        let only = "One run has several activities, the other has one or is not finished: the first is compared.";
+        notes.push(only.to_owned());
     }
     let [one, two] = [first, second].map(|run| run.results.directions());
     if one.joint == two.joint && one.side != two.side {
         let sides = "One is a right joint and the other a left one: medial is on opposite sides.";
         notes.push(sides.to_owned());
     }
-    let version = |run: &Run| Some(run.results.summary.as_ref()?.version.clone());
-    if let Some((one, two)) = version(first).zip(version(second))
-        && one != two
+    if let Some((one, two)) = both
+        && one.version != two.version
     {
+        let (one, two) = (&one.version, &two.version);
         notes.push(format!("The runs are from condyle {one} and {two}."));
     }
     notes
@@ -352,9 +354,13 @@ type Points = Vec<(f64, f64)>;
 
 /// Motions and loads of the first and last cycle that both runs have and that differ, ranked by difference over range.
 fn curves(first: &Results, second: &Results) -> Vec<CurveDifference> {
+    let have_activities = !first.activities.is_empty() && !second.activities.is_empty();
     let mut curves = Vec::new();
-    for (activity, one) in tables(first) {
-        let Some((_, two)) = tables(second).into_iter().find(|(own, _)| *own == activity) else {
+    for (activity, one) in tables(first, have_activities) {
+        let Some((_, two)) = tables(second, have_activities)
+            .into_iter()
+            .find(|(own, _)| *own == activity)
+        else {
             continue;
         };
         let cycles = ["first", "last"].into_iter();
@@ -369,11 +375,10 @@ fn curves(first: &Results, second: &Results) -> Vec<CurveDifference> {
     curves
 }
 
-/// Returns the motions and loads of each activity with its name, which is empty where there is one activity.
-fn tables(results: &Results) -> Vec<(&str, &Table)> {
-    let only = results.kinematics.iter().map(|table| ("", table));
-    if results.activities.is_empty() {
-        return only.collect();
+/// Returns the motions and loads of each activity with its name, or of the first one without a name.
+fn tables(results: &Results, have_activities: bool) -> Vec<(&str, &Table)> {
+    if !have_activities {
+        return results.kinematics.iter().map(|table| ("", table)).collect();
     }
     let all = results.activities.iter();
     all.filter_map(|(activity, table)| Some((activity.name.as_str(), table.as_ref()?)))

@@ -590,7 +590,7 @@ impl Answers {
             .iter()
             .map(|one| (one, margins(best, &one.name)));
         let values: Vec<_> = inputs.chain(outputs).collect();
-        let head = [&head, "value", "first test", "margin to its limit"];
+        let head = [&head, "value", "first design", "margin to its limit"];
         table(&head, &values, |(one, margins)| {
             vec![
                 labelled(&one.name),
@@ -643,7 +643,7 @@ fn sentence_of_search(best: &Best) -> Option<String> {
         format!("has {} {unit}", shown(first))
     };
     Some(format!(
-        "The least {name} within all limits is {value} {unit}, in row {row}; the first test {first}."
+        "The least {name} within all limits is {value} {unit}, in row {row}; the first design {first}."
     ))
 }
 

@@ -93,7 +93,7 @@ impl Store {
 
 fn lacking(output: &Scalar) -> StudyError {
     StudyError::Plan(format!(
-        "the results of a test lack `{}` as a finite number, which the search minimises or limits; add it, or give the reason of a failure as text",
+        "the results of a test lack `{}`, or it is not finite, and the search minimises or limits it; add it, or give the reason of a failure as text",
         output.key
     ))
 }
@@ -119,10 +119,16 @@ pub(crate) fn starting_test(plan: &Plan, known: &[Known]) -> usize {
     let Design::Optimise(keys) = &plan.study().design else {
         return 0;
     };
-    let proposed = tests_at(plan, 0, first_places(plan.study(), keys.seed));
-    let start = plan.numbers(&proposed[0]);
+    let mut places = first_places(plan.study(), keys.seed);
+    places.truncate(1);
+    // The numbers of the case where a test has no values of its own; programs may have rounded those of a design.
+    let at = |test: &Test| {
+        let values = plan.numbers(test).into_iter().map(level).collect();
+        point(plan.study(), &Test { values, ..*test })
+    };
+    let start: Vec<_> = tests_at(plan, 0, places).iter().map(at).collect();
     let mut known = known.iter();
-    let place = known.position(|(test, _)| plan.numbers(test) == start);
+    let place = known.position(|(test, _)| !is_new(&at(test), &start));
     place.unwrap_or(0)
 }
 

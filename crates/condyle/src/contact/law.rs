@@ -17,7 +17,7 @@ pub struct Bodies<'a> {
     pub counterface: &'a Counterface,
     /// The insert, worn or not.
     pub insert: &'a Insert,
-    /// The insert's articulating surface.
+    /// The insert's articulating surface, as [`ContactLaw::surface`] returns it.
     pub surface: &'a ArticulatingSurface,
 }
 

@@ -80,7 +80,7 @@ pub struct Share {
     pub edge_a: Vec3,
     /// Second edge of the parallelogram, mm.
     pub edge_b: Vec3,
-    /// Area, mm2.
+    /// Area, mm2; the tributary one where pressures are unknowns at the nodes.
     pub area_mm2: f64,
     /// Integral of the node's shape function over the faces, mm2: the load on the node by a pressure of 1 MPa.
     ///
@@ -343,6 +343,19 @@ mod tests {
         let middle = ArticulatingSurface::new(positions, &FacesAround::new(9, &faces)).shares[4];
         assert!((middle.area_mm2 - 0.8).abs() < 1e-12);
         assert!((middle.edge_a.cross(&middle.edge_b).norm() - 0.8).abs() < 1e-12);
+    }
+
+    #[test]
+    fn verify_the_tributary_area_of_a_trapezium() {
+        let corners = [[0.0, 0.0], [0.0, 1.0], [1.0, 1.0], [2.0, 0.0]];
+        let positions = corners.map(|[x, z]| Vec3::new(x, 0.0, z)).to_vec();
+        let around = FacesAround::new(4, &[[0, 1, 2, 3]]);
+        let shares = ArticulatingSurface::new(positions, &around).shares;
+        // With x = 2 u - u v and z = v, the Jacobian is 2 - v: its integrals with the shape functions are 5/12 and 4/12.
+        let exact = [5.0, 4.0, 4.0, 5.0].map(|twelfths| twelfths / 12.0);
+        for (share, exact) in shares.iter().zip(exact) {
+            assert!((share.tributary_mm2 - exact).abs() < 1e-12, "{share:?}");
+        }
     }
 
     #[test]

@@ -260,7 +260,7 @@ fn many_points_in_the_case_are_samples() {
         flexion.interpolation()
     };
     assert_eq!(interpolation(20), Interpolation::HalfCosine);
-    assert_eq!(interpolation(22), Interpolation::Spline);
+    assert_eq!(interpolation(21), Interpolation::Spline);
 }
 
 #[test]

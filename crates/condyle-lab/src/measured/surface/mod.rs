@@ -166,8 +166,9 @@ pub struct SurfaceComparison {
     pub predicted_volume_mm3: f64,
     /// Scanned volume over the same area.
     pub scanned_volume_mm3: f64,
-    /// Standard error of the position of the scan, that of its least determined motion, times this area.
-    pub scanned_volume_standard_error_mm3: f64,
+    /// Standard error of the position of the scan, that of its least determined motion, times this area; none for a scan that was
+    /// not fitted.
+    pub scanned_volume_standard_error_mm3: Option<f64>,
     /// Remarks on the interpretation.
     pub notes: Vec<String>,
     /// The unworn surface with the three fields `predicted_mm`, `scanned_mm`, `difference_mm`, NaN
@@ -244,8 +245,8 @@ pub(crate) fn summarised(
     let everywhere = errors(compared, &nodes);
     let covered_area_share = everywhere.area_mm2 / area;
     let mut found = SurfaceComparison {
-        scanned_volume_standard_error_mm3: registration.weakest_standard_error_mm
-            * everywhere.area_mm2,
+        scanned_volume_standard_error_mm3: (registration.steps > 0)
+            .then(|| registration.weakest_standard_error_mm * everywhere.area_mm2),
         notes: Vec::new(),
         registration,
         scan_points: scan.points.len(),
@@ -296,7 +297,7 @@ fn notes(
              predicted"
         ));
     }
-    if found.scanned_volume_mm3 < -found.scanned_volume_standard_error_mm3 {
+    if found.scanned_volume_mm3 < -found.scanned_volume_standard_error_mm3.unwrap_or(0.0) {
         notes.push(
             "the scanned volume is negative: on average, the scan lies above the unworn insert; check that it is of this insert and scale"
                 .to_owned(),
@@ -305,7 +306,7 @@ fn notes(
     let scanned_mm = found.deepest_scanned.scanned_mm;
     if scan.normals.is_none() && scanned_mm > MUCH_DEEPER * deepest_mm {
         notes.push(format!(
-            "the deepest scanned place, {scanned_mm:.3} mm, is more than twice as deep as the deepest predicted: points without normals on \
+            "the deepest scanned place, {scanned_mm:.3} mm, is more than {MUCH_DEEPER} times as deep as the deepest predicted: points without normals on \
              walls, recesses and the backside count as wear if they are within farthest_mm; lower it, or give a surface file"
         ));
     }
@@ -398,9 +399,9 @@ const WIDER: [f64; 6] = [1.0, 1.25, 1.6, 2.0, 2.6, 3.4];
 /// Smallest scale of the residuals of a plane, in radii: points within 9 % of the radius count even where the others fit the plane
 /// exactly, as at the rim of a scar.
 const MIN_PLANE_SCALE: f64 = 0.02;
-/// Largest scale of these residuals, mm: points that are farther apart are those of a wall, which has no depth here.
+/// Largest scale of these residuals, mm: points that are farther apart are those of a wall.
 const MAX_PLANE_SCALE_MM: f64 = 0.3;
-/// Times that outliers are found anew from the plane of the others.
+/// Number of times that the outliers are determined, each time from the plane through the others.
 const ROUNDS: usize = 6;
 
 /// Depths at the nodes of the unworn surface; NaN where the scan does not reach.
@@ -430,7 +431,7 @@ pub(crate) fn compared(
     let tree = RTree::bulk_load(soundings);
     let depth_of = |point: &Vec3| sheet.foot(point).map_or(f64::NAN, |foot| -foot.height_mm);
     let mut outliers = HashSet::new();
-    let mut scanned = |node: usize| {
+    let scanned = |node: usize| {
         // At the border half of the points around a node are missing, which would tilt its plane.
         if sheet.is_border(node) {
             return f64::NAN;
@@ -443,7 +444,7 @@ pub(crate) fn compared(
     };
     Compared {
         predicted_mm: worn_nodes.iter().map(depth_of).collect(),
-        scanned_mm: (0..unworn.nodes.len()).map(&mut scanned).collect(),
+        scanned_mm: (0..unworn.nodes.len()).map(scanned).collect(),
         areas_mm2: areas(unworn),
         outliers: outliers.len(),
     }
@@ -493,6 +494,7 @@ fn spacing_mm(soundings: &[Sounding]) -> f64 {
 
 /// A plane of weighted least squares through the soundings around a node, without those that lie off it.
 struct Plane {
+    /// NaN on a wall, which has no depth.
     depth_mm: f64,
     /// Numbers of the points left out.
     outliers: Vec<usize>,
@@ -537,22 +539,21 @@ impl Plane {
         // The median withstands outliers that would tilt a first plane of least squares.
         let level = median(near.iter().map(|one| (one.depth_mm, one.weight)));
         let mut plane = Vec3::new(level, 0.0, 0.0);
-        let mut kept = Vec::new();
+        let (mut kept, mut scale) = (Vec::new(), 0.0);
         for _ in 0..ROUNDS {
             let off = |one: &Near| (one.depth_mm - plane.dot(&one.row)).abs();
-            let scale = SCALE_OF_MEDIAN * median(near.iter().map(|one| (off(one), one.weight)));
-            if scale > MAX_PLANE_SCALE_MM {
-                return None;
-            }
+            scale = SCALE_OF_MEDIAN * median(near.iter().map(|one| (off(one), one.weight)));
             let limit = TUKEY * scale.max(MIN_PLANE_SCALE * radius);
             kept = near.iter().map(|one| off(one) < limit).collect();
             let counting = near.iter().zip(&kept).filter(|(_, is_kept)| **is_kept);
             plane = fitted(counting.map(|(one, _)| one))?;
         }
-        let is_wall = radius < MIN_COSINE * Vec3::new(radius, plane.y, plane.z).norm();
+        // Points of a wall are steep, or scatter about the last plane.
+        let is_steep = radius < MIN_COSINE * Vec3::new(radius, plane.y, plane.z).norm();
+        let is_wall = is_steep || scale > MAX_PLANE_SCALE_MM;
         let left_out = near.iter().zip(&kept).filter(|(_, is_kept)| !**is_kept);
-        (!is_wall).then(|| Self {
-            depth_mm: plane.x,
+        Some(Self {
+            depth_mm: if is_wall { f64::NAN } else { plane.x },
             outliers: left_out.map(|(one, _)| one.number).collect(),
         })
     }
@@ -618,12 +619,15 @@ mod tests {
 
     #[test]
     fn a_wall_has_no_depth() {
-        let deeper_and_deeper =
-            |(number, [x, z]): (usize, [f64; 2])| [0.01 * x, z, 0.02 * number as f64];
-        let tree = over_a_plane(grid().enumerate().map(deeper_and_deeper));
-        assert!(Plane::near(&tree, &Vec3::zeros(), 1.0).is_none());
-        let steep = over_a_plane(grid().map(|[x, z]| [0.1 * x, z, x]));
-        assert!(Plane::near(&steep, &Vec3::zeros(), 1.0).is_none());
+        let at_all_depths = |(number, [x, z]): (usize, [f64; 2])| [x, z, 0.5 * (number % 4) as f64];
+        let tree = over_a_plane(grid().enumerate().map(at_all_depths));
+        let depth_mm = |tree, radius| Plane::near(tree, &Vec3::zeros(), radius).unwrap().depth_mm;
+        assert!(depth_mm(&tree, 1.0).is_nan());
+        let steep = over_a_plane(grid().map(|[x, z]| [x, z, 0.2 + 2.0 * x]));
+        assert!(depth_mm(&steep, 0.7).is_nan());
+        // The flank of a deep scar is no wall.
+        let flank = over_a_plane(grid().map(|[x, z]| [3.0 * x, 3.0 * z, 0.2 + 2.1 * x]));
+        assert!((depth_mm(&flank, 2.5) - 0.2).abs() < 1e-9);
     }
 
     #[test]

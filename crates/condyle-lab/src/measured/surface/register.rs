@@ -94,14 +94,10 @@ pub(crate) fn register(
         // A wide reach finds the surface from afar; the narrow one at the end excludes other parts of the scan.
         let reach = shrinking_mm.max(scan.keys.farthest_mm);
         let is_used = |foot: &Foot| fits(&scan.keys, foot, depth);
-        let pairs = places.pairs(&motion, target, reach, is_used);
+        let pairs = places.pairs(&motion, target, (reach, MIN_COSINE), is_used);
         let fit = Fit::of(&pairs, SCALE_OF_REACH * shrinking_mm).ok_or_else(|| {
-            let facing_anywhere = Places {
-                normals: None,
-                ..places.clone()
-            };
-            let near_any = facing_anywhere.pairs(&motion, target, reach, is_used);
-            let counts = [&pairs, &near_any].map(Vec::len);
+            let anyhow = places.pairs(&motion, target, (reach, f64::NEG_INFINITY), is_used);
+            let counts = [&pairs, &anyhow].map(Vec::len);
             CompareError::NotComparable(too_few_near(counts, places.points.len()))
         })?;
         if !is_fitted {
@@ -158,7 +154,6 @@ fn fits(keys: &ScanKeys, foot: &Foot, depth: &[f64]) -> bool {
 }
 
 /// The registered points of a scan with their normals and weights.
-#[derive(Clone)]
 struct Places {
     points: Vec<Vec3>,
     normals: Option<Vec<Vec3>>,
@@ -179,16 +174,17 @@ impl Places {
     fn of(scan: &Scan, edge_mm: f64) -> Self {
         let mut counts: HashMap<[i64; 3], usize> = HashMap::new();
         let cube = |point: &Vec3| <[f64; 3]>::from(point / edge_mm).map(|part| part.floor() as i64);
-        let mut rank = |point: &Vec3| {
+        let rank = |point: &Vec3| {
             let count = counts.entry(cube(point)).or_default();
             *count += 1;
             *count
         };
-        let ranks: Vec<usize> = scan.points.iter().map(&mut rank).collect();
+        let ranks: Vec<usize> = scan.points.iter().map(rank).collect();
         let mut sorted = ranks.clone();
         sorted.sort_unstable();
-        let most = sorted.get(MAX_POINTS).map_or(usize::MAX, |rank| rank - 1);
-        let most = most.max(1);
+        let most = sorted
+            .get(MAX_POINTS)
+            .map_or(usize::MAX, |&rank| rank.max(2) - 1);
         let chosen = (0..ranks.len()).filter(|&index| ranks[index] <= most);
         let every = chosen.clone().count().div_ceil(MAX_POINTS).max(1);
         let chosen: Vec<usize> = chosen.step_by(every).collect();
@@ -201,12 +197,13 @@ impl Places {
         }
     }
 
-    /// Returns the points within reach of places that are used, with normals in the same direction.
+    /// Returns the points within reach of places that are used, with normals whose cosine with that of the place is larger than the
+    /// least one.
     fn pairs(
         &self,
         motion: &Isometry3<f64>,
         target: &Sheet<'_>,
-        reach: f64,
+        (reach, min_cosine): (f64, f64),
         fits: impl Fn(&Foot) -> bool,
     ) -> Vec<Pair> {
         let pair = |(index, point): (usize, &Vec3)| {
@@ -214,7 +211,7 @@ impl Places {
             let foot = target.foot(&point)?;
             let normal = self.normals.as_ref().map(|normals| normals[index]);
             let faces = normal.is_none_or(|normal| {
-                motion.transform_vector(&normal).dot(&foot.normal) > MIN_COSINE
+                motion.transform_vector(&normal).dot(&foot.normal) > min_cosine
             });
             let is_near = (point - foot.point).norm() <= reach;
             (faces && is_near && !foot.on_border && fits(&foot)).then_some(Pair {

@@ -132,7 +132,7 @@ impl Deformable {
             backside,
             kept: Arc::default(),
         };
-        law.surface(insert, insert.unworn_nodes())?;
+        law.elastic_surface(insert, insert.unworn_nodes())?;
         Ok(law)
     }
 
@@ -147,7 +147,7 @@ impl Deformable {
         insert: &Insert,
     ) -> Result<Self, SolidError> {
         self.backside = backside;
-        self.surface(insert, insert.unworn_nodes())?;
+        self.elastic_surface(insert, insert.unworn_nodes())?;
         Ok(self)
     }
 
@@ -184,7 +184,8 @@ impl Deformable {
     /// # Errors
     /// A mesh that does not define an elastic solid.
     pub fn know(&self, insert: &Insert, known: KnownCompliance) -> Result<(), SolidError> {
-        self.surface(insert, insert.unworn_nodes())?.know(known);
+        self.elastic_surface(insert, insert.unworn_nodes())?
+            .know(known);
         Ok(())
     }
 
@@ -206,7 +207,7 @@ impl Deformable {
     }
 
     /// Returns the surface of an insert with the given mesh nodes: kept, or computed now.
-    fn surface(
+    fn elastic_surface(
         &self,
         insert: &Insert,
         mesh_nodes: &[Vec3],
@@ -258,11 +259,11 @@ impl Deformable {
             (now[node as usize] - used[node as usize]).norm() / thickness_mm
         };
         if nodes.map(thinner).fold(0.0, f64::max) > MAX_THINNER
-            && let Ok(renewed) = self.surface(insert, now)
+            && let Ok(renewed) = self.elastic_surface(insert, now)
         {
             return (renewed, Some(now.iter().flatten().copied().collect()));
         }
-        let surface = self.surface(insert, &used);
+        let surface = self.elastic_surface(insert, &used);
         // A case checks its insert as it is built.
         (surface.expect("the insert is an elastic solid"), stored)
     }
@@ -341,7 +342,7 @@ impl ContactLaw for Deformable {
     }
 
     fn memory_bytes(&self, insert: &Insert, nodes_near: f64) -> f64 {
-        let Ok(surface) = self.surface(insert, insert.unworn_nodes()) else {
+        let Ok(surface) = self.elastic_surface(insert, insert.unworn_nodes()) else {
             return 0.0;
         };
         let along_surface = match self.friction_model {
