@@ -218,6 +218,13 @@ fn notes(first: &Run, second: &Run) -> Vec<String> {
             "Maps of {one} and {two} cannot be subtracted: {why}."
         ));
     }
+    notes.extend(notes_on_both(first, second));
+    notes
+}
+
+/// Returns remarks on cycles, meshes, activities, sides and versions in which two runs differ.
+fn notes_on_both(first: &Run, second: &Run) -> Vec<String> {
+    let mut notes = Vec::new();
     let last_cycle = |run: &Run| run.results.wear.as_ref()?.column("cycles")?.last().copied();
     if let (Some(one), Some(two)) = (last_cycle(first), last_cycle(second))
         && one != two

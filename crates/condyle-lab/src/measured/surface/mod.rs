@@ -246,7 +246,7 @@ pub(crate) fn summarised(
     let covered_area_share = everywhere.area_mm2 / area;
     let mut found = SurfaceComparison {
         scanned_volume_standard_error_mm3: (registration.steps > 0)
-            .then(|| registration.weakest_standard_error_mm * everywhere.area_mm2),
+            .then_some(registration.weakest_standard_error_mm * everywhere.area_mm2),
         notes: Vec::new(),
         registration,
         scan_points: scan.points.len(),
