@@ -350,14 +350,27 @@ fn notes_and_doubts_of_a_hip_say_nothing_of_knees() {
     }
 }
 
+const TWO_ACTIVITIES: &str = "[femur]\nshape = \"sphere\"\nradius_mm = 14.0\n[insert]\nshape = \"cup\"\nedge_mm = 2.5\nlayers = 2\n\
+    [machine]\npreset = \"iso-14242-1-like\"\n[march]\nupdates = 1\n[accuracy]\nestimate = false\n\
+    [[activity]]\nname = \"walking\"\ncycles_in_sequence = 9\n\
+    [[activity]]\nname = \"strolling\"\ncycles_in_sequence = 1\nfrequency_hz = 0.5\n";
+
+#[test]
+fn verify_activities_include_the_final_cycle() {
+    let bench = Bench::with_case(TWO_ACTIVITIES);
+    bench.run_into("hip");
+    for activity in bench.summary("hip").activities {
+        let areas = bench.table("hip", &activity.kinematics_file);
+        let areas_mm2 = areas["contact_area_mm2"].iter().copied();
+        // Tables are written with fewer digits.
+        let largest = areas_mm2.fold(0.0, f64::max);
+        assert!((activity.peak_contact_area_mm2 / largest - 1.0).abs() < 1e-5);
+    }
+}
+
 #[test]
 fn a_hip_is_described_in_its_own_words() {
-    let bench = Bench::with_case(
-        "[femur]\nshape = \"sphere\"\nradius_mm = 14.0\n[insert]\nshape = \"cup\"\nedge_mm = 2.5\nlayers = 2\n\
-         [machine]\npreset = \"iso-14242-1-like\"\n[march]\nupdates = 1\n[accuracy]\nestimate = false\n\
-         [[activity]]\nname = \"walking\"\ncycles_in_sequence = 9\n\
-         [[activity]]\nname = \"strolling\"\ncycles_in_sequence = 1\nfrequency_hz = 0.5\n",
-    );
+    let bench = Bench::with_case(TWO_ACTIVITIES);
     let said = bench.say(&["check", "case.toml"]).out;
     let words = ["head ", "cup "].map(|word| said.lines().any(|line| line.starts_with(word)));
     assert!(words == [true; 2] && !said.contains("dish"), "{said}");
