@@ -365,7 +365,7 @@ fn spikes_of_a_scan_are_left_out_and_counted() {
     assert!(json["outliers"].as_u64().unwrap() > 0);
     let said = bench.say(&["compare", "out", "measured.toml"]);
     assert!(
-        said.out.contains("points left out") && said.out.contains("+/-"),
+        said.out.contains("are left out") && said.out.contains("+/-"),
         "{}",
         said.out
     );
