@@ -38,7 +38,8 @@ def data_set(result: Result) -> xr.Dataset:
         "articulating": ("node", result.articulating),
         **{f"{axis}_mm": ("node", places[:, number], {"units": "mm"}) for number, axis in enumerate("xyz")},
     }
-    return xarray.Dataset(variables, coordinates, {"condyle": result.summary.get("version", ""), "inputs_blake3": result.summary.get("inputs_blake3") or result.case.inputs_blake3})
+    inputs = result.summary.get("inputs_blake3") or result.case.inputs_blake3
+    return xarray.Dataset(variables, coordinates, {"condyle": result.summary.get("version", ""), "inputs_blake3": inputs})
 
 
 def _described(dimensions: tuple[str, ...], values: NDArray[np.float64], name: str) -> tuple[Any, ...]:

@@ -9,7 +9,8 @@ def main() -> None:
     node = int(depth_mm[-1].argmax())
     x, _, z = result.points_mm[0, node]
     print(f"deepest at x {x:.1f}, z {z:.1f} mm: {depth_mm[-1, node]:.3f} mm")
-    cycles = [*result.update_cycles[:-2], result.update_cycles[-1]]  # of the cycle repeated up to each update, and of the final one
+    # The cycle repeated up to each update begins at the update before; the last one is the final cycle.
+    cycles = [*result.update_cycles[:-2], result.update_cycles[-1]]
     for done, pressure_mpa in zip(cycles, result.fields["peak_pressure_mpa"][1:, node]):
         print(f"after {done / 1e6:.2f} million cycles: {pressure_mpa:.1f} MPa")
     first = result.kinematics["cycles"] == 0
