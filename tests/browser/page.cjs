@@ -23,8 +23,15 @@ function watch(page, url, heard) {
   page.on("pageerror", (error) => heard.push(String(error)));
 }
 
+// The durations of tasks longer than 50 ms, during which the page does not respond.
+function listenForLongTasks() {
+  window.longTasks = [];
+  new PerformanceObserver((found) => window.longTasks.push(...found.getEntries().map(({ duration }) => duration))).observe({ type: "longtask" });
+}
+
 async function open(context, url, heard) {
   const page = await context.newPage();
+  await page.addInitScript(listenForLongTasks);
   page.setDefaultTimeout(PATIENCE_MS);
   watch(page, url, heard);
   const began = Date.now();
@@ -362,6 +369,7 @@ async function memory(session) {
 async function twentyRuns(page) {
   const session = await page.context().newCDPSession(page);
   let early;
+  await page.evaluate(() => (window.longTasks = []));
   for (let run = 0; run < 20; run++) {
     await ran(page, () => page.getByLabel("Friction").fill(run % 2 ? "0.12" : "0.16"));
     if (run === 4) early = await memory(session);
@@ -369,7 +377,7 @@ async function twentyRuns(page) {
   const late = await memory(session);
   assert(late.mb < early.mb + 8, `after 5 runs ${early.mb.toFixed(1)} MB, after 20 ${late.mb.toFixed(1)} MB`);
   assert(late.nodes < early.nodes + 100, `after 5 runs ${early.nodes} nodes, after 20 ${late.nodes}`);
-  return [early, late];
+  return { early, late, longTasks: await page.evaluate(() => window.longTasks) };
 }
 
 // Loaded once, the page needs no network.
@@ -421,13 +429,14 @@ async function main() {
     await cancelled(page);
     await dropped(page);
     await saved(page);
-    const [early, late] = await twentyRuns(page);
+    const { early, late, longTasks } = await twentyRuns(page);
     assert.deepStrictEqual(heard, [], "the page asks for other files or reports errors");
     await offline(context, server, url);
     assert(loaded() <= LARGEST_MB, `the first load is ${loaded().toFixed(2)} MB`);
     console.log(
       `first result after ${ready_ms} ms, a moved slider shown after ${solved_ms} ms, first load ${loaded().toFixed(2)} MB;` +
-        ` after 5 runs ${early.mb.toFixed(1)} MB and ${early.nodes} nodes, after 20 ${late.mb.toFixed(1)} MB and ${late.nodes}`,
+        ` after 5 runs ${early.mb.toFixed(1)} MB and ${early.nodes} nodes, after 20 ${late.mb.toFixed(1)} MB and ${late.nodes};` +
+        ` ${longTasks.length} tasks above 50 ms in 20 runs, the longest ${Math.max(0, ...longTasks).toFixed(0)} ms`,
     );
   } finally {
     await browser.close();

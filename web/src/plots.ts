@@ -49,6 +49,7 @@ export class Plot {
 
   // Releases the resources that plots of the same group share.
   dispose(): void {
+    this.isSeen = false;
     for (const observer of this.observers) observer.disconnect();
     this.plot?.destroy();
   }
@@ -59,12 +60,14 @@ export class Plot {
     if (this.plot && this.isSeen) this.plot.setCursor({ left: this.plot.valToPos(x, "x"), top: -1 }, false);
   }
 
-  // A plot is drawn when it first comes into sight.
+  // A plot is drawn when it first comes into sight, in a task of its own so that the page responds between plots.
   private see(isSeen: boolean): void {
     this.isSeen = isSeen;
-    if (!isSeen) return;
-    this.drawn();
-    if (this.pointed !== undefined) this.point(this.pointed);
+    setTimeout(() => {
+      if (!this.isSeen) return;
+      this.drawn();
+      if (this.pointed !== undefined) this.point(this.pointed);
+    });
   }
 
   private drawn(): uPlot {

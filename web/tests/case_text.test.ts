@@ -1,6 +1,6 @@
 import assert from "node:assert/strict";
 import test from "node:test";
-import { numberOf, tableAt, valueAt, withValue } from "../src/page/case_text";
+import { numberIn, tableAt, unquoted, valuesOf, withValue, type Place } from "../src/page/case_text";
 
 const CASE = `side = "left" # of the patient
 
@@ -25,13 +25,15 @@ const thickness = { table: "insert", key: "thickness_mm" };
 const cycles = { table: "march", key: "cycles" };
 const scale = { table: "machine.axial_force", key: "scale" };
 
+const numberOf = (text: string, { table, key }: Place) => numberIn(valuesOf(text).get(`${table}.${key}`));
+
 test("values are found by table and key", () => {
   assert.equal(numberOf(CASE, thickness), 9);
   assert.equal(numberOf(CASE, cycles), 5e6);
   assert.equal(numberOf(CASE, { table: "activity", key: "cycles" }), 3);
   assert.equal(numberOf(CASE, scale), undefined);
-  assert.equal(valueAt(CASE, { table: "", key: "side" }), "left");
-  assert.equal(valueAt(CASE, { table: "insert", key: "shape" }), "generic");
+  assert.equal(unquoted(valuesOf(CASE).get("side")!), "left");
+  assert.equal(unquoted(valuesOf(CASE).get("insert.shape")!), "generic");
   assert.equal(tableAt(CASE.split("\n"), 9), "machine.axial_force");
 });
 
@@ -74,6 +76,6 @@ test("a missing key is added in the form of its table", () => {
 });
 
 test("text that is no TOML is read to its end", () => {
-  for (const text of ["[", "a = [1, 2", "= 3\nb = 4", '"', "x = {", "]]\n}}"]) valueAt(text, thickness);
+  for (const text of ["[", "a = [1, 2", "= 3\nb = 4", '"', "x = {", "]]\n}}"]) valuesOf(text);
   assert.equal(numberOf("= 3\n[insert]\nthickness_mm = 4", thickness), 4);
 });

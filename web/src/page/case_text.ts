@@ -1,6 +1,6 @@
 // Finds and changes numbers in the text of a case; the rest of the text stays as it is.
 
-import { joined, placesOf, type Entry, type Places } from "./toml_places";
+import { joined, placesOf, type Entry } from "./toml_places";
 
 export interface Place {
   // The table by its name, such as `machine.axial_force`.
@@ -24,18 +24,8 @@ export function tableAt(lines: string[], line: number): string {
   return "";
 }
 
-// The text of a value, without quotes around it.
-export function valueAt(text: string, place: Place): string | undefined {
-  const found = entryOf(placesOf(text), place);
-  return found && unquoted(text.slice(found.from, found.to));
-}
-
 export function unquoted(value: string): string {
   return value.replace(/^(["'])(.*)\1$/, "$2");
-}
-
-export function numberOf(text: string, place: Place): number | undefined {
-  return numberIn(valueAt(text, place));
 }
 
 export function numberIn(words: string | undefined): number | undefined {
@@ -47,7 +37,7 @@ export function numberIn(words: string | undefined): number | undefined {
 export function withValue(text: string, { table, key }: Place, value: string): string {
   const places = placesOf(text);
   const path = joined(table, key);
-  const found = entryOf(places, { table, key });
+  const found = places.entries.find((entry) => entry.path === path);
   if (found) return replaced(text, found, value);
   const braces = places.entries.filter(({ path: outer, from }) => text[from] === "{" && path.startsWith(`${outer}.`)).at(-1);
   if (braces) {
@@ -88,10 +78,6 @@ export function inWords(before?: string, after?: string): string {
 
 // Letters of a list that is read at a glance.
 const LONG = 40;
-
-function entryOf({ entries }: Places, { table, key }: Place): Entry | undefined {
-  return entries.find(({ path }) => path === joined(table, key));
-}
 
 function replaced(text: string, { from, to }: Entry, value: string): string {
   // A comment after it stays in its column.

@@ -5,12 +5,16 @@ import { inDigits } from "../digits";
 import type { Grip } from "../grips";
 import type { Scene } from "../scene";
 import { matrix } from "../stage";
-import { numberOf, valueAt, type Place } from "./case_text";
+import { numberIn, unquoted, valuesOf, type Place } from "./case_text";
 import type { Found } from "./shown_run";
 import { type Limits, movedAt } from "./sliders";
 
 // Sets the keys at some places to a number.
 type Change = (places: Place[], value: number) => void;
+
+interface Dimension extends Place {
+  value: number;
+}
 
 // The slider of none.
 const SPACING: Limits = { label: "Spacing", least: 30, most: 60, step: 0.5 };
@@ -18,16 +22,14 @@ const [UP, OUTWARDS] = [new Vector3(0, 1, 0), new Vector3(0, 0, 1)];
 
 // Points of the generic bodies in their picture, and what they change.
 export function gripsOf({ scene, text }: Found, change: Change): Grip[] {
-  return [...ofInsert(scene, text, change), ...ofFemur(scene, text, change)];
+  const values = valuesOf(text);
+  return [...ofInsert(scene, values, change), ...ofFemur(scene, values, change)];
 }
 
-function ofInsert(scene: Scene, text: string, change: Change): Grip[] {
-  const [spacing, sagittal, coronal, thickness] = ["spacing_mm", "sagittal_radius_mm", "coronal_radius_mm", "thickness_mm"].map((key) => ({
-    table: "insert",
-    key,
-  }));
-  const [apart, side, front, thick] = [spacing!, sagittal!, coronal!, thickness!].map((place) => numberOf(text, place));
-  if (!isGeneric(text, "insert") || !apart || !side || !front || !thick) return [];
+function ofInsert(scene: Scene, values: Map<string, string>, change: Change): Grip[] {
+  const found = dimensionsOf(values, "insert", "spacing_mm", "sagittal_radius_mm", "coronal_radius_mm", "thickness_mm");
+  if (!found) return [];
+  const [spacing, sagittal, coronal, thickness] = found;
   const nodes = pointsOf(scene.values("surface.nodes"));
   const skin = pointsOf(scene.values("skin.nodes"));
   const low = nodes.filter(({ z }) => z > 0).reduce((one, two) => (two.y < one.y ? two : one));
@@ -37,37 +39,32 @@ function ofInsert(scene: Scene, text: string, change: Change): Grip[] {
   };
   const [frontEnd, sideEnd] = [far("x", "z"), far("z", "x")];
   const bottom = Math.min(...skin.map(({ y }) => y));
-  const both = isGeneric(text, "femur") ? [spacing!, { table: "femur", key: "spacing_mm" }] : [spacing!];
+  const both = isGeneric(values, "femur") ? [spacing, { table: "femur", key: "spacing_mm" }] : [spacing];
   const own = (place: Place, at: Vector3, value: (mm: number) => number) => grip(movedAt(place), at, UP, value, (mm) => change([place], mm));
   return [
     grip(
       SPACING,
       low,
       OUTWARDS,
-      (mm) => apart + 2 * mm,
+      (mm) => spacing.value + 2 * mm,
       (mm) => change(both, mm),
     ),
-    own(sagittal!, frontEnd, (mm) => radius(side, frontEnd.x - low.x, mm)),
-    own(coronal!, sideEnd, (mm) => radius(front, sideEnd.z - low.z, mm)),
-    own(thickness!, new Vector3(low.x, bottom, sideEnd.z), (mm) => thick - mm),
+    own(sagittal, frontEnd, (mm) => radius(sagittal.value, frontEnd.x - low.x, mm)),
+    own(coronal, sideEnd, (mm) => radius(coronal.value, sideEnd.z - low.z, mm)),
+    own(thickness, new Vector3(low.x, bottom, sideEnd.z), (mm) => thickness.value - mm),
   ];
 }
 
 // Each condyle is an arc about the origin of the femoral frame and, before a line through it, a larger one tangent to the first. The
 // points are those of the medial condyle, away from the points of the insert.
-function ofFemur(scene: Scene, text: string, change: Change): Grip[] {
-  const [distal, posterior, coronal, spacing, transition] = [
-    "distal_radius_mm",
-    "posterior_radius_mm",
-    "coronal_radius_mm",
-    "spacing_mm",
-    "transition_deg",
-  ].map((key) => ({ table: "femur", key }));
-  const [under, behind, across, apart, turn] = [distal!, posterior!, coronal!, spacing!, transition!].map((place) => numberOf(text, place));
+function ofFemur(scene: Scene, values: Map<string, string>, change: Change): Grip[] {
+  const found = dimensionsOf(values, "femur", "distal_radius_mm", "posterior_radius_mm", "coronal_radius_mm", "spacing_mm", "transition_deg");
   const pose = scene.facts.neutral_pose;
-  if (!isGeneric(text, "femur") || !scene.facts.has_femur || !pose || !under || !behind || !across || !apart || turn === undefined) return [];
-  const angle = (turn * Math.PI) / 180;
-  const low = new Vector3((under - behind) * Math.sin(angle), (under - behind) * Math.cos(angle) - under, -apart / 2);
+  if (!found || !scene.facts.has_femur || !pose) return [];
+  const [distal, posterior, coronal, spacing, transition] = found;
+  const [under, behind, across] = [distal.value, posterior.value, coronal.value];
+  const angle = (transition.value * Math.PI) / 180;
+  const low = new Vector3((under - behind) * Math.sin(angle), (under - behind) * Math.cos(angle) - under, -spacing.value / 2);
   const toInsert = matrix(pose);
   const own = (place: Place, at: Vector3, along: Vector3, value: (mm: number) => number): Grip => ({
     ...grip(movedAt(place), at.applyMatrix4(toInsert), along.clone().transformDirection(toInsert), value, (mm) => change([place], mm)),
@@ -76,9 +73,9 @@ function ofFemur(scene: Scene, text: string, change: Change): Grip[] {
   const [ahead, aside] = [HALF_PART * under, HALF_PART * across];
   const risen = (x: number, y: number, z: number) => new Vector3(low.x + x, low.y + y, low.z - z);
   return [
-    own(distal!, risen(ahead, rise(under, ahead), 0), UP, (mm) => radius(under, ahead, mm)),
-    own(coronal!, risen(0, rise(across, aside), aside), UP, (mm) => radius(across, aside, mm)),
-    own(posterior!, new Vector3(-behind, 0, low.z), new Vector3(-1, 0, 0), (mm) => behind + mm),
+    own(distal, risen(ahead, rise(under, ahead), 0), UP, (mm) => radius(under, ahead, mm)),
+    own(coronal, risen(0, rise(across, aside), aside), UP, (mm) => radius(across, aside, mm)),
+    own(posterior, new Vector3(-behind, 0, low.z), new Vector3(-1, 0, 0), (mm) => behind + mm),
   ];
 }
 
@@ -92,8 +89,15 @@ function grip({ label, least, most, step }: Limits, at: Vector3, along: Vector3,
   return { at, along, words: (mm) => `${label} ${inDigits(within(mm))} mm`, dropped: (mm) => dropped(within(mm)) };
 }
 
-function isGeneric(text: string, table: string): boolean {
-  return valueAt(text, { table, key: "shape" }) === "generic";
+function isGeneric(values: Map<string, string>, table: string): boolean {
+  return unquoted(values.get(`${table}.shape`) ?? "") === "generic";
+}
+
+// The dimensions of a generic body; none of another.
+function dimensionsOf<K extends string[]>(values: Map<string, string>, table: string, ...keys: K): { [I in keyof K]: Dimension } | undefined {
+  const found = keys.map((key) => ({ table, key, value: numberIn(values.get(`${table}.${key}`)) }));
+  const isWhole = isGeneric(values, table) && found.every(({ value }) => value !== undefined);
+  return isWhole ? (found as { [I in keyof K]: Dimension }) : undefined;
 }
 
 // The height above its lowest point of an arc, `half` mm beside it.

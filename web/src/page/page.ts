@@ -6,7 +6,7 @@ import { inDigits } from "../digits";
 import { save, saveText } from "../save";
 import viewStyle from "../style.css";
 import schema from "../../../cases/condyle.schema.json";
-import { valueAt, valuesOf } from "./case_text";
+import { valuesOf } from "./case_text";
 import { Compared } from "./compared";
 import { gripsOf } from "./dimensions";
 import { take, takeDropped, type Bodies } from "./dropped";
@@ -32,7 +32,8 @@ function byId(id: string): HTMLElement {
 
 // Meshes are in no address: a case that names them would not run elsewhere.
 function namesMeshes(text: string): boolean {
-  return ["femur", "insert"].some((table) => valueAt(text, { table, key: "file" }) !== undefined);
+  const values = valuesOf(text);
+  return ["femur.file", "insert.file"].some((path) => values.has(path));
 }
 
 // Waits until the page is painted; the time after it is that of another task.
@@ -192,7 +193,7 @@ class Page {
     this.shown.showCharts();
     await painted();
     this.compared.show(found, this.shown.viewer);
-    void this.memory.remember(this.laboratory.text, !namesMeshes(found.text));
+    await this.memory.remember(this.laboratory.text, !namesMeshes(found.text));
     document.documentElement.dataset["ready"] = "yes";
     document.documentElement.dataset["runs"] = String(++this.runs);
   }

@@ -21,71 +21,51 @@ interface Moved extends Place, Limits {
 
 const GENERIC = ["generic"];
 const OF_KNEES = ["generic", "mesh"];
+
+// The slider of a key, such as `insert.thickness_mm`.
+function moved(path: string, label: string, [least, most, step]: [number, number, number], unit = "", shapes?: string[]): Moved {
+  const [table, key] = path.split(".") as [string, string];
+  return { table, key, label, least, most, step, unit, ...(shapes && { shapes }) };
+}
+
 const GROUPS: [heading: string, moved: Moved[]][] = [
   [
     "Femur",
     [
-      { table: "femur", key: "distal_radius_mm", label: "Distal radius", unit: "mm", least: 25, most: 60, step: 0.5, shapes: GENERIC },
-      { table: "femur", key: "posterior_radius_mm", label: "Posterior radius", unit: "mm", least: 15, most: 30, step: 0.5, shapes: GENERIC },
-      {
-        table: "femur",
-        key: "coronal_radius_mm",
-        label: "Coronal radius of the femur",
-        unit: "mm",
-        least: 15,
-        most: 29,
-        step: 0.5,
-        shapes: GENERIC,
-      },
+      moved("femur.distal_radius_mm", "Distal radius", [25, 60, 0.5], "mm", GENERIC),
+      moved("femur.posterior_radius_mm", "Posterior radius", [15, 30, 0.5], "mm", GENERIC),
+      moved("femur.coronal_radius_mm", "Coronal radius of the femur", [15, 29, 0.5], "mm", GENERIC),
     ],
   ],
   [
     "Insert",
     [
-      {
-        table: "insert",
-        key: "sagittal_radius_mm",
-        label: "Sagittal radius of the dish",
-        unit: "mm",
-        least: 42,
-        most: 120,
-        step: 1,
-        shapes: GENERIC,
-      },
-      {
-        table: "insert",
-        key: "coronal_radius_mm",
-        label: "Coronal radius of the dish",
-        unit: "mm",
-        least: 25,
-        most: 100,
-        step: 1,
-        shapes: GENERIC,
-      },
-      { table: "insert", key: "thickness_mm", label: "Thickness", unit: "mm", least: 4, most: 15, step: 0.5, shapes: GENERIC },
+      moved("insert.sagittal_radius_mm", "Sagittal radius of the dish", [42, 120, 1], "mm", GENERIC),
+      moved("insert.coronal_radius_mm", "Coronal radius of the dish", [25, 100, 1], "mm", GENERIC),
+      moved("insert.thickness_mm", "Thickness", [4, 15, 0.5], "mm", GENERIC),
     ],
   ],
   [
     "Placement",
     [
-      { table: "femur", key: "varus_deg", label: "Varus of the femur", unit: "°", least: -4, most: 4, step: 0.25, shapes: OF_KNEES },
-      { table: "femur", key: "external_rotation_deg", label: "External rotation of the femur", unit: "°", least: -8, most: 8, step: 0.5, shapes: OF_KNEES },
-      { table: "insert", key: "posterior_slope_deg", label: "Posterior slope of the insert", unit: "°", least: -4, most: 10, step: 0.5, shapes: OF_KNEES },
+      moved("femur.varus_deg", "Varus of the femur", [-4, 4, 0.25], "°", OF_KNEES),
+      moved("femur.external_rotation_deg", "External rotation of the femur", [-8, 8, 0.5], "°", OF_KNEES),
+      moved("insert.posterior_slope_deg", "Posterior slope of the insert", [-4, 10, 0.5], "°", OF_KNEES),
     ],
   ],
   [
     "Test",
     [
-      { table: "machine", key: "load_scale", label: "Loads, relative to the waveforms", unit: "", least: 0.4, most: 1.6, step: 0.05 },
-      { table: "contact", key: "friction", label: "Friction", unit: "", least: 0, most: 0.2, step: 0.01 },
-      { table: "march", key: "cycles", label: "Cycles", unit: "million", least: 0.5, most: 20, step: 0.5, times: 1e6 },
+      moved("machine.load_scale", "Loads, relative to the waveforms", [0.4, 1.6, 0.05]),
+      moved("contact.friction", "Friction", [0, 0.2, 0.01]),
+      { ...moved("march.cycles", "Cycles", [0.5, 20, 0.5], "million"), times: 1e6 },
     ],
   ],
 ];
 
 // The label and the range of the slider of a number.
 export function movedAt({ table, key }: Place): Limits {
-  const found = GROUPS.flatMap(([, moved]) => moved).find((moved) => moved.table === table && moved.key === key);
+  const found = GROUPS.flatMap(([, all]) => all).find((one) => one.table === table && one.key === key);
   if (!found) throw new Error(`no slider moves ${table}.${key}`);
   return found;
 }
