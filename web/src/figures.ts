@@ -1,7 +1,8 @@
 // Saves the still pictures of the page as SVG on white and as PNG.
 
 import { button, element } from "./dom";
-import { save } from "./save";
+import { slug } from "./plots";
+import { save, savePicture } from "./save";
 
 // Pixels of a PNG for each point of the picture.
 const DOTS = 2;
@@ -9,11 +10,7 @@ const DOTS = 2;
 // Puts two buttons below every still picture that is on the screen.
 export function offerPictures(root: ParentNode): void {
   for (const svg of root.querySelectorAll<SVGSVGElement>("svg.fig:not(.still)")) {
-    const name =
-      svg
-        .querySelector("title")
-        ?.textContent?.toLowerCase()
-        .replaceAll(/[^a-z0-9]+/g, "_") || "picture";
+    const name = slug(svg.querySelector("title")?.textContent ?? "") || "picture";
     const saves = element(
       "span",
       { class: "saves" },
@@ -55,5 +52,5 @@ async function savePng(name: string, svg: SVGSVGElement): Promise<void> {
   await image.decode();
   const canvas = element("canvas", { width: DOTS * width, height: DOTS * height });
   canvas.getContext("2d")!.drawImage(image, 0, 0, canvas.width, canvas.height);
-  canvas.toBlob((blob) => blob && save(name, blob), "image/png");
+  savePicture(name, canvas);
 }

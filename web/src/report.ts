@@ -4,6 +4,7 @@ import { element } from "./dom";
 import { offerPictures, standalone } from "./figures";
 import { linked } from "./linked";
 import { RunView } from "./run_view";
+import { piped } from "./save";
 import { Scene, type Chart } from "./scene";
 import style from "./style.css";
 import { Viewer } from "./viewer";
@@ -12,7 +13,7 @@ import plotStyle from "uplot/dist/uPlot.min.css";
 async function sceneOf(host: HTMLElement): Promise<Scene> {
   const text = document.getElementById(host.dataset["scene"]!)?.textContent?.trim() ?? "";
   const bytes = Uint8Array.from(atob(text), (letter) => letter.charCodeAt(0));
-  return new Scene(await new Response(new Blob([bytes]).stream().pipeThrough(new DecompressionStream("deflate"))).arrayBuffer());
+  return new Scene((await piped(bytes, new DecompressionStream("deflate"))).buffer);
 }
 
 // The still picture of a chart, which the interactive one replaces on the screen.

@@ -1,4 +1,4 @@
-// Downloads of files made in the page; nothing leaves the machine.
+// Downloads of files made in the page, and their compression by the browser; nothing leaves the machine.
 
 import { element } from "./dom";
 
@@ -14,4 +14,8 @@ export function saveText(name: string, text: string, type: string): void {
 
 export function savePicture(name: string, canvas: HTMLCanvasElement): void {
   canvas.toBlob((blob) => blob && save(name, blob), "image/png");
+}
+
+export async function piped(bytes: Uint8Array, through: CompressionStream | DecompressionStream): Promise<Uint8Array<ArrayBuffer>> {
+  return new Uint8Array(await new Response(new Blob([bytes as BlobPart]).stream().pipeThrough(through)).arrayBuffer());
 }

@@ -1,11 +1,9 @@
 // The case of the page in its address, which can be sent, and in the storage of the browser.
 
+import { piped } from "../save";
+
 const MARK = "#case=";
 const STORED = "condyle.case";
-
-async function piped(bytes: Uint8Array<ArrayBuffer>, through: CompressionStream | DecompressionStream): Promise<Uint8Array> {
-  return new Uint8Array(await new Response(new Blob([bytes]).stream().pipeThrough(through)).arrayBuffer());
-}
 
 // A text, compressed, in letters that an address may have.
 export async function packed(text: string): Promise<string> {

@@ -30,10 +30,6 @@ export class Solver {
     });
   }
 
-  get isBusy(): boolean {
-    return this.giveUp !== undefined;
-  }
-
   cancel(): void {
     if (!this.giveUp) return;
     this.drop();
