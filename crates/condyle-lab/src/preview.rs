@@ -319,8 +319,9 @@ impl Expected {
             Update::Fixed(fixed) => fixed.updates as f64,
             Update::Auto(_) => OWN_UPDATES,
         };
-        let increments = march.test().time.increments as f64;
-        let evaluations = updates * CYCLES_AN_UPDATE * increments * EVALUATIONS_AN_INCREMENT;
+        let cycles = updates * march.test().activities.len() as f64 * CYCLES_AN_UPDATE;
+        let increments = cycles * march.test().time.increments as f64;
+        let evaluations = increments * EVALUATIONS_AN_INCREMENT;
         // The estimate of the error solves cycles again, with finer increments and a coarser mesh: about 60 % more.
         let again = if case.accuracy.estimate { 1.6 } else { 1.0 };
         let deformable = case.contact.deformable();

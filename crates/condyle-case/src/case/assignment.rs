@@ -162,23 +162,30 @@ impl<'c> Lines<'c> {
         }
     }
 
-    /// Removes the keys that do not apply to a choice that was set, unless they were set too.
+    /// Removes the keys of choices that will be set, unless they are set too: those that do not apply to the new word, and those with
+    /// another default for it, since a case that writes all keys has the constants of the word before.
     pub fn leave_out(&self, document: &mut DeTable<'_>, items: &[Item]) -> Vec<BuildWarning> {
         let mut notes = Vec::new();
         for change in self.changes {
-            let above = change.key.rsplit_once('.').map_or("", |(above, _)| above);
             let Some(choices) = choices_at(items, &change.key) else {
                 continue;
             };
-            let value = value_at(document, &change.key).and_then(|value| value.get_ref().as_str());
-            let Some(word) = value.map(str::to_owned) else {
-                continue;
-            };
+            let above = change.key.rsplit_once('.').map_or("", |(above, _)| above);
+            let before = value_at(document, &change.key).and_then(|word| word.get_ref().as_str());
+            let before = before.unwrap_or(choices.default).to_owned();
+            let value = change.value();
+            let word = value.trim_matches(['"', '\'']);
+            let set = format!("{} = {value}, which is set", change.key);
             let offered = choices.offered.iter().flat_map(|offer| &offer.items);
             for name in offered.filter_map(Item::name) {
-                if choices.other_owner(name, &word).is_some() {
-                    notes.extend(self.left_out(document, &format!("{above}.{name}"), change));
-                }
+                let reason = if choices.other_owner(name, word).is_some() {
+                    format!("it does not apply to {set}")
+                } else if choices.default_of(name, &before) != choices.default_of(name, word) {
+                    format!("it has another default for {set}")
+                } else {
+                    continue;
+                };
+                notes.extend(self.left_out(document, &format!("{above}.{name}"), &reason));
             }
         }
         notes
@@ -194,24 +201,29 @@ impl<'c> Lines<'c> {
         let Some(change) = self.changes.iter().find(is_other) else {
             return Vec::new();
         };
+        let reason = format!(
+            "it does not apply to {} = {}, which is set",
+            change.key,
+            change.value()
+        );
         let mut notes = Vec::new();
         for joint in &KNEE.joints {
             if let (Some(load), Some(motion)) = (joint.load_channel(), joint.motion) {
                 let drive = format!("freedoms.{}.drive", joint.name);
                 for key in [&drive, load.name, motion.name] {
-                    notes.extend(self.left_out(document, &format!("machine.{key}"), change));
+                    notes.extend(self.left_out(document, &format!("machine.{key}"), &reason));
                 }
             }
         }
         notes
     }
 
-    /// Removes a key or table that does not apply to `change`, unless it was set too.
+    /// Removes a key or table for a `reason`, unless it is set too.
     fn left_out(
         &self,
         document: &mut DeTable<'_>,
         path: &str,
-        change: &Assignment,
+        reason: &str,
     ) -> Option<BuildWarning> {
         let is_below = |other: &Assignment| {
             let rest = other.key.strip_prefix(path);
@@ -226,9 +238,7 @@ impl<'c> Lines<'c> {
             _ => format!("{path} = {}", &self.shown[value.span()]),
         };
         Some(BuildWarning::new(format!(
-            "{written}: ignored, since it does not apply to {} = {}, which is set",
-            change.key,
-            change.value()
+            "{written}: ignored, since {reason}"
         )))
     }
 }

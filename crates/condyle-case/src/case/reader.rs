@@ -105,8 +105,8 @@ impl CaseReader {
             // Old names are replaced first: values that are set have the current ones.
             let mut notes = rename_keys(document);
             notes.extend(lines.leave_out_drives(document));
-            lines.apply(document);
             notes.extend(lines.leave_out(document, &items));
+            lines.apply(document);
             let root = Section::root(document);
             log.places = root.places();
             log.wear_laws = self.wear_laws;

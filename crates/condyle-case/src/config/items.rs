@@ -111,6 +111,15 @@ impl Choices {
         offered.find(has).map(|offer| offer.word)
     }
 
+    /// Returns the default of the key `name` if `word` is chosen; none of other entries.
+    pub fn default_of(&self, name: &str, word: &str) -> Option<&WhereSilent> {
+        let offered = self.offered.iter().find(|offer| offer.word == word)?;
+        offered.items.iter().find_map(|item| match item {
+            Item::Key(key) if key.name == name => Some(&key.silent),
+            _ => None,
+        })
+    }
+
     pub fn assignment(&self, word: &str) -> String {
         format!("{} = \"{word}\"", self.by.name)
     }

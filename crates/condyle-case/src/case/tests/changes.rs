@@ -5,6 +5,8 @@ use std::path::Path;
 use condyle_mesh::files::MemoryFiles;
 
 use crate::case::{Assignment, Case, CaseReader, ChangeError};
+use crate::config::{Choices, Item};
+use condyle::wear::WEAR_LAWS;
 
 fn changed(text: &str, changes: &[&str]) -> Result<Case, ChangeError> {
     let files = MemoryFiles::default().with("/case.toml", text);
@@ -132,6 +134,52 @@ fn a_choice_that_is_set_leaves_out_keys_of_other_choices_and_warns() {
     let case = changed(soft, &["contact.model=deformable"]).unwrap();
     assert!(case.contact.deformable().is_some());
     assert!(warnings(&case)[0].starts_with("[contact.foundation]: ignored"));
+}
+
+/// Every table of choices, with its dotted path.
+fn choices<'i>(items: &'i [Item], above: &str, found: &mut Vec<(String, &'i Choices)>) {
+    for item in items {
+        match item {
+            Item::Choice(choices_here) => {
+                found.push((format!("{above}{}", choices_here.by.name), choices_here));
+                for offer in &choices_here.offered {
+                    choices(&offer.items, above, found);
+                }
+            }
+            Item::Table(table) if !table.is_list => {
+                choices(&table.items, &format!("{above}{}.", table.name), found);
+            }
+            _ => {}
+        }
+    }
+}
+
+#[test]
+fn a_choice_that_is_set_means_the_same_where_all_keys_are_written() {
+    const HIP: &str = "[machine]\npreset = \"iso-14242-1-like\"\n[femur]\nshape = \"sphere\"\nradius_mm = 14.0\n[insert]\nshape = \"cup\"\n";
+    let items = Case::items_with(WEAR_LAWS);
+    let mut all = Vec::new();
+    choices(&items, "", &mut all);
+    let mut compared = 0;
+    for (text, (key, choices)) in ["", HIP]
+        .iter()
+        .flat_map(|text| all.iter().map(move |one| (*text, one)))
+    {
+        // A word that needs other keys or another body is no case.
+        let cases = choices.offered.iter().filter_map(|offer| {
+            let set = format!("{key}={}", offer.word);
+            changed(text, &[&set]).ok().map(|case| (set, case))
+        });
+        let cases: Vec<_> = cases.collect();
+        for (before, written) in &cases {
+            for (set, short) in &cases {
+                let long = changed(&written.to_toml(), &[set]).unwrap();
+                assert_eq!(long.to_toml(), short.to_toml(), "{before}, then {set}");
+                compared += 1;
+            }
+        }
+    }
+    assert!(compared > 150, "{compared}");
 }
 
 #[test]
