@@ -65,9 +65,13 @@ fn described(joint: &RigJoint, scale: f64) -> String {
     let (kind, drive) = (format!("{:?}", keys.kind).to_lowercase(), keys.drive.word());
     let range = match (&joint.waveform, keys.turns_per_cycle) {
         (Some(waveform), _) => {
-            let values = || waveform.knots().iter().map(|knot| knot.value * scale);
-            let least = values().fold(f64::INFINITY, f64::min);
-            let most = values().fold(f64::NEG_INFINITY, f64::max);
+            // A spline leaves the range of its points.
+            let between = (0..1000).map(|place| waveform.at(f64::from(place) / 1000.0).0);
+            let points = waveform.knots().iter().map(|knot| knot.value);
+            let values: Vec<f64> = points.chain(between).collect();
+            let least = values.iter().copied().fold(f64::INFINITY, f64::min);
+            let most = values.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+            let [least, most] = [least, most].map(|end| (1e3 * scale * end).round() / 1e3);
             format!(" {least} to {most} {}", joint.unit())
         }
         (None, Some(turns)) => format!(" {turns} turns a cycle"),

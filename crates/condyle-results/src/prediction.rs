@@ -198,16 +198,22 @@ impl Prediction {
     }
 
     /// Returns the part of laboratories in which this design wears less than another, 0 to 1: the same draws of the law for
-    /// both, with the laboratory's factor cancelled, and the scatter of inputs between their tests and of cross-linking if only one
-    /// has it. None if the draws differ in number.
-    pub fn part_below(&self, other: &Self) -> Option<f64> {
+    /// both, with the laboratory's factor cancelled, the scatter of inputs between their tests, both discretisation errors, and the
+    /// scatter of each cross-linking unless both inserts are of one polyethylene. None if the draws differ in number.
+    pub fn part_below(&self, other: &Self, is_same_polyethylene: bool) -> Option<f64> {
         let pairs = self.mass_loss_mg_by_draw.iter();
         let pairs = pairs.zip(&other.mass_loss_mg_by_draw);
-        let log_sd = if self.is_cross_linked() == other.is_cross_linked() {
-            INPUTS_LOG_SD
-        } else {
-            INPUTS_LOG_SD.hypot(CROSS_LINKING_LOG_SD)
-        };
+        let mut log_sd = INPUTS_LOG_SD;
+        for Source { source, factor } in self.sources.iter().chain(&other.sources) {
+            let is_own = match source.as_str() {
+                DISCRETISATION => true,
+                CROSS_LINKING => !is_same_polyethylene,
+                _ => false,
+            };
+            if is_own {
+                log_sd = log_sd.hypot(factor.ln() / DEVIATIONS_OF_90_PERCENT);
+            }
+        }
         let below = pairs.map(|(own, other)| {
             // Half of the variance of inputs is that of set-ups and differs between the two tests; the rest is that of the
             // machine and cancels. So the difference of the two has the variance of one.
@@ -217,10 +223,6 @@ impl Prediction {
         let count = self.mass_loss_mg_by_draw.len();
         (count == other.mass_loss_mg_by_draw.len() && count > 0)
             .then(|| below.sum::<f64>() / count as f64)
-    }
-
-    fn is_cross_linked(&self) -> bool {
-        self.sources.iter().any(|own| own.source == CROSS_LINKING)
     }
 
     /// Returns the sources of the interval and their factors in words, after the sign `times`. A run without an estimate of its
@@ -357,23 +359,38 @@ mod tests {
             prediction(&[3.0, 6.0, 12.0, 4.0]),
         );
         let near = |found: Option<f64>, exact: f64| (found.unwrap() - exact).abs() < 1e-3;
-        assert!(near(one.part_below(&two), 0.75) && near(two.part_below(&one), 0.25));
+        let below = |one: &Prediction, two: &Prediction| one.part_below(two, true);
+        assert!(near(below(&one, &two), 0.75) && near(below(&two, &one), 0.25));
         // Of equal designs, either wears less in half of the laboratories.
-        assert!(near(one.part_below(&one), 0.5));
+        assert!(near(below(&one, &one), 0.5));
         // One deviation of the difference of two tests.
-        let part = prediction(&[1.0]).part_below(&prediction(&[INPUTS_LOG_SD.exp()]));
+        let part = below(&prediction(&[1.0]), &prediction(&[INPUTS_LOG_SD.exp()]));
         assert!((part.unwrap() - 0.841).abs() < 0.01);
-        assert_eq!(one.part_below(&prediction(&[1.0])), None);
-        // The factor of cross-linking cancels between two such inserts only.
-        let cross_linked = |masses| Prediction {
-            sources: vec![Source::new(CROSS_LINKING, CROSS_LINKING_LOG_SD)],
-            ..prediction(masses)
+        assert_eq!(below(&one, &prediction(&[1.0])), None);
+        // The factor of cross-linking cancels between inserts of one polyethylene only; discretisation errors never do.
+        let with = |source: &str, log_sd: f64| {
+            let sources = vec![Source::new(source, DEVIATIONS_OF_90_PERCENT * log_sd)];
+            move |masses: &[f64]| Prediction {
+                sources: sources.clone(),
+                ..prediction(masses)
+            }
         };
-        let both_log = INPUTS_LOG_SD.hypot(CROSS_LINKING_LOG_SD);
-        let part = cross_linked(&[1.0]).part_below(&prediction(&[both_log.exp()]));
-        assert!((part.unwrap() - 0.841).abs() < 0.01);
-        let part = cross_linked(&[1.0]).part_below(&cross_linked(&[INPUTS_LOG_SD.exp()]));
-        assert!((part.unwrap() - 0.841).abs() < 0.01);
+        let cross_linked = with(CROSS_LINKING, CROSS_LINKING_LOG_SD);
+        let coarse = with(DISCRETISATION, 0.1);
+        let at_one_deviation = |one: &dyn Fn(&[f64]) -> Prediction,
+                                two: &dyn Fn(&[f64]) -> Prediction,
+                                log_sd: f64,
+                                is_same_polyethylene: bool| {
+            let part = one(&[1.0]).part_below(&two(&[log_sd.exp()]), is_same_polyethylene);
+            assert!((part.unwrap() - 0.841).abs() < 0.01);
+        };
+        let with_one_log = INPUTS_LOG_SD.hypot(CROSS_LINKING_LOG_SD);
+        at_one_deviation(&cross_linked, &prediction, with_one_log, false);
+        at_one_deviation(&cross_linked, &cross_linked, INPUTS_LOG_SD, true);
+        let with_both_log = with_one_log.hypot(CROSS_LINKING_LOG_SD);
+        at_one_deviation(&cross_linked, &cross_linked, with_both_log, false);
+        let with_errors_log = INPUTS_LOG_SD.hypot(0.1).hypot(0.1);
+        at_one_deviation(&coarse, &coarse, with_errors_log, true);
     }
 
     #[test]

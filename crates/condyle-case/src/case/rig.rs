@@ -251,7 +251,7 @@ impl Rig {
         for joint in &self.joints {
             if has_zeroed && joint.keys.point_mm.is_some() {
                 let message = format!(
-                    "the axis of \"{}\" is fixed in the bearing, but a joint before it reads zero where the machine settles",
+                    "the axis of \"{}\" passes through a point of the bearing, but a joint before it reads zero where the machine settles",
                     joint.keys.name
                 );
                 return fault(

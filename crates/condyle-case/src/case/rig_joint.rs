@@ -55,7 +55,7 @@ settings! {
         axis: [f64; 3], in within(-1.0, 1.0);
         /// Body that it moves, which determines the sign.
         moves: MovedBody = MovedBody::Counterface;
-        /// Point of a rotation's axis in the bearing frame; through the centre of the counterface if not given.
+        /// Point of a rotation's axis in the bearing frame while the joints before it are at zero, which carry it along; through the centre of the counterface if not given.
         point_mm: Option<[f64; 3]> = None, in within(-1000.0, 1000.0);
         /// Level from which the height of `point_mm`, its second number, is measured; the origin if not given.
         point_from: Option<PointLevel> = None;
@@ -291,7 +291,17 @@ impl Settings for RigJoint {
     }
 
     fn read(section: &Section<'_>, log: &mut Log<'_>) -> Option<Self> {
-        let keys = RigJointKeys::read(section, log)?;
+        let mut keys = RigJointKeys::read(section, log)?;
+        // A direction from CAD has round-off, but the axis that presses is along y exactly.
+        let largest = keys
+            .axis
+            .iter()
+            .fold(0.0_f64, |most, part| most.max(part.abs()));
+        for part in &mut keys.axis {
+            if part.abs() < AXIS_ROUND_OFF * largest {
+                *part = 0.0;
+            }
+        }
         let channel = channel_of(keys.kind, keys.drive);
         let mut faults = keys.faults(section);
         let waveform = match channel {
@@ -324,6 +334,9 @@ impl Settings for RigJoint {
         }
     }
 }
+
+/// Part of the largest component of an axis below which another one is round-off.
+const AXIS_ROUND_OFF: f64 = 1e-6;
 
 impl RigJoint {
     pub(super) fn name(&self) -> &str {

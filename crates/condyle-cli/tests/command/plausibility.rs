@@ -107,6 +107,10 @@ fn units_of_loads_and_motions_are_doubtful() {
             "increments_coarse",
         ),
         (
+            "flexion]\ninterpolation = \"spline\"\nknots_deg = [[0, 0], [10, 0], [20, 0], [30, 40], [40, 40], [50, 40], [60, 40], [70, 0], [80, 0], [90, 0]]",
+            "waveform_overshoots",
+        ),
+        (
             "flexion]\nknots_deg = [[0, 0], [50, 40]]\n[contact]\nslip_tolerance_mm_per_s = 100.0",
             "slides_slowly",
         ),

@@ -1,7 +1,8 @@
 //! Checks of the machine: whether it reaches its loads, and whether its springs stay within their travel.
 
 use condyle::machine::{
-    Axis, CycleRow, Drive, JointIndex, JointKind, Machine, Spring, TestedJoint, Waveform,
+    Axis, CycleRow, Drive, Interpolation, JointIndex, JointKind, Machine, Spring, TestedJoint,
+    Waveform,
     knee::{AP, IE, IS, KNEE, ML, VV},
 };
 use condyle_results::{PlausibilityWarning, joint_range};
@@ -69,6 +70,10 @@ const MIN_PATH_MM: f64 = 0.01;
 const MAX_MISSED_PERCENT: f64 = 5.0;
 /// Smallest plausible peak of the axial force on specimens, N; our choice: pins are pressed by tens to hundreds of newtons.
 const MIN_PEAK_LOAD_OF_SPECIMENS_N: f64 = 1.0;
+
+/// Largest distance by which a spline may leave the range of its samples, % of that range; our choice: that of measured loads and
+/// motions is 2 % at most, and that of a step 10 % or more.
+const MAX_OVERSHOOT_PERCENT: f64 = 5.0;
 
 /// A load of the machine that contact and springs do not balance.
 struct Missed {
@@ -259,6 +264,51 @@ pub(crate) fn coarse_increments(finished: &Finished<'_>) -> Vec<PlausibilityWarn
     warnings
 }
 
+/// Warns of a spline that leaves the range of its samples, as it does at a step: each joint once.
+pub(crate) fn overshoots(finished: &Finished<'_>) -> Vec<PlausibilityWarning> {
+    let overshooting = |index: JointIndex, cycle: SolvedCycle<'_>| {
+        let machine = finished.machine(&cycle);
+        let (Drive::Prescribed(waveform) | Drive::Loaded(waveform)) = &machine.joint(index).drive
+        else {
+            return None;
+        };
+        let percent = overshoot_percent(waveform);
+        let message = format!(
+            "the curve of `{}`{} leaves the range of its samples by {percent:.0} % of it: a spline overshoots at steps",
+            machine.mechanism.joint(index).symbol,
+            finished.activity_in_words(&cycle)
+        );
+        let advice = "Write interpolation = \"half-cosine\" in the table of its waveform, or give more samples where it changes fast.";
+        let value = (percent, MAX_OVERSHOOT_PERCENT, "%");
+        (percent > MAX_OVERSHOOT_PERCENT)
+            .then(|| warning("waveform_overshoots", value, message, advice))
+    };
+    let of_joint = |index| {
+        finished
+            .cycles()
+            .find_map(|cycle| overshooting(index, cycle))
+    };
+    JointIndex::ALL.into_iter().filter_map(of_joint).collect()
+}
+
+/// Returns the distance by which a waveform leaves the range of its knots, % of that range.
+fn overshoot_percent(waveform: &Waveform) -> f64 {
+    const STEPS: usize = 1000;
+    let knots = waveform.knots().iter().map(|knot| knot.value);
+    let ([low, high], [lowest, highest]) = (extremes(knots), extremes(sampled(waveform, STEPS)));
+    if low == high || waveform.interpolation() == Interpolation::HalfCosine {
+        return 0.0;
+    }
+    100.0 * (low - lowest).max(highest - high) / (high - low)
+}
+
+/// Returns the lowest and the highest of some values.
+fn extremes(values: impl Iterator<Item = f64>) -> [f64; 2] {
+    values.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], value| {
+        [low.min(value), high.max(value)]
+    })
+}
+
 /// Instants of each increment at which a waveform is compared with its values at the ends of increments.
 const FINE: usize = 20;
 
@@ -287,14 +337,8 @@ fn missed_path(waveform: &Waveform, kind: JointKind, increments: usize) -> f64 {
 
 /// Returns the part of the largest load by which the ends of increments miss the highest or the lowest load, %.
 fn missed_peak(waveform: &Waveform, increments: usize) -> f64 {
-    let extremes = |count: usize| {
-        let (low, high) = (f64::INFINITY, f64::NEG_INFINITY);
-        let loads = sampled(waveform, count);
-        loads.fold([low, high], |[low, high], load| {
-            [low.min(load), high.max(load)]
-        })
-    };
-    let ([low, high], [low_here, high_here]) = (extremes(FINE * increments), extremes(increments));
+    let [low, high] = extremes(sampled(waveform, FINE * increments));
+    let [low_here, high_here] = extremes(sampled(waveform, increments));
     let largest = high.max(-low);
     if largest == 0.0 {
         return 0.0;
@@ -667,5 +711,27 @@ mod motions_tests {
         let spike = [(0.0, 10.0), (50.05, 10.0), (50.2, 100.0), (50.45, 10.0)];
         let spike = waveform(&spike, Interpolation::HalfCosine);
         assert!(missed_peak(&spike, 200) > 80.0 && missed_peak(&smooth, 200) < 1e-9);
+    }
+
+    #[test]
+    fn verify_the_overshoot_of_a_spline_at_a_step() {
+        let curve = |value: fn(f64) -> f64, interpolation| {
+            let knot = |place: u32| {
+                let percent = 5.0 * f64::from(place);
+                let value = value(percent);
+                Knot { percent, value }
+            };
+            Waveform::new((0..20).map(knot).collect(), interpolation).unwrap()
+        };
+        let step: fn(f64) -> f64 = |percent| f64::from(u8::from(percent < 50.0));
+        // The cardinal spline of an infinite step overshoots by 10.2 %; those of the other step add to it or subtract.
+        let overshoot = overshoot_percent(&curve(step, Interpolation::Spline));
+        assert!((overshoot - 10.2).abs() < 1.0, "{overshoot}");
+        assert_eq!(
+            overshoot_percent(&curve(step, Interpolation::HalfCosine)),
+            0.0
+        );
+        let sine = |percent: f64| (0.02 * std::f64::consts::PI * percent).sin();
+        assert!(overshoot_percent(&curve(sine, Interpolation::Spline)) < 1.0);
     }
 }

@@ -80,6 +80,7 @@ pub(crate) fn warnings(
     );
     warnings.extend(PLACE.iter().filter_map(one));
     warnings.extend(loads::motions(&finished));
+    warnings.extend(loads::overshoots(&finished));
     warnings.extend(loads::coarse_increments(&finished));
     warnings.extend(loads::not_reached(&finished));
     warnings.extend(loads::springs_far(&finished));

@@ -5,7 +5,7 @@ use std::path::Path;
 
 use condyle_results::{
     SettingDifference, Summary,
-    catalogue::{self, CYCLES, MASS_LOSS_MG, Scalar},
+    catalogue::{self, CYCLES, MASS_LOSS_MG, Scalar, WEAR_OVER_CONVENTIONAL},
     setting_differences,
 };
 use serde::Serialize;
@@ -182,7 +182,9 @@ fn ranking(first: &Run, second: &Run) -> Option<String> {
     if own.joint != other.joint || !(by.is_of_run && of.is_of_run) {
         return None;
     }
-    let percent = 100.0 * by.part_below(of)?;
+    let is_same_polyethylene =
+        own.get(&WEAR_OVER_CONVENTIONAL) == other.get(&WEAR_OVER_CONVENTIONAL);
+    let percent = 100.0 * by.part_below(of, is_same_polyethylene)?;
     Some(format!(
         "{two} wears less than {one} in {percent:.0} % of laboratories, by the calibrated law."
     ))
