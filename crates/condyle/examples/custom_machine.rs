@@ -139,7 +139,7 @@ fn ball_on_disc() -> Result<WearTest, Box<dyn Error>> {
         flexion_axis_mm: (0.0, 0.0),
         start_mm: (0.0, 0.0),
         start_height_mm: None,
-        insert: Arc::new(flat_insert((24.0, 24.0), 9.0, meshing)?),
+        insert: Arc::new(flat_insert((24.0, 24.0), 9.0, meshing)?.with_one_region("disc")),
         contact: Arc::new(Foundation::new(pressure, 0.05, 1.0)),
         activities: vec![Activity::only("orbit", machine)],
         wear: Arc::new(Archard {

@@ -99,12 +99,13 @@ pub trait ContactModel {
     /// Returns the number of surface nodes.
     fn node_count(&self) -> usize;
 
-    /// Begins the cycle of another activity.
+    /// Begins the cycle of the next activity; each has one cycle before the contact leaves its memory.
     fn begin_cycle(&mut self) {}
 
     /// Begins an increment, whose motions are near those of the same increment of the previous cycle.
     ///
-    /// The call is a hint: it may make the model faster and does not change its results.
+    /// It makes the model faster without changing its responses. A model that yields or slips by Coulomb's law also compares each
+    /// increment with that of the previous cycle: without the calls, it does not see that cycles repeat.
     fn begin_increment(&mut self, _increment: usize) {}
 
     /// Returns the response to a relative motion.
@@ -148,7 +149,8 @@ pub trait ContactModel {
     }
 }
 
-/// The memory that a contact leaves to the next one.
+/// The memory that a contact leaves to the next one, with the same counterface and an insert that may have worn; bounds of another
+/// counterface would miss its contact.
 #[derive(Debug, Default)]
 pub struct ContactMemory {
     /// The part on which results depend.

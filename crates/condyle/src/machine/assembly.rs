@@ -17,10 +17,17 @@ const MOMENT_LEVER_MM: f64 = 10.0;
 pub(super) struct Levers(pub [f64; 6]);
 
 impl Levers {
-    /// Returns the largest force, N, of forces and moments.
+    /// Returns the largest force, N, of forces and moments; NaN if one is NaN, so that no residual with it counts as balanced.
     pub fn largest_n(&self, forces: &Vec6) -> f64 {
         let force = |j: usize| forces[j].abs() / self.0[j];
-        (0..6).map(force).fold(0.0, f64::max)
+        let larger = |most: f64, force: f64| {
+            if force > most || force.is_nan() {
+                force
+            } else {
+                most
+            }
+        };
+        (0..6).map(force).fold(0.0, larger)
     }
 
     /// Returns the root of the sum of the squares of forces and moments, N.

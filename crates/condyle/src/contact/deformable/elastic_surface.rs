@@ -50,6 +50,7 @@ pub(crate) struct ElasticSurface {
     influence: OnceLock<Influence>,
     /// The flat part of the backside, and whether the insert rests on it; otherwise the whole backside is bonded.
     floor: Floor,
+    backside: Vec<u32>,
     rests: bool,
     /// The tray, if the insert rests on it, and the spacing of its points, mm.
     tray: Mutex<Option<(f64, Arc<Tray>)>>,
@@ -106,6 +107,7 @@ impl ElasticSurface {
             tangential: OnceLock::new(),
             influence: OnceLock::new(),
             floor,
+            backside: insert.backside_nodes().to_vec(),
             rests,
             tray: Mutex::default(),
         })
@@ -209,6 +211,7 @@ impl ElasticSurface {
             && mesh.hexes == insert.mesh().hexes
             && mesh.nodes == mesh_nodes
             && self.nodes == insert.surface_nodes()
+            && self.backside == insert.backside_nodes()
     }
 
     pub fn influence(&self) -> &Influence {
