@@ -162,31 +162,61 @@ impl<'c> Lines<'c> {
         }
     }
 
-    /// Removes the keys of choices that will be set, unless they are set too: those that do not apply to the new word, and those with
-    /// another default for it, since a case that writes all keys has the constants of the word before.
+    /// Removes the keys that exclude those that will be set, unless they are set too. Of a choice: those that do not apply to the new
+    /// word, and those with another default for it, since a case that writes all keys has the constants of the word before. Of a
+    /// curve: its other sources.
     pub fn leave_out(&self, document: &mut DeTable<'_>, items: &[Item]) -> Vec<BuildWarning> {
         let mut notes = Vec::new();
         for change in self.changes {
-            let Some(choices) = choices_at(items, &change.key) else {
+            let (above, name) = change.key.rsplit_once('.').unwrap_or(("", &change.key));
+            for item in items_at(items, above) {
+                match item {
+                    Item::Choice(choices) if choices.by.name == name => {
+                        notes.extend(self.leave_out_choice(document, choices, change, above));
+                    }
+                    Item::OneOf(ways) | Item::AtMostOne(ways) if ways.contains(&name) => {
+                        let reason = format!("{} is set", change.key);
+                        let mut left_out = |key: &str| {
+                            let path = format!("{above}.{key}");
+                            self.left_out(document, &path, &reason)
+                        };
+                        let others = ways.iter().filter(|way| **way != name);
+                        let sources: Vec<_> = others.filter_map(|way| left_out(way)).collect();
+                        // That of the points before.
+                        let is_other = !sources.is_empty();
+                        notes.extend(sources);
+                        notes.extend(is_other.then(|| left_out("interpolation")).flatten());
+                    }
+                    _ => {}
+                }
+            }
+        }
+        notes
+    }
+
+    fn leave_out_choice(
+        &self,
+        document: &mut DeTable<'_>,
+        choices: &Choices,
+        change: &Assignment,
+        above: &str,
+    ) -> Vec<BuildWarning> {
+        let before = value_at(document, &change.key).and_then(|word| word.get_ref().as_str());
+        let before = before.unwrap_or(choices.default).to_owned();
+        let value = change.value();
+        let word = value.trim_matches(['"', '\'']);
+        let set = format!("{} = {value}, which is set", change.key);
+        let mut notes = Vec::new();
+        let offered = choices.offered.iter().flat_map(|offer| &offer.items);
+        for name in offered.filter_map(Item::name) {
+            let reason = if choices.other_owner(name, word).is_some() {
+                format!("it does not apply to {set}")
+            } else if choices.default_of(name, &before) != choices.default_of(name, word) {
+                format!("it has another default for {set}")
+            } else {
                 continue;
             };
-            let above = change.key.rsplit_once('.').map_or("", |(above, _)| above);
-            let before = value_at(document, &change.key).and_then(|word| word.get_ref().as_str());
-            let before = before.unwrap_or(choices.default).to_owned();
-            let value = change.value();
-            let word = value.trim_matches(['"', '\'']);
-            let set = format!("{} = {value}, which is set", change.key);
-            let offered = choices.offered.iter().flat_map(|offer| &offer.items);
-            for name in offered.filter_map(Item::name) {
-                let reason = if choices.other_owner(name, word).is_some() {
-                    format!("it does not apply to {set}")
-                } else if choices.default_of(name, &before) != choices.default_of(name, word) {
-                    format!("it has another default for {set}")
-                } else {
-                    continue;
-                };
-                notes.extend(self.left_out(document, &format!("{above}.{name}"), &reason));
-            }
+            notes.extend(self.left_out(document, &format!("{above}.{name}"), &reason));
         }
         notes
     }
@@ -243,27 +273,29 @@ impl<'c> Lines<'c> {
     }
 }
 
-/// Returns the choice whose key has the dotted `path`.
-fn choices_at<'i>(items: &'i [Item], path: &str) -> Option<&'i Choices> {
-    let offered = items.iter().flat_map(|item| match item {
-        Item::Choice(choices) => choices
-            .offered
-            .iter()
-            .flat_map(|offer| &offer.items)
-            .collect(),
-        _ => Vec::new(),
-    });
-    let mut all = items.iter().chain(offered);
-    match path.split_once('.') {
-        Some((first, rest)) => all.find_map(|item| match item {
-            Item::Table(table) if table.name == first => choices_at(&table.items, rest),
-            _ => None,
-        }),
-        None => all.find_map(|item| match item {
-            Item::Choice(choices) if choices.by.name == path => Some(choices),
-            _ => None,
-        }),
+/// Returns the entries of the table at the dotted `path`, with those of every word of its choices.
+fn items_at<'i>(items: &'i [Item], path: &str) -> Vec<&'i Item> {
+    let mut all: Vec<&Item> = items.iter().collect();
+    for item in items {
+        if let Item::Choice(choices) = item {
+            all.extend(choices.offered.iter().flat_map(|offer| &offer.items));
+        }
     }
+    if path.is_empty() {
+        return all;
+    }
+    let (first, rest) = path.split_once('.').unwrap_or((path, ""));
+    let inside = all.into_iter().filter_map(|item| match item {
+        Item::Table(table) if table.name == first => Some(table),
+        _ => None,
+    });
+    inside
+        .flat_map(|table| {
+            // A table of a list follows under its own name.
+            let own = rest.split_once('.').map_or("", |(_, below)| below);
+            items_at(&table.items, if table.is_list { own } else { rest })
+        })
+        .collect()
 }
 
 impl Case {

@@ -260,7 +260,7 @@ pub(super) fn write(channel: &'static Channel, waveform: &Waveform, out: &mut Wr
     );
     let key = knots_key(channel).name;
     out.comment(&format!(
-        "[percent of the cycle, {}]",
+        "[percent of the cycle, {}], after scale, offset and low pass",
         unit_of(key).unwrap_or_default()
     ));
     let knots = waveform.knots().iter();

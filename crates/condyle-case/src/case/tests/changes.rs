@@ -136,6 +136,23 @@ fn a_choice_that_is_set_leaves_out_keys_of_other_choices_and_warns() {
     assert!(warnings(&case)[0].starts_with("[contact.foundation]: ignored"));
 }
 
+#[test]
+fn a_source_of_a_curve_that_is_set_replaces_the_points_of_a_written_case() {
+    let written = changed("", &[]).unwrap().to_toml();
+    for curve in ["machine.axial_force", "machine.flexion"] {
+        let set = format!("{curve}.waveform=stairs-like");
+        let case = changed(&written, &[&set]).unwrap();
+        assert_eq!(case.machine, changed("", &[&set]).unwrap().machine);
+        assert!(warnings(&case)[0].contains(&format!("ignored, since {curve}.waveform is set")));
+    }
+    const RIG: &str = "[machine]\npreset = \"iso-14242-1-like\"\n[femur]\nshape = \"sphere\"\nradius_mm = 14.0\n[insert]\nshape = \"cup\"\n";
+    let written = changed(RIG, &[]).unwrap().to_toml();
+    let set = ["machine.joints.flexion.motion.knots_deg=[[0, 0], [50, 20]]"];
+    assert!(changed(&written, &set).is_ok());
+    let set = ["machine.joints.flexion.motion.waveform=iso-like-flexion"];
+    assert!(changed(&written, &set).is_ok());
+}
+
 /// Every table of choices, with its dotted path.
 fn choices<'i>(items: &'i [Item], above: &str, found: &mut Vec<(String, &'i Choices)>) {
     for item in items {
