@@ -24,7 +24,7 @@ use condyle::{
     },
     geometry::Insert,
     machine::{
-        MachineState, TestedJoint,
+        MachineState,
         knee::{AP, IE, KNEE},
     },
 };
@@ -55,8 +55,8 @@ const COARSER_DEFORMABLE_PEAK: f64 = -1.0;
 const MIN_FEWER_FACES: f64 = 2.0;
 /// For a surface corrected by the errors of the steps so far.
 const MISSED: f64 = 1.0;
-/// For half the updates if the insert creeps or is a socket. Steps of creep are of first order and steps of wear of second; twice
-/// the updates leave a third of the error, so that half the updates triple it. So they do in cups, as finer runs show.
+/// For half the updates if the insert creeps. Steps of creep are of first order and steps of wear of second; twice
+/// the updates leave a third of the error, so that half the updates triple it.
 const HALF_THE_UPDATES: f64 = -1.0 / 2.0;
 
 /// The result of a changed test, or the reason why there is none.
@@ -354,17 +354,13 @@ impl<'a> Again<'a> {
         }
     }
 
-    /// Returns the march's own estimate of the error of its steps of wear, in %. With creep and in sockets, a march with half as many
-    /// updates estimates it, because a wrong shape changes the later wear: the pressure in a conforming contact depends on gaps that
-    /// are much smaller than its depth. The march's own estimate for cups was up to fifty times too small.
+    /// Returns the march's own estimate of the error of its steps of wear, in %. With creep, a march with half as many
+    /// updates estimates it, because the steps of creep change the later wear.
     fn wear_by_updates(&mut self) -> Found<OfWear> {
         let state = self.march.state();
         let last = state.updates.last().filter(|_| state.updates.len() > 1);
         let last = last.ok_or_else(|| "a single update cannot be compared".to_owned())?;
-        let test = self.march.test();
-        let tests = test.machine().mechanism.tests;
-        let is_socket = !matches!(tests, TestedJoint::Knee | TestedJoint::Specimen);
-        if test.creep.is_none() && !is_socket {
+        if self.march.test().creep.is_none() {
             let error = state.step_error;
             return Ok([
                 100.0 * error.volume_mm3 / last.volume_loss_mm3,
@@ -375,7 +371,7 @@ impl<'a> Again<'a> {
             schedule: Schedule::fixed(last.cycles, state.updates.len() / 2),
             comparison_laws: Vec::new(),
             law_family: false,
-            ..test.clone()
+            ..self.march.test().clone()
         })?;
         while !march.is_worn() {
             march = self.solved(march)?;
