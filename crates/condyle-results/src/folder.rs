@@ -23,7 +23,7 @@ use super::{
     parts::kinematics_file,
     settings::{SettingDifference, setting_differences},
     slip_paths::slip_paths_csv,
-    summary::Summary,
+    summary::{Summary, json_text},
     tables::{femur_pose_csv, kinematics_csv, wear_csv},
 };
 use condyle_mesh::formats::MeshFileError;
@@ -377,10 +377,7 @@ impl ResultsFolder {
 
     /// Writes the summary.
     pub fn write_summary(&self, summary: &Summary) -> Result<(), ResultsError> {
-        let mut text =
-            serde_json::to_string_pretty(summary).expect("numbers and text always serialise");
-        text.push('\n');
-        self.replace("summary.json", text.as_bytes())
+        self.replace("summary.json", json_text(summary).as_bytes())
     }
 
     fn replace(&self, name: &str, bytes: &[u8]) -> Result<(), ResultsError> {
