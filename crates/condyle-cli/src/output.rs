@@ -14,8 +14,8 @@ use condyle_lab::{
     measured::{CalibrateError, CompareError},
 };
 use condyle_report::ReportError;
+pub use condyle_results::json_text as json;
 use condyle_results::{create_file, replace_file};
-use serde::Serialize;
 
 /// Bad input.
 pub const BAD_INPUT: u8 = 2;
@@ -209,13 +209,6 @@ pub fn ended(written: io::Result<()>, kept: &str) -> Done {
             "standard output cannot be written: {error}{kept}; check that the disk is not full, or send it elsewhere"
         ))),
     }
-}
-
-/// Returns a result as JSON, with a line end.
-pub fn json(result: &impl Serialize) -> String {
-    // Maps have keys of text, and numbers that JSON lacks become null: nothing can fail.
-    let text = serde_json::to_string_pretty(result);
-    text.expect("numbers and text always serialise") + "\n"
 }
 
 /// Text for standard output, line by line.

@@ -390,18 +390,14 @@ impl<'a> Again<'a> {
         test: &WearTest,
         change: impl FnOnce(&Snapshot) -> Snapshot,
     ) -> Found<Peaks> {
-        let Some(snapshot) = self.later_snapshot(summary) else {
+        let first = first_peaks(self.march.state());
+        let any_is_later = (0..PEAKS.len()).any(|i| is_later(summary, &first, i));
+        let last = self.snapshots.last().copied();
+        let Some(snapshot) = last.filter(|_| any_is_later) else {
             return Ok(Peaks::default());
         };
         let march = self.solved(self.march_from(test, &change(snapshot)))?;
         Ok(self.errors_of_peaks(factors, &march, snapshot))
-    }
-
-    /// Returns the last snapshot, if any peak is later than the first cycle.
-    fn later_snapshot(&self, summary: &Summary) -> Option<&'a Snapshot> {
-        let first = first_peaks(self.march.state());
-        let any_is_later = (0..PEAKS.len()).any(|i| is_later(summary, &first, i));
-        self.snapshots.last().copied().filter(|_| any_is_later)
     }
 
     fn march_from(&self, test: &WearTest, snapshot: &Snapshot) -> March {

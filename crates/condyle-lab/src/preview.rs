@@ -10,7 +10,7 @@ use condyle::{
     Vec3,
     contact::{ContactMemory, ContactModel},
     evolve::March,
-    geometry::{Dishes, Insert, TriangleMesh, bounds},
+    geometry::{Dishes, TriangleMesh, bounds},
     machine::knee::{IE, KNEE, VV},
     spatial::{Pose, RelativeMotion},
 };
@@ -129,11 +129,8 @@ impl Preview {
         let femur = self.femur_triangles.clone().mapped(on_insert);
         let insert = TriangleMesh::of_quads(insert.nodes.clone(), insert.boundary_quads());
         let bodies = [femur, insert, pressed(march, at_rest)];
-        let [femur, insert, contact] = bodies.map(|mut body| {
-            let vertices = body.vertices.iter_mut();
-            vertices.for_each(|vertex| *vertex = point_on_side(vertex, side));
-            body
-        });
+        let on_side = |vertex: &Vec3| point_on_side(vertex, side);
+        let [femur, insert, contact] = bodies.map(|body| body.mapped(on_side));
         bodies_svg(&BodiesPicture {
             title: &self.title,
             directions: self.directions(),
@@ -257,6 +254,10 @@ impl InsertFacts {
             near.map(|(_, thickness)| *thickness)
                 .fold(f64::INFINITY, f64::min)
         };
+        let rim: BTreeSet<u32> = rim_of(insert).into_iter().flatten().collect();
+        let nodes = (0..).zip(insert.thickness_mm());
+        let inside = nodes.filter(|(node, _)| !rim.contains(node));
+        let inside = inside.map(|(_, thickness)| *thickness);
         Self {
             body: BodyFacts::of(
                 case.insert.shape.word(),
@@ -269,20 +270,11 @@ impl InsertFacts {
             hexahedra: mesh.hexes.len(),
             surface_nodes: places.len(),
             worst_quality: mesh.worst_quality(),
-            least_thickness_mm: least_thickness_mm(insert),
+            least_thickness_mm: inside.fold(f64::INFINITY, f64::min),
             dish_thickness_mm: dishes.map(|d| [d.medial_mm, d.lateral_mm].map(thickness)),
             dishes_middle_mm: dishes.map(|dishes| dishes.middle_mm().into()),
         }
     }
-}
-
-fn least_thickness_mm(insert: &Insert) -> f64 {
-    let rim: BTreeSet<u32> = rim_of(insert).into_iter().flatten().collect();
-    let nodes = (0..).zip(insert.thickness_mm());
-    let inside = nodes.filter(|(node, _)| !rim.contains(node));
-    inside
-        .map(|(_, thickness)| *thickness)
-        .fold(f64::INFINITY, f64::min)
 }
 
 /// Cycles solved for an update: some are solved again until they repeat themselves.

@@ -304,7 +304,7 @@ pub(crate) fn wear_up_to(results: &Results, cycles: f64) -> Vec<Panel> {
             points.len()
         );
         let mut curves = match column {
-            MASS => weighed(results, cycles_per_x),
+            MASS => weighed(results, cycles_per_x).unwrap_or_default(),
             _ => Vec::new(),
         };
         curves.push(Curve {
@@ -331,19 +331,16 @@ pub(crate) fn wear_up_to(results: &Results, cycles: f64) -> Vec<Panel> {
     TEST_COLUMNS.into_iter().filter_map(panel).collect()
 }
 
-fn weighed(results: &Results, cycles_per_x: f64) -> Vec<Curve> {
-    let table = results.measured_wear.as_ref();
-    let cycles = table.and_then(|table| table.column("cycles"));
-    let Some((table, cycles)) = table.zip(cycles) else {
-        return Vec::new();
-    };
+fn weighed(results: &Results, cycles_per_x: f64) -> Option<Vec<Curve>> {
+    let table = results.measured_wear.as_ref()?;
+    let cycles = table.column("cycles")?;
     let specimens = table.names().iter().filter(|name| *name != "cycles");
     let curve = |(number, name): (usize, &String)| {
         let points = in_unit(cycles, table.column(name)?, cycles_per_x);
         let curve = Curve::new(MEASURED, points).dotted();
         Some(curve.named(format!("specimen {number}, weighed")))
     };
-    (1..).zip(specimens).filter_map(curve).collect()
+    Some((1..).zip(specimens).filter_map(curve).collect())
 }
 
 fn in_unit(xs: &[f64], values: &[f64], unit: f64) -> Vec<(f64, f64)> {

@@ -25,65 +25,51 @@ const fn style([id, title, unit, largest]: [&'static str; 4], shades: Gradient) 
     }
 }
 
-const fn mapped(
-    field: &'static str,
-    file: &'static str,
-    style: MapStyle,
-    caption: &'static str,
-) -> MappedField {
-    MappedField {
-        field,
-        file,
-        style,
-        caption,
-    }
-}
-
 /// All fields that have a map, in the order of the page; wear depth is the first.
 pub(crate) static MAPS: [MappedField; 6] = [
-    mapped(
-        "wear_depth_mm",
-        MAP_PICTURES[0],
-        style(["map-wear", "Wear depth", "mm", "Deepest"], MAGMA),
-        "",
-    ),
-    mapped(
-        "peak_pressure_mpa",
-        MAP_PICTURES[1],
-        style(["map-pressure", "Peak pressure", "MPa", "Highest"], VIRIDIS),
-        "Largest contact pressure of each node in the final cycle, averaged over its share of the surface.",
-    ),
-    mapped(
-        "sliding_distance_mm",
-        MAP_PICTURES[2],
-        style(
+    MappedField {
+        field: "wear_depth_mm",
+        file: MAP_PICTURES[0],
+        style: style(["map-wear", "Wear depth", "mm", "Deepest"], MAGMA),
+        caption: "",
+    },
+    MappedField {
+        field: "peak_pressure_mpa",
+        file: MAP_PICTURES[1],
+        style: style(["map-pressure", "Peak pressure", "MPa", "Highest"], VIRIDIS),
+        caption: "Largest contact pressure of each node in the final cycle, averaged over its share of the surface.",
+    },
+    MappedField {
+        field: "sliding_distance_mm",
+        file: MAP_PICTURES[2],
+        style: style(
             ["map-sliding", "Sliding distance", "mm", "Highest"],
             CIVIDIS,
         ),
-        "Sliding distance of the counterface over each place under pressure in the final cycle.",
-    ),
-    mapped(
-        "cross_shear",
-        MAP_PICTURES[3],
-        style(
+        caption: "Sliding distance of the counterface over each place under pressure in the final cycle.",
+    },
+    MappedField {
+        field: "cross_shear",
+        file: MAP_PICTURES[3],
+        style: style(
             ["map-cross-shear", "Cross-shear ratio", "", "Highest"],
             MAGMA,
         ),
-        "The part of pressure times sliding across the principal direction of each place, in the final cycle: 0 for \
+        caption: "The part of pressure times sliding across the principal direction of each place, in the final cycle: 0 for \
          sliding along a line, 0.5 for a circle.",
-    ),
-    mapped(
-        "creep_depth_mm",
-        MAP_PICTURES[4],
-        style(["map-creep", "Creep", "mm", "Deepest"], VIRIDIS),
-        "Depth of the surface by creep under load, at the last update; creep loses no mass.",
-    ),
-    mapped(
-        "permanent_set_mm",
-        MAP_PICTURES[5],
-        style(["map-set", "Permanent set", "mm", "Deepest"], VIRIDIS),
-        "Permanent depth of the surface by yielding, after the final cycle, without wear.",
-    ),
+    },
+    MappedField {
+        field: "creep_depth_mm",
+        file: MAP_PICTURES[4],
+        style: style(["map-creep", "Creep", "mm", "Deepest"], VIRIDIS),
+        caption: "Depth of the surface by creep under load, at the last update; creep loses no mass.",
+    },
+    MappedField {
+        field: "permanent_set_mm",
+        file: MAP_PICTURES[5],
+        style: style(["map-set", "Permanent set", "mm", "Deepest"], VIRIDIS),
+        caption: "Permanent depth of the surface by yielding, after the final cycle, without wear.",
+    },
 ];
 
 /// Returns the colours of a field at even distances from little to much: those of its map, or of a map of its own.

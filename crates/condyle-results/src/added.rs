@@ -67,16 +67,11 @@ pub const COMPARED: AddedFiles = AddedFiles {
 
 impl AddedFiles {
     /// Returns all files that may exist, by their paths in the folder of the run.
-    pub fn paths(&self) -> impl Iterator<Item = String> + use<> {
-        let Self {
-            folder,
-            names,
-            endings,
-        } = *self;
-        let of = move |name: &'static &str| {
-            let endings = endings.iter();
-            endings.map(move |ending| format!("{folder}/{name}.{ending}"))
+    pub fn paths(&self) -> impl Iterator<Item = String> {
+        let of = move |name| {
+            let endings = self.endings.iter();
+            endings.map(move |ending| format!("{}/{name}.{ending}", self.folder))
         };
-        names.iter().flat_map(of)
+        self.names.iter().flat_map(of)
     }
 }

@@ -6,7 +6,7 @@ use super::{
     CycleQuantity, KNEE,
     catalogue::{self, Scalar},
     insert_fields::NODE_FIELDS,
-    summary::{PARTS, PartKind},
+    summary::{PARTS, PartKind, json_text},
     tables::WEAR_COLUMNS,
 };
 
@@ -53,7 +53,7 @@ pub fn results_schema() -> String {
         },
         "node_fields": fields.collect::<Vec<_>>(),
     });
-    serde_json::to_string_pretty(&schema).expect("text and numbers always serialise") + "\n"
+    json_text(&schema)
 }
 
 /// Returns a description of a column of `kinematics.csv`.

@@ -23,7 +23,7 @@ use super::{
     parts::kinematics_file,
     settings::{SettingDifference, setting_differences},
     slip_paths::slip_paths_csv,
-    summary::Summary,
+    summary::{Summary, json_text},
     tables::{femur_pose_csv, kinematics_csv, wear_csv},
 };
 use condyle_mesh::formats::MeshFileError;
@@ -99,10 +99,8 @@ pub(super) const TIME_SPENT: &str = "time_spent_s";
 /// The part of a run that a folder holds.
 #[derive(Debug)]
 pub enum Found {
-    /// Nothing yet: a new run starts.
+    /// Nothing, or the case only, where the run was stopped before its first checkpoint: a new run starts.
     Nothing,
-    /// The case only: the run was stopped before its first checkpoint.
-    Case,
     /// A checkpoint, and the seconds that the run has taken so far.
     Checkpoint(Box<Checkpoint>, f64),
     /// The whole run, with its summary.
@@ -194,7 +192,7 @@ impl ResultsFolder {
         let folder = Self::existing(path);
         if !folder.file("checkpoint").exists() {
             return match fs::read_to_string(folder.file("case.toml")) {
-                Ok(text) if text == case_toml => Ok(Found::Case),
+                Ok(text) if text == case_toml => Ok(Found::Nothing),
                 Err(_) if folder.was_only_made() => Ok(Found::Nothing),
                 Ok(_) | Err(_) => {
                     let problem = "the folder holds no run to resume: there is no checkpoint, and no case.toml of this \
@@ -377,10 +375,7 @@ impl ResultsFolder {
 
     /// Writes the summary.
     pub fn write_summary(&self, summary: &Summary) -> Result<(), ResultsError> {
-        let mut text =
-            serde_json::to_string_pretty(summary).expect("numbers and text always serialise");
-        text.push('\n');
-        self.replace("summary.json", text.as_bytes())
+        self.replace("summary.json", json_text(summary).as_bytes())
     }
 
     fn replace(&self, name: &str, bytes: &[u8]) -> Result<(), ResultsError> {

@@ -56,5 +56,5 @@ pub use parts::{
 pub use prediction::{CALIBRATED_LAW, Interval, MAX_FACTOR_OF_RUN, Prediction, Source};
 pub use settings::{SettingDifference, setting_differences};
 pub use side::{Directions, Side, point_on_side};
-pub use summary::{PARTS, PartKind, PlausibilityWarning, Summary, SummaryPart};
+pub use summary::{PARTS, PartKind, PlausibilityWarning, Summary, SummaryPart, json_text};
 pub use tables::{WEAR_COLUMNS, WearColumn, femur_pose_csv, kinematics_csv, wear_csv};

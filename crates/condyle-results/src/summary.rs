@@ -21,6 +21,13 @@ use super::{
     prediction::Prediction,
 };
 
+/// Returns a result as JSON, with a line end.
+pub fn json_text(result: &impl Serialize) -> String {
+    // Maps have keys of text, and numbers that JSON lacks become null: nothing can fail.
+    let text = serde_json::to_string_pretty(result);
+    text.expect("numbers and text always serialise") + "\n"
+}
+
 /// The JSON type of a part of `summary.json`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum PartKind {

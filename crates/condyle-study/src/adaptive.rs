@@ -163,7 +163,10 @@ impl Seen {
         };
         let places: Vec<Vec<f64>> = pool.iter().map(|test| point(study, test)).collect();
         let error = match &probability {
-            Some(found) => part_unknown(found),
+            // The largest factor, less 1, between the probability and an end of its interval.
+            Some(Estimate { value, interval }) => {
+                (value / interval[0]).max(interval[1] / value) - 1.0
+            }
             None => error_of_output(&emulator, &of, &places),
         };
         Some(Self {
@@ -249,12 +252,6 @@ fn near_limit(
         .iter()
         .map(|point| population.places(point.row));
     (tests_at(plan, 0, places.collect()), Some(probability))
-}
-
-/// Returns the largest factor, less 1, between a probability and an end of its interval.
-fn part_unknown(found: &Estimate) -> f64 {
-    let [low, high] = found.interval;
-    (found.value / low).max(high / found.value) - 1.0
 }
 
 impl Aim {

@@ -16,6 +16,7 @@ use condyle_report::{Plot, plots_svg};
 use condyle_results::{
     Summary,
     catalogue::{self, Scalar},
+    json_text, replace_file,
 };
 use serde_json::json;
 
@@ -116,8 +117,7 @@ pub fn converge(
         ("converge.svg", convergence.svg()),
     ] {
         let path = options.out.join(name);
-        condyle_results::replace_file(&path, text.as_bytes())
-            .map_err(StudyError::refused(&path))?;
+        replace_file(&path, text.as_bytes()).map_err(StudyError::refused(&path))?;
     }
     Ok(convergence)
 }
@@ -312,8 +312,7 @@ impl Convergence {
             "runs": self.points.iter().enumerate().map(run).collect::<Vec<_>>(),
             "extrapolations": limits.collect::<BTreeMap<_, _>>(),
         });
-        let text = serde_json::to_string_pretty(&file);
-        text.expect("numbers and text always serialise") + "\n"
+        json_text(&file)
     }
 
     fn svg(&self) -> String {

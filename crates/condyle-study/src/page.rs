@@ -7,7 +7,7 @@ use condyle_report::{
     Plot, plots_svg,
     study::{Bar, Distribution, bars_svg, distributions_svg, write_study_page},
 };
-use condyle_results::split_unit;
+use condyle_results::{json_text, replace_file, split_unit};
 use serde::Serialize;
 
 use crate::{
@@ -69,8 +69,7 @@ pub fn write_answers(plan: &Plan, folder: &Path) -> Result<Answers, StudyError> 
 }
 
 fn write_json(path: &Path, content: &impl Serialize) -> Result<(), StudyError> {
-    let json = serde_json::to_string_pretty(content).expect("numbers and text always serialise");
-    condyle_results::replace_file(path, (json + "\n").as_bytes()).map_err(StudyError::refused(path))
+    replace_file(path, json_text(content).as_bytes()).map_err(StudyError::refused(path))
 }
 
 /// The file, its caption, and its text.

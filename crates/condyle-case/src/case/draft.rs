@@ -58,7 +58,12 @@ impl Drafted {
         let insert = Concluded::from(Body::Insert, insert)?;
         refuse_others(&femur, &insert)?;
         let (mut femur, mut insert) = (femur.upright()?, insert.upright()?);
-        share_frame(&mut femur, &mut insert);
+        // A femur gets the frame of its insert if it may lie in it, and an insert on the bone that of its femur.
+        if let (Some(of_femur), Some(of_insert)) = (&femur.upright, &insert.upright) {
+            let of_insert = of_insert.clone().on_bone_of(of_femur, &insert.mesh);
+            femur.upright = Some(of_femur.clone().in_frame_of(&of_insert, &femur.mesh));
+            insert.upright = Some(of_insert);
+        }
         let femur_lies = femur.lies(&insert.best());
         let insert_lies = insert.lies(&[femur_lies.rotation()]);
         let (mut femur_shell, whole) = (femur.shell(&femur_lies)?, insert.shell(&insert_lies)?);
@@ -131,15 +136,6 @@ fn refuse_others(femur: &Concluded<'_>, insert: &Concluded<'_>) -> Result<(), Dr
         }
     }
     Ok(())
-}
-
-/// Gives a femur the frame of its insert if it may lie in it, and an insert on the bone that of its femur.
-fn share_frame(femur: &mut Concluded<'_>, insert: &mut Concluded<'_>) {
-    if let (Some(of_femur), Some(of_insert)) = (&femur.upright, &insert.upright) {
-        let of_insert = of_insert.clone().on_bone_of(of_femur, &insert.mesh);
-        femur.upright = Some(of_femur.clone().in_frame_of(&of_insert, &femur.mesh));
-        insert.upright = Some(of_insert);
-    }
 }
 
 /// Moves the origin of a femur to its flexion axis, half-way between its sides; returns the remark.

@@ -208,23 +208,20 @@ impl RigJointKeys {
         faults.chain(self.fault_of_zero()).collect()
     }
 
+    /// Returns the fault of a joint that cannot read zero where the machine has settled: zero would be its reading there and the
+    /// value of its drive.
     fn fault_of_zero(&self) -> Option<(&'static str, Fault)> {
-        let is_zeroed = self.zeroed == Some(true);
-        let why = self.why_never_zero().filter(|_| is_zeroed)?;
+        let is_free = matches!(self.settling, Settling::Free | Settling::HeldAtZero);
+        let why = match self.kind {
+            _ if self.zeroed != Some(true) => return None,
+            JointKind::Rotation => "only translations can",
+            JointKind::Translation if is_free || self.drive == DriveWord::Loaded => return None,
+            JointKind::Translation => "its drive holds it; settling = \"free\" releases it",
+        };
         let (name, advice) = (&self.name, "remove `zeroed`");
         let message =
             format!("the joint \"{name}\" cannot read zero where the machine has settled: {why}");
         Some(("zeroed", Fault::new(message, advice)))
-    }
-
-    /// Returns why it cannot read zero where the machine has settled: zero would be its reading there and the value of its drive.
-    fn why_never_zero(&self) -> Option<&'static str> {
-        let is_free = matches!(self.settling, Settling::Free | Settling::HeldAtZero);
-        match self.kind {
-            JointKind::Rotation => Some("only translations can"),
-            JointKind::Translation if is_free || self.drive == DriveWord::Loaded => None,
-            JointKind::Translation => Some("its drive holds it; settling = \"free\" releases it"),
-        }
     }
 }
 

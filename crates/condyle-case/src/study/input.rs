@@ -126,10 +126,6 @@ impl Input {
         self.key.rsplit('.').next() == Some("file")
     }
 
-    pub(super) fn is_continuous(&self) -> bool {
-        !matches!(self.variation, Variation::Levels(_))
-    }
-
     /// Returns the values that the case must accept to accept all: the ends of a distribution, or levels.
     pub(super) fn ends(&self) -> Vec<Level> {
         let (low, high) = match &self.variation {

@@ -169,7 +169,8 @@ fn correlation(section: &Section<'_>, inputs: &[Input], log: &mut Log<'_>) -> Op
         );
     };
     let mut place = |key: &String| {
-        let is_input = |input: &Input| input.key == *key && input.is_continuous();
+        let is_input =
+            |input: &Input| input.key == *key && !matches!(input.variation, Variation::Levels(_));
         let found = inputs.iter().position(is_input);
         if found.is_none() {
             let fault = Fault::new(

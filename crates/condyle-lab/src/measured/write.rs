@@ -5,7 +5,7 @@ use condyle_report::{
     measured::{compared_kinematics_svg, compared_surface_svg, compared_wear_svg},
 };
 use condyle_results::{
-    COMPARED_KINEMATICS, COMPARED_NUMBERS, COMPARED_SURFACE, COMPARED_WEAR, MotionColumn,
+    COMPARED_KINEMATICS, COMPARED_NUMBERS, COMPARED_SURFACE, COMPARED_WEAR, MotionColumn, json_text,
 };
 
 use crate::measured::{
@@ -16,8 +16,7 @@ use crate::measured::{
 impl Comparison {
     /// `compare.json`: everything but the curves and the map.
     pub fn json(&self) -> String {
-        let text = serde_json::to_string_pretty(self);
-        text.expect("numbers and text always serialise") + "\n"
+        json_text(self)
     }
 
     /// Returns name, ending and text of each file.

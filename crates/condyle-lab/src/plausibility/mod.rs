@@ -48,9 +48,16 @@ const REST: [Check; 16] = [
     updates_too_few,
     updates_overshoot,
     error_incomplete,
-    error_of_mass,
-    error_of_depth,
-    error_of_peak,
+    |finished| large_error("error_of_mass", &MASS_LOSS_MG, MAX_ERROR_PERCENT, finished),
+    |finished| large_error("error_of_depth", &MAX_DEPTH_MM, MAX_ERROR_PERCENT, finished),
+    |finished| {
+        large_error(
+            "error_of_peak",
+            &PEAK_PRESSURE_MPA,
+            MAX_PEAK_ERROR_PERCENT,
+            finished,
+        )
+    },
     added_inertia,
     cycles_not_repeating,
 ];
@@ -141,19 +148,6 @@ pub(crate) fn mesh_quality(finished: &Finished<'_>) -> Option<PlausibilityWarnin
         .then(|| warning("mesh_quality", (quality, MIN_QUALITY, ""), message, advice))
 }
 
-pub(crate) fn error_of_mass(finished: &Finished<'_>) -> Option<PlausibilityWarning> {
-    large_error("error_of_mass", &MASS_LOSS_MG, MAX_ERROR_PERCENT, finished)
-}
-
-pub(crate) fn error_of_depth(finished: &Finished<'_>) -> Option<PlausibilityWarning> {
-    large_error("error_of_depth", &MAX_DEPTH_MM, MAX_ERROR_PERCENT, finished)
-}
-
-pub(crate) fn error_of_peak(finished: &Finished<'_>) -> Option<PlausibilityWarning> {
-    let limit_percent = MAX_PEAK_ERROR_PERCENT;
-    large_error("error_of_peak", &PEAK_PRESSURE_MPA, limit_percent, finished)
-}
-
 fn large_error(
     check: &str,
     scalar: &Scalar,
@@ -191,19 +185,15 @@ pub(crate) fn error_incomplete(finished: &Finished<'_>) -> Option<PlausibilityWa
 pub(crate) fn interval_too_wide(finished: &Finished<'_>) -> Option<PlausibilityWarning> {
     let prediction = finished.summary.prediction.as_ref()?;
     let factor = prediction.factor_of_run();
-    (prediction.is_of_run && factor > MAX_FACTOR_OF_RUN).then(|| PlausibilityWarning {
-        check: "interval_too_wide".to_owned(),
-        value: factor,
-        limit: MAX_FACTOR_OF_RUN,
-        unit: String::new(),
-        message: format!(
-            "law, inputs and discretisation leave the mass uncertain by a factor of {factor:.1} either way; up to \
-             {MAX_FACTOR_OF_RUN} is acceptable"
-        ),
-        advice: "The largest source of the interval shows the cause: the test is far from those that the law was fitted to, \
-                 or the run is discretised too coarsely."
-            .to_owned(),
-    })
+    let message = format!(
+        "law, inputs and discretisation leave the mass uncertain by a factor of {factor:.1} either way; up to \
+         {MAX_FACTOR_OF_RUN} is acceptable"
+    );
+    let advice = "The largest source of the interval shows the cause: the test is far from those that the law was fitted to, \
+                  or the run is discretised too coarsely.";
+    let value = (factor, MAX_FACTOR_OF_RUN, "");
+    (prediction.is_of_run && factor > MAX_FACTOR_OF_RUN)
+        .then(|| warning("interval_too_wide", value, message, advice))
 }
 
 /// Warns of a single update that wears the scar of the first cycle for the whole test, so deep that the pressure

@@ -63,14 +63,6 @@ impl RunError {
         Self::Case(case.at_its_key(source))
     }
 
-    pub(crate) fn memory(case: &Case, needed_gb: f64) -> Self {
-        let allowed_gb = case.limits.memory_gb;
-        Self::Case(case.memory_at_its_key(format!(
-            "a run needs about {needed_gb:.1} GB of memory, and [limits] memory_gb allows {allowed_gb} GB; use a larger \
-             edge_mm, fewer layers or fewer increments, or allow more"
-        )))
-    }
-
     /// Returns whether the physics could not be solved, as opposed to bad input.
     pub fn is_physics(&self) -> bool {
         matches!(

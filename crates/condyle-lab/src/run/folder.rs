@@ -13,7 +13,7 @@ use condyle_results::{FolderLock, Found, ResultsError, ResultsFolder};
 use crate::run::{
     Listener, Outcome, RunOptions,
     error::RunError,
-    running::{Run, RunContext, Start},
+    running::{Run, RunContext},
 };
 
 /// Runs the case at `case_path`, with some of its values changed.
@@ -56,14 +56,14 @@ fn run_read(
     let inputs_blake3 = case.inputs_blake3().map_err(RunError::Inputs)?;
     // Locked before anything is read, so that two runs cannot both find the folder free.
     let lock = ResultsFolder::lock(&options.out)?;
-    let start_from = match found(case, case_path, options, &inputs_blake3)? {
+    let checkpoint = match found(case, case_path, options, &inputs_blake3)? {
         Found::Done(summary) => {
             // The run may have been stopped before it wrote the page; the same folder gives the same page.
             finish(&ResultsFolder::existing(&options.out), options)?;
             return Ok(Outcome::DoneBefore(summary));
         }
-        Found::Checkpoint(checkpoint, spent_s) => Start::Resume(checkpoint, spent_s),
-        Found::Case | Found::Nothing => Start::Fresh,
+        Found::Checkpoint(checkpoint, spent_s) => Some((checkpoint, spent_s)),
+        Found::Nothing => None,
     };
     let context = RunContext {
         threads: options.threads,
@@ -72,8 +72,8 @@ fn run_read(
         out: Some(&options.out),
         wear_law: None,
     };
-    let is_fresh = matches!(start_from, Start::Fresh);
-    let mut run = Run::begin(case, context, start_from, inputs_blake3.clone(), on_event)?;
+    let is_fresh = checkpoint.is_none();
+    let mut run = Run::begin(case, context, checkpoint, inputs_blake3.clone(), on_event)?;
     let written = WrittenRun::new(options, lock, inputs_blake3, &run, is_fresh)?;
     let outcome = run.complete(&mut |run| written.write_update(run), on_event)?;
     if let Outcome::Done(summary) = &outcome {

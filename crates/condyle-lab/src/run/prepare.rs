@@ -56,7 +56,10 @@ pub(crate) fn start(
     if 1e-3 * memory_mb_touching(case, &march, whole_surface, whole_surface) > allowed_gb {
         let needed_gb = 1e-3 * memory_mb(case, &march, &AtRest::of(&march));
         if needed_gb > allowed_gb {
-            return Err(RunError::memory(case, needed_gb));
+            return Err(RunError::Case(case.memory_at_its_key(format!(
+                "a run needs about {needed_gb:.1} GB of memory, and [limits] memory_gb allows {allowed_gb} GB; use a larger \
+                 edge_mm, fewer layers or fewer increments, or allow more"
+            ))));
         }
     }
     // The contact at rest is solved only for a mesh with holes.

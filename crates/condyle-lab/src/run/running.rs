@@ -22,13 +22,6 @@ use crate::run::{
     prepare::{build_sharing, check_so_far, start},
 };
 
-pub(crate) enum Start {
-    /// From its first cycle.
-    Fresh,
-    /// From a checkpoint, with the solver time in seconds so far.
-    Resume(Box<Checkpoint>, f64),
-}
-
 /// The surroundings of a run.
 #[derive(Clone, Copy)]
 pub(crate) struct RunContext<'a> {
@@ -55,11 +48,11 @@ pub(crate) struct Run<'a> {
 type Keep<'a, 'b> = dyn FnMut(&Run<'b>) -> Result<(), RunError> + 'a;
 
 impl<'a> Run<'a> {
-    /// Builds the bodies and starts the march, or continues from a checkpoint.
+    /// Builds the bodies and starts the march, or continues from a checkpoint with the solver time so far, s.
     pub fn begin(
         case: &'a Case,
         context: RunContext<'a>,
-        start_from: Start,
+        checkpoint: Option<(Box<Checkpoint>, f64)>,
         inputs_blake3: String,
         on_event: &mut Listener<'_>,
     ) -> Result<Self, RunError> {
@@ -73,13 +66,13 @@ impl<'a> Run<'a> {
             let cross_linking = &case.material.cross_linking;
             built.test.wear = cross_linking.under(named.clone()).law;
         }
-        let march = match start_from {
-            Start::Resume(checkpoint, spent_s) => {
+        let march = match checkpoint {
+            Some((checkpoint, spent_s)) => {
                 // A negative or huge time, from an edited file, counts as zero.
                 clock.spent += Duration::try_from_secs_f64(spent_s).unwrap_or_default();
                 clock.time(|| March::resume(built.test, checkpoint.state))
             }
-            Start::Fresh => clock.time(|| start(case, built.test, &built.warnings))?,
+            None => clock.time(|| start(case, built.test, &built.warnings))?,
         };
         let _ = on_event(RunEvent::Placed);
         Ok(Self {
@@ -269,7 +262,7 @@ pub(crate) fn march_watched<'a>(
         wear_law: None,
     };
     let ignore = &mut |_: RunEvent<'_>| ControlFlow::Continue(());
-    let mut run = Run::begin(case, context, Start::Fresh, String::new(), ignore)?;
+    let mut run = Run::begin(case, context, None, String::new(), ignore)?;
     watch(&run.march);
     let mut keep = |run: &Run<'_>| {
         watch(&run.march);
@@ -321,7 +314,7 @@ pub fn run_in_memory(
         out: None,
         wear_law: how.wear_law.as_ref(),
     };
-    let mut run = Run::begin(case, context, Start::Fresh, inputs_blake3, on_event)?;
+    let mut run = Run::begin(case, context, None, inputs_blake3, on_event)?;
     keeper.settled(&run.march, &run.femur_triangles(FEMUR_TRIANGLES)?);
     let mut keep = |run: &Run<'_>| {
         keeper.updated(&run.march);

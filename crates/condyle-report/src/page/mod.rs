@@ -118,7 +118,7 @@ fn page_of(results: &Results, scene: Option<&Scene>) -> String {
         wear_charts: svgs(&charts::wear(results)),
         cycle_charts: svgs(&charts::cycle(results)),
         cycles: kinematics.and_then(charts::cycle_captions),
-        ranges: tables::ranges(results),
+        ranges: tables::ranges(results).unwrap_or_default(),
         numbers: numbers::groups(results),
         volume_check: sentences::volume_check(results),
         accuracy: tables::accuracy(results),

@@ -228,10 +228,8 @@ pub(super) fn disagreements(results: &Results) -> Vec<String> {
             "summary.json states {stated} updates, and wear.csv has {rows}: one of them is cut short or from another run."
         ));
     }
-    let cycles = results
-        .kinematics
-        .as_ref()
-        .and_then(|table| table.column("cycles"));
+    let table = results.kinematics.as_ref();
+    let cycles = table.and_then(|table| table.column("cycles"));
     if let Some((stated, cycles)) = number(&INCREMENTS).zip(cycles) {
         let lengths = cycles.chunk_by(|one, next| one == next).map(<[f64]>::len);
         let other = lengths.into_iter().find(|length| *length as f64 != stated);

@@ -152,14 +152,10 @@ fn volume_mm3(results: &Results, surface: &SurfaceFields, depth: &[f64], region:
     }
 }
 
-/// Returns the range of every channel in the first and in the last cycle.
-pub(super) fn ranges(results: &Results) -> Vec<Range> {
-    let Some(table) = &results.kinematics else {
-        return Vec::new();
-    };
-    let Some(percent) = table.column("percent") else {
-        return Vec::new();
-    };
+/// Returns the range of every channel in the first and in the last cycle; none without motions.
+pub(super) fn ranges(results: &Results) -> Option<Vec<Range>> {
+    let table = results.kinematics.as_ref()?;
+    let percent = table.column("percent")?;
     let ends = first_and_last(table);
     let rows = Channel::all_of(table, results.motions()).filter_map(|channel| {
         let values = table.column(&channel.column)?;
@@ -182,7 +178,7 @@ pub(super) fn ranges(results: &Results) -> Vec<Range> {
             unit: channel.unit,
         })
     });
-    rows.collect()
+    Some(rows.collect())
 }
 
 /// Returns cycles and wear in percent, wear, pressure, area and force of each activity; for knees its ranges and medial

@@ -6,12 +6,11 @@ mod encode;
 mod read;
 
 use condyle_fem::HexMesh;
-use condyle_mesh::{TriangleMesh, Vec3};
+use condyle_mesh::{TriangleMesh, Vec3, formats::VtuFile};
 use condyle_results::{Directions, NeutralPose};
 
-use crate::charts;
 use crate::figure::Panel;
-use crate::results::{Articulating, Results};
+use crate::results::Articulating;
 
 /// The scene of a run; parts that are not there are omitted and listed in `missing`.
 #[derive(Clone, Debug, Default)]
@@ -63,53 +62,33 @@ pub struct SceneCycle {
     pub pressures: Vec<Vec<(u32, f64)>>,
 }
 
-impl Scene {
-    /// Makes the scene of an unworn insert; none if no face has nodes that are all marked 1.
-    fn of_insert(mesh: &HexMesh, articulating: &[f64]) -> Option<Self> {
+impl SceneInsert {
+    /// Makes the insert from its unworn mesh; none if no face has nodes that are all marked 1.
+    fn new(mesh: &HexMesh, articulating: &[f64]) -> Option<Self> {
         let articulating = Articulating::of(mesh, articulating)?;
-        let insert = SceneInsert {
+        Some(Self {
             skin: skin(mesh, &articulating),
             nodes_of_mesh: mesh.nodes.len(),
             articulating,
-        };
-        Some(Self {
-            insert: Some(insert),
-            ..Self::default()
         })
     }
 
-    /// Adds the insert after an update, with fields at the nodes of its mesh. Returns false, and adds nothing, if the mesh
-    /// has other nodes than that of the scene.
-    fn add_update<'a>(
-        &mut self,
-        cycles: f64,
-        nodes: &[Vec3],
-        fields: impl IntoIterator<Item = (&'a str, &'a [f64])>,
-    ) -> bool {
-        let Some(insert) = &self.insert else {
-            return false;
-        };
-        let count = insert.nodes_of_mesh;
-        let fields: Vec<_> = fields.into_iter().collect();
+    /// Returns the surface after an update, with fields at the nodes of its mesh; none if the mesh has other nodes than
+    /// the insert.
+    fn update(&self, cycles: f64, file: &VtuFile) -> Option<SceneUpdate> {
+        let (count, surface) = (self.nodes_of_mesh, &self.articulating);
+        let fields = &file.point_data;
         let fits = fields.iter().all(|(_, values)| values.len() == count);
-        if nodes.len() != count || !fits {
-            return false;
-        }
-        let surface = &insert.articulating;
-        let field = |(name, values): (&str, &[f64])| (name.to_owned(), surface.pick(values));
-        self.updates.push(SceneUpdate {
+        let field = |(name, values): &(String, Vec<f64>)| (name.clone(), surface.pick(values));
+        (file.mesh.nodes.len() == count && fits).then(|| SceneUpdate {
             cycles,
-            nodes: surface.pick(nodes),
-            fields: fields.into_iter().map(field).collect(),
-        });
-        true
+            nodes: surface.pick(&file.mesh.nodes),
+            fields: fields.iter().map(field).collect(),
+        })
     }
+}
 
-    /// Adds the charts of the tables of a run.
-    fn add_charts(&mut self, results: &Results) {
-        self.charts = charts::all(results);
-    }
-
+impl Scene {
     /// Returns whether there is a surface to show in 3-D.
     pub fn has_surface(&self) -> bool {
         !self.updates.is_empty()

@@ -9,7 +9,8 @@ use std::{
 use condyle_mesh::{TriangleMesh, formats::parse_vtu_triangles};
 use condyle_results::{KeptCycle, catalogue::UPDATES, check_file, cycle_pressure_file};
 
-use super::{Scene, SceneCycle};
+use super::{Scene, SceneCycle, SceneInsert};
+use crate::charts;
 use crate::error::ReportError;
 use crate::results::{
     ARTICULATING, CaseFacts, Results, Table, meshes, read_mesh, table, without_folder,
@@ -52,7 +53,7 @@ impl Scene {
         let summary = results.summary.as_ref();
         scene.neutral_pose = summary.and_then(|summary| summary.neutral_pose);
         scene.cycles = kept_cycles(folder, &mut scene.missing);
-        scene.add_charts(results);
+        scene.charts = charts::all(results);
         scene.directions = results.directions();
         let facts = results.case.as_deref().map(CaseFacts::of);
         scene.title = facts.and_then(|facts| facts.title).unwrap_or_default();
@@ -92,18 +93,14 @@ fn not_there(meshes: &[(u32, PathBuf)], results: &Results) -> Option<String> {
 fn add_mesh(scene: &mut Scene, cycles: f64, path: &Path) -> Result<(), String> {
     let left_out = |why: &str| format!("{} {why}, and is left out.", path.display());
     let file = read_mesh(path).map_err(|error| error.to_string())?;
-    if scene.insert.is_none() {
-        let marks = file.values(ARTICULATING);
-        let begun = marks.and_then(|marks| Scene::of_insert(&file.mesh, marks));
-        let begun = begun.ok_or_else(|| left_out("has no articulating surface"))?;
-        scene.insert = begun.insert;
-    }
-    let fields = file.point_data.iter();
-    let fields = fields.map(|(name, values)| (name.as_str(), values.as_slice()));
-    if scene.add_update(cycles, &file.mesh.nodes, fields) {
-        return Ok(());
-    }
-    Err(left_out("has another mesh than the insert before it"))
+    let marks = file.values(ARTICULATING);
+    let first = || SceneInsert::new(&file.mesh, marks?);
+    let insert = scene.insert.take().or_else(first);
+    let insert = insert.ok_or_else(|| left_out("has no articulating surface"))?;
+    let update = scene.insert.insert(insert).update(cycles, &file);
+    let other = "has another mesh than the insert before it";
+    scene.updates.push(update.ok_or_else(|| left_out(other))?);
+    Ok(())
 }
 
 fn femur(folder: &Path, missing: &mut Vec<String>) -> Option<TriangleMesh> {

@@ -81,17 +81,6 @@ struct Range {
     high: f64,
 }
 
-impl Range {
-    fn new(axis: &Axis<'_>) -> Self {
-        let [low, high] = axis.ends;
-        Self {
-            key: axis.input.key.clone(),
-            low,
-            high,
-        }
-    }
-}
-
 /// The probability that an output is beyond a limit.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub(crate) struct Chance {
@@ -167,7 +156,10 @@ fn emulated_output(
     let name = study.alternatives.get(design).map(|one| one.name.clone());
     let mut emulated = Emulated::new(output, name, axes, &emulator);
     emulated.failed = failed(data, values, design);
-    emulated.is_sample = is_over_distributions(&study.design);
+    emulated.is_sample = matches!(
+        study.design,
+        Design::LatinHypercube(_) | Design::Sobol(_) | Design::Saltelli(_) | Design::Adaptive(_)
+    );
     let mut indices = Vec::new();
     if emulated.why_not_used().is_none() {
         let population = Population::new(data.plan, &emulator, axes);
@@ -180,14 +172,6 @@ fn emulated_output(
         }
     }
     Some((emulated, indices))
-}
-
-/// Returns whether a design takes its tests from the distributions of the inputs.
-fn is_over_distributions(design: &Design) -> bool {
-    matches!(
-        design,
-        Design::LatinHypercube(_) | Design::Sobol(_) | Design::Saltelli(_) | Design::Adaptive(_)
-    )
 }
 
 /// Returns the share of the tests of a design that failed.
@@ -224,11 +208,16 @@ impl Emulated {
         axes: &[Axis<'_>],
         emulator: &Emulator,
     ) -> Self {
+        let range = |axis: &Axis<'_>| Range {
+            key: axis.input.key.clone(),
+            low: axis.ends[0],
+            high: axis.ends[1],
+        };
         let exported = Exported {
             output: output.key,
             design: design.clone(),
             q2: emulator.q2(),
-            inputs: axes.iter().map(Range::new).collect(),
+            inputs: axes.iter().map(range).collect(),
             model: emulator.model(),
         };
         let tested_and_predicted = emulator.tested_and_predicted();

@@ -385,9 +385,7 @@ impl Front {
             tests: front,
         }))
     }
-}
 
-impl Front {
     /// Returns the place of the knee among the tests.
     pub fn place_of_knee(&self) -> Option<usize> {
         let mut tests = self.tests.iter();

@@ -4,7 +4,6 @@ use condyle_case::{
     config::Level,
     study::{Design, Input, OptimiseKeys},
 };
-use condyle_results::catalogue::Scalar;
 
 use super::{
     Known, along_all, first_places, first_tests, is_new, observed, places::along, point, tests_at,
@@ -76,7 +75,10 @@ impl Store {
                 needed.find(|output| !study.outputs.value(&outputs.values, output).is_finite())
             };
             if let Some(output) = result.as_ref().ok().and_then(lacks) {
-                return Err(lacking(output));
+                return Err(StudyError::Plan(format!(
+                    "the results of a test lack `{}`, or it is not finite, and the search minimises or limits it; add it, or give the reason of a failure as text",
+                    output.key
+                )));
             }
             Ok((test, result))
         });
@@ -89,13 +91,6 @@ impl Store {
         }
         self.keep(plan, &told)
     }
-}
-
-fn lacking(output: &Scalar) -> StudyError {
-    StudyError::Plan(format!(
-        "the results of a test lack `{}`, or it is not finite, and the search minimises or limits it; add it, or give the reason of a failure as text",
-        output.key
-    ))
 }
 
 /// Returns the first tests that are neither known nor pending.
@@ -192,7 +187,7 @@ impl Plan {
 mod tests {
     use std::fs;
 
-    use condyle_results::catalogue;
+    use condyle_results::catalogue::{self, Scalar};
 
     use super::*;
     use crate::search::next_tests;

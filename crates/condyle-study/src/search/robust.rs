@@ -184,7 +184,11 @@ impl Sampled {
             values.sort_by(f64::total_cmp);
             weights.dot(&DVector::from_vec(values))
         };
-        Estimate::of(both.map(statistic).collect())
+        let statistics: Vec<f64> = both.map(statistic).collect();
+        Estimate {
+            value: mean(&statistics),
+            interval: central_interval(statistics),
+        }
     }
 
     fn kept(&self, design: usize) -> Vec<Estimate> {
@@ -193,15 +197,6 @@ impl Sampled {
         let each = each.map(|one| self.share(|draw, at| is_kept(one, draw, at)));
         let all = |draw, at| self.excess.iter().all(|one| is_kept(one, draw, at));
         each.chain([self.share(all)]).collect()
-    }
-}
-
-impl Estimate {
-    fn of(draws: Vec<f64>) -> Self {
-        Self {
-            value: mean(&draws),
-            interval: central_interval(draws),
-        }
     }
 }
 

@@ -8,7 +8,7 @@ use super::error::{Body, BuildError, BuildWarning, Finding};
 use super::placing::{Placing, middle_of_points};
 use super::size::{in_better_unit, rounded};
 use crate::case::contents::Case;
-use crate::case::frame::{LengthUnit, Side};
+use crate::case::frame::{Axes, LengthUnit, Side};
 use crate::case::insert::{InsertOrigin, InsertPlacement};
 use crate::config::DataFile;
 
@@ -66,7 +66,7 @@ impl Case {
             }
         };
         let lies = lies(&turn);
-        let [x, y, z] = placing.axes_turned(&turn).words();
+        let [x, y, z] = Axes::of(&placing.rotation_turned(&turn)).words();
         let advice =
             format!("write axes = [\"{x}\", \"{y}\", \"{z}\"], as its shape indicates ({signs})");
         if sureness == Sureness::Certain {

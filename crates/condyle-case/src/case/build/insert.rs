@@ -10,7 +10,7 @@ use condyle::geometry::{
 };
 use condyle_fem::HexMesh;
 use condyle_mesh::columns::listed_holes;
-use condyle_mesh::formats::{HexFile, parse_surface, read_hexahedra, surface_bytes};
+use condyle_mesh::formats::{HexFile, read_hexahedra, read_surface};
 use condyle_mesh::repair::{CheckedMesh, RepairError};
 use condyle_mesh::{FittedSphere, Roundness};
 
@@ -62,10 +62,8 @@ impl Case {
         let InsertShape::Mesh(insert) = &self.insert.shape else {
             return None;
         };
-        let path = insert.file.path();
-        let bytes = surface_bytes(insert.file.files(), path).ok()?;
         let placing = insert.placing(self.side_in_frame()).ok()?;
-        Some(placing.mesh(parse_surface(path, &bytes).ok()?))
+        Some(placing.mesh(read_surface(insert.file.files(), insert.file.path()).ok()?))
     }
 
     pub(super) fn built_insert(
@@ -178,7 +176,7 @@ impl Case {
         warnings: &mut Vec<BuildWarning>,
     ) -> Result<geometry::Insert, BuildError> {
         let (file, path) = (&cup.file, cup.file.path());
-        let mesh = parse_surface(path, &surface_bytes(file.files(), path)?)?;
+        let mesh = read_surface(file.files(), path)?;
         let mesh = mesh.mapped(|vertex| vertex * cup.length_unit.in_mm());
         check_triangles(path, &mesh, cup.length_unit)?;
         let Some(socket) = FittedSphere::new(&mesh, Roundness::Concave) else {

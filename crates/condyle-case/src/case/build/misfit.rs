@@ -3,7 +3,7 @@
 use condyle::Mat3;
 use condyle::anatomy::{Likeness, Upright};
 use condyle::geometry::TriangleMesh;
-use condyle_mesh::formats::{parse_surface, surface_bytes};
+use condyle_mesh::formats::read_surface;
 
 use super::error::Body;
 use super::placing::{Placing, WrittenRotation};
@@ -86,13 +86,11 @@ impl Case {
 
 impl<'a> Placed<'a> {
     fn read(body: Body, file: &'a DataFile, placing: Placing) -> Option<Self> {
-        let bytes = surface_bytes(file.files(), file.path()).ok()?;
-        let mesh = placing.mesh(parse_surface(file.path(), &bytes).ok()?);
         Some(Self {
             body,
             file,
+            mesh: placing.mesh(read_surface(file.files(), file.path()).ok()?),
             placing,
-            mesh,
         })
     }
 

@@ -76,11 +76,6 @@ impl Placing {
         })
     }
 
-    /// Returns the axes that turn the body by `turn` in addition to this placing.
-    pub(super) fn axes_turned(&self, turn: &Mat3) -> Axes {
-        Axes::of(&self.rotation_turned(turn))
-    }
-
     /// Returns the rotation of a file whose body must be turned by `turn` after this placing.
     pub(super) fn rotation_turned(&self, turn: &Mat3) -> Mat3 {
         // The turn holds in the mirrored frame: it is mirrored back before it meets the axes of the file.

@@ -110,7 +110,8 @@ pub(crate) fn register(
         let slides = || CompareError::NotComparable(SCAN_SLIDES.to_owned());
         let step = fit.step().ok_or_else(slides)?;
         motion = step * motion;
-        step_mm = fit.length_of(&step);
+        let shift_mm = step.transform_point(&fit.middle.into()).coords - fit.middle;
+        step_mm = step.rotation.angle() * fit.gyration_mm + shift_mm.norm();
         let is_settled = reach <= scan.keys.farthest_mm && !fit.is_widened;
         let is_last = is_settled && step_mm < REST_MM;
         if is_last || (steps == MAX_STEPS && step_mm < NEARLY_REST_MM) {
@@ -296,11 +297,6 @@ impl Fit {
         let rotation = UnitQuaternion::from_scaled_axis(turn);
         let shift = solved.fixed_rows::<3>(3) + self.middle - rotation * self.middle;
         Some(Isometry3::from_parts(Translation3::from(shift), rotation))
-    }
-
-    fn length_of(&self, motion: &Isometry3<f64>) -> f64 {
-        let shift = motion.transform_point(&self.middle.into()).coords - self.middle;
-        motion.rotation.angle() * self.gyration_mm + shift.norm()
     }
 
     fn registration(&self, motion: Isometry3<f64>, steps: usize) -> Registration {
