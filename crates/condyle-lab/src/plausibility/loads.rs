@@ -443,41 +443,55 @@ fn is_balanced_by_contact(machine: &Machine, pressing: JointIndex) -> bool {
     machine.ligaments.is_empty() && !is_sprung && (!is_tilted || *machine.mechanism == KNEE)
 }
 
+/// Pull of a spring beyond its free play.
+#[derive(Clone, Copy)]
+struct Pulled {
+    beyond_mm: f64,
+    force_n: f64,
+    at_percent: f64,
+    cycle: &'static str,
+}
+
 /// Warns of a spring deflected farther beyond its free play than a machine permits.
 pub(crate) fn springs_far(finished: &Finished<'_>) -> Option<PlausibilityWarning> {
     let pulled = finished.cycles().flat_map(|cycle| {
         let machine = finished.machine(&cycle);
+        let springs = machine.springs.iter();
         // A spring has no effect on a prescribed motion, and the limit is a length.
-        let springs = machine.springs.iter().filter(move |spring| {
+        let springs = springs.filter(|spring| {
             let joint = machine.joint(spring.along);
             joint.is_loaded() && joint.description.kind() == JointKind::Translation
         });
-        springs.flat_map(move |spring| {
-            let rows = cycle.rows.iter();
-            rows.map(move |row| pulled(spring, row, cycle.name))
-        })
+        springs
+            .flat_map(|spring| cycle.rows.iter().map(|row| pulled(spring, row, cycle.name)))
+            .collect::<Vec<_>>()
     });
-    let held = pulled.filter(|(_, force_n, ..)| *force_n > 0.0);
-    let farthest = held.max_by(|a, b| a.0.total_cmp(&b.0));
-    farthest
-        .filter(|(beyond_mm, ..)| *beyond_mm > FARTHEST_MM)
-        .map(far)
+    let held = pulled.filter(|pulled| pulled.force_n > 0.0);
+    let farthest = held.max_by(|a, b| a.beyond_mm.total_cmp(&b.beyond_mm));
+    let beyond = farthest.filter(|farthest| farthest.beyond_mm > FARTHEST_MM);
+    beyond.map(far)
 }
-
-/// Deflection of a spring beyond its free play, mm, its force, N, percent of the cycle, and the cycle.
-type Pulled = (f64, f64, f64, &'static str);
 
 fn pulled(spring: &Spring, row: &CycleRow, cycle: &'static str) -> Pulled {
     let turn = spring.about.of(&row.positions);
     let moved_mm = spring.along.of(&row.positions) + spring.offset_mm * turn.sin();
-    let beyond_mm = (moved_mm - spring.rest).abs() - spring.free_play;
-    let force_n = spring.force(moved_mm).0.abs();
-    (beyond_mm, force_n, row.percent, cycle)
+    Pulled {
+        beyond_mm: (moved_mm - spring.rest).abs() - spring.free_play,
+        force_n: spring.force(moved_mm).0.abs(),
+        at_percent: row.percent,
+        cycle,
+    }
 }
 
-fn far((beyond_mm, force_n, percent, cycle): Pulled) -> PlausibilityWarning {
+fn far(pulled: Pulled) -> PlausibilityWarning {
+    let Pulled {
+        beyond_mm,
+        force_n,
+        at_percent,
+        cycle,
+    } = pulled;
     let message = format!(
-        "a spring is deflected {beyond_mm:.1} mm beyond its free play and exerts {force_n:.0} N, at {percent:.0} % of the \
+        "a spring is deflected {beyond_mm:.1} mm beyond its free play and exerts {force_n:.0} N, at {at_percent:.0} % of the \
             {cycle} cycle; springs of the model have no stop, those of a machine reach theirs after about {FARTHEST_MM:.0} mm"
     );
     let advice = "Check the loads and their signs, and the stiffness and free play of the springs.";
@@ -637,8 +651,8 @@ mod loads_tests {
             rest: 0.0,
         };
         let pulled = pulled(&spring, &row(10.0, 0.0, 14.0), "first");
-        assert_eq!(pulled.0, 11.5);
-        assert!((pulled.1 - 83.26).abs() < 1e-9);
+        assert_eq!(pulled.beyond_mm, 11.5);
+        assert!((pulled.force_n - 83.26).abs() < 1e-9);
         assert!(far(pulled).message.contains("11.5 mm beyond its free play"));
     }
 }
