@@ -127,7 +127,8 @@ impl<'a> Search<'a> {
         };
         if start.in_proportion {
             let at = search.at[0];
-            let slope = search.weighed(search.rates.iter().map(|rate| rate / at));
+            let slopes: Vec<f64> = search.rates.iter().map(|rate| rate / at).collect();
+            let slope = search.weighed(&slopes);
             search.slopes.set_column(0, &slope);
             return Ok(search);
         }
@@ -140,15 +141,19 @@ impl<'a> Search<'a> {
     }
 
     /// Returns rates, or their differences, relative to the measured ones, times the root of their weights.
-    fn weighed(&self, rates: impl Iterator<Item = f64>) -> DVector<f64> {
-        let all = rates.zip(self.observations);
+    fn weighed(&self, rates: &[f64]) -> DVector<f64> {
+        let all = rates.iter().zip(self.observations);
         let weighed = all.map(|(rate, of)| of.weight.sqrt() * rate / of.rate);
-        DVector::from_iterator(self.observations.len(), weighed)
+        DVector::from_iterator(rates.len(), weighed)
     }
 
     fn residuals(&self, rates: &[f64]) -> DVector<f64> {
-        let all = rates.iter().zip(self.observations);
-        self.weighed(all.map(|(rate, of)| rate - of.rate))
+        let off: Vec<f64> = rates
+            .iter()
+            .zip(self.observations)
+            .map(|(rate, of)| rate - of.rate)
+            .collect();
+        self.weighed(&off)
     }
 
     /// Slope of the residuals in one parameter, from `below` it to `above` it, inside its limits.
@@ -176,8 +181,11 @@ impl<'a> Search<'a> {
             }
         };
         let [low, high] = [rates_at(ends[0])?, rates_at(ends[1])?];
-        let ends_of_rates = low.iter().zip(&high);
-        Ok(self.weighed(ends_of_rates.map(|(low, high)| (high - low) / (ends[1] - ends[0]))))
+        let slopes = low
+            .iter()
+            .zip(&high)
+            .map(|(low, high)| (high - low) / (ends[1] - ends[0]));
+        Ok(self.weighed(&slopes.collect::<Vec<_>>()))
     }
 
     /// Takes steps until a further step would change no rate.
@@ -300,61 +308,83 @@ fn size(parameter: f64) -> f64 {
 
 pub(crate) struct Free {
     pub(crate) law: Wear,
-    /// The constants that are parameters, by their places among all; if there are none, the parameter is the amount of
-    /// wear: one factor on the wear of every cycle.
-    places: Vec<usize>,
+    free: Parameters,
+}
+
+enum Parameters {
+    /// The amount of wear: one factor on the wear of every cycle.
+    Level,
+    /// These constants, by their places among all.
+    Constants(Vec<usize>),
 }
 
 impl Free {
     /// Frees the constants with these names, or the amount of wear if there are none.
     pub(crate) fn new(law: Wear, names: &[String]) -> Result<Self, CalibrateError> {
-        let places = names.iter().map(|name| place(&law, name));
-        let places = places.collect::<Result<_, _>>()?;
-        Ok(Self { law, places })
+        if names.is_empty() {
+            let free = Parameters::Level;
+            return Ok(Self { law, free });
+        }
+        let places: Result<Vec<_>, _> = names.iter().map(|name| place(&law, name)).collect();
+        let free = Parameters::Constants(places?);
+        Ok(Self { law, free })
     }
 
     /// Returns the start of the search: a parameter is a constant relative to its first value, or the relative amount
     /// of wear.
     pub(crate) fn start(&self) -> Start {
-        if self.is_level() {
+        let Parameters::Constants(places) = &self.free else {
             return Start {
                 at: vec![1.0],
                 limits: vec![[0.0, f64::INFINITY]],
                 in_proportion: true,
             };
-        }
+        };
         let parameters = self.law.kind().parameters;
-        let at = |&place: &usize| self.law.constants()[place] / self.unit(place);
         let limits = |&place: &usize| {
             [parameters[place].least, parameters[place].most].map(|end| end / self.unit(place))
         };
         Start {
-            at: self.places.iter().map(at).collect(),
-            limits: self.places.iter().map(limits).collect(),
+            at: places
+                .iter()
+                .map(|&place| self.law.constants()[place] / self.unit(place))
+                .collect(),
+            limits: places.iter().map(limits).collect(),
             in_proportion: false,
         }
     }
 
     pub(crate) fn law(&self, at: &[f64]) -> Result<Wear, ConstantError> {
-        if self.is_level() {
-            return self.law.scaled(at[0]);
+        match &self.free {
+            Parameters::Level => self.law.scaled(at[0]),
+            Parameters::Constants(places) => {
+                let names = places
+                    .iter()
+                    .map(|&place| self.law.kind().parameters[place].name);
+                let values = places
+                    .iter()
+                    .zip(at)
+                    .map(|(&place, value)| value * self.unit(place));
+                let mut named = names.zip(values);
+                named.try_fold(self.law.clone(), |law, (name, value)| {
+                    law.with_constant(name, value)
+                })
+            }
         }
-        let mut values = self.places.iter().zip(at);
-        values.try_fold(self.law.clone(), |law, (&place, value)| {
-            let name = law.kind().parameters[place].name;
-            law.with_constant(name, value * self.unit(place))
-        })
     }
 
     /// Returns the constants at parameters that may lie beyond the limits of the law, each clamped to its limits.
     pub(crate) fn constants_near(&self, at: &[f64]) -> Vec<f64> {
-        let mut constants = self.law.constants().to_vec();
-        if self.is_level() {
-            constants = (self.law.kind().scaled)(&constants, at[0].max(0.0));
-        }
-        for (&place, value) in self.places.iter().zip(at) {
-            constants[place] = value * self.unit(place);
-        }
+        let constants = match &self.free {
+            Parameters::Level => (self.law.kind().scaled)(self.law.constants(), at[0].max(0.0)),
+            Parameters::Constants(places) => {
+                let mut constants = self.law.constants().to_vec();
+                for (&place, value) in places.iter().zip(at) {
+                    constants[place] = value * self.unit(place);
+                }
+                constants
+            }
+        };
         let limits = constants.iter().zip(self.law.kind().parameters);
         let inside = limits.map(|(value, parameter)| value.clamp(parameter.least, parameter.most));
         inside.collect()
@@ -363,26 +393,30 @@ impl Free {
     /// Returns whether the constant at `place` depends on the parameters.
     pub(crate) fn changes(&self, place: usize) -> bool {
         let own = self.law.constants();
-        match self.is_level() {
-            true => (self.law.kind().scaled)(own, 2.0)[place] != own[place],
-            false => self.places.contains(&place),
+        match &self.free {
+            Parameters::Level => (self.law.kind().scaled)(own, 2.0)[place] != own[place],
+            Parameters::Constants(places) => places.contains(&place),
         }
     }
 
-    /// Returns the parameter on which the constant at `place` depends.
     pub(crate) fn parameter_of(&self, place: usize) -> usize {
-        let mut places = self.places.iter();
-        places.position(|own| *own == place).unwrap_or(0)
+        match &self.free {
+            Parameters::Level => 0,
+            Parameters::Constants(places) => {
+                places.iter().position(|&own| own == place).unwrap_or(0)
+            }
+        }
     }
 
     /// Returns whether the amount of wear is the parameter.
     pub(crate) fn is_level(&self) -> bool {
-        self.places.is_empty()
+        matches!(self.free, Parameters::Level)
     }
 
     /// Returns the constant at a parameter of 1.
     fn unit(&self, place: usize) -> f64 {
-        size(self.law.constants()[place])
+        let size = self.law.constants()[place].abs();
+        if size > 0.0 { size } else { 1.0 }
     }
 }
 
