@@ -71,7 +71,8 @@ fn described(joint: &RigJoint, scale: f64) -> String {
             let values: Vec<f64> = points.chain(between).collect();
             let least = values.iter().copied().fold(f64::INFINITY, f64::min);
             let most = values.iter().copied().fold(f64::NEG_INFINITY, f64::max);
-            let [least, most] = [least, most].map(|end| (1e3 * scale * end).round() / 1e3);
+            // Three decimals; the sum turns -0 into 0.
+            let [least, most] = [least, most].map(|end| (1e3 * scale * end).round() / 1e3 + 0.0);
             format!(" {least} to {most} {}", joint.unit())
         }
         (None, Some(turns)) => format!(" {turns} turns a cycle"),

@@ -225,6 +225,11 @@ impl Prediction {
             .then(|| below.sum::<f64>() / count as f64)
     }
 
+    /// Returns whether the discretisation error of the run is estimated.
+    pub fn has_discretisation(&self) -> bool {
+        self.sources.iter().any(|own| own.source == DISCRETISATION)
+    }
+
     /// Returns the sources of the interval and their factors in words, after the sign `times`. A run without an estimate of its
     /// error lacks that source, which may be the largest: with 30 increments, half of the mass of the default knee.
     pub fn sources_in_words(&self, times: char) -> String {
@@ -232,7 +237,7 @@ impl Prediction {
         let mut words: Vec<String> = sources
             .map(|source| format!("{} {times} {:.2}", source.source, source.factor))
             .collect();
-        if !self.sources.iter().any(|own| own.source == DISCRETISATION) {
+        if !self.has_discretisation() {
             words.push(format!(
                 "without {DISCRETISATION}, whose error is not estimated"
             ));

@@ -193,7 +193,8 @@ class Page {
     this.shown.showCharts();
     await painted();
     this.compared.show(found, this.shown.viewer);
-    await this.memory.remember(this.laboratory.text, !namesMeshes(found.text));
+    // Browsers refuse addresses that are too long or change too often.
+    await this.memory.remember(this.laboratory.text, !namesMeshes(found.text)).catch(() => undefined);
     document.documentElement.dataset["ready"] = "yes";
     document.documentElement.dataset["runs"] = String(++this.runs);
   }

@@ -162,34 +162,49 @@ impl<'c> Lines<'c> {
         }
     }
 
-    /// Removes the keys that exclude those that will be set, unless they are set too. Of a choice: those that do not apply to the new
-    /// word, and those with another default for it, since a case that writes all keys has the constants of the word before. Of a
+    /// Removes the keys that would contradict those that are set, unless they are set too. Of a choice: those that do not apply to the
+    /// new word, and those with another default for it, since a case that writes all keys has the constants of the word before. Of a
     /// curve: its other sources.
     pub fn leave_out(&self, document: &mut DeTable<'_>, items: &[Item]) -> Vec<BuildWarning> {
         let mut notes = Vec::new();
-        for change in self.changes {
+        for (place, change) in self.changes.iter().enumerate() {
+            // The last value of a key counts.
+            let mut later = self.changes[place + 1..].iter();
+            if later.any(|later| later.key == change.key) {
+                continue;
+            }
             let (above, name) = change.key.rsplit_once('.').unwrap_or(("", &change.key));
             for item in items_at(items, above) {
-                match item {
+                notes.extend(match item {
                     Item::Choice(choices) if choices.by.name == name => {
-                        notes.extend(self.leave_out_choice(document, choices, change, above));
+                        self.leave_out_choice(document, choices, change, above)
                     }
                     Item::OneOf(ways) | Item::AtMostOne(ways) if ways.contains(&name) => {
-                        let reason = format!("{} is set", change.key);
-                        let mut left_out = |key: &str| {
-                            let path = format!("{above}.{key}");
-                            self.left_out(document, &path, &reason)
-                        };
-                        let others = ways.iter().filter(|way| **way != name);
-                        let sources: Vec<_> = others.filter_map(|way| left_out(way)).collect();
-                        // That of the points before.
-                        let is_other = !sources.is_empty();
-                        notes.extend(sources);
-                        notes.extend(is_other.then(|| left_out("interpolation")).flatten());
+                        self.leave_out_sources(document, ways, change, above)
                     }
-                    _ => {}
-                }
+                    _ => Vec::new(),
+                });
             }
+        }
+        notes
+    }
+
+    /// Removes the sources of a curve other than the one that is set, and the keys that describe how a source is read.
+    fn leave_out_sources(
+        &self,
+        document: &mut DeTable<'_>,
+        ways: &[&str],
+        change: &Assignment,
+        above: &str,
+    ) -> Vec<BuildWarning> {
+        let reason = format!("{} is set", change.key);
+        let mut left_out = |key: &str| self.left_out(document, &format!("{above}.{key}"), &reason);
+        let others = ways
+            .iter()
+            .filter(|way| !change.key.ends_with(&format!(".{way}")));
+        let mut notes: Vec<_> = others.filter_map(|way| left_out(way)).collect();
+        if !notes.is_empty() {
+            notes.extend(KEYS_OF_SOURCE.iter().filter_map(|key| left_out(key)));
         }
         notes
     }
@@ -211,7 +226,10 @@ impl<'c> Lines<'c> {
         for name in offered.filter_map(Item::name) {
             let reason = if choices.other_owner(name, word).is_some() {
                 format!("it does not apply to {set}")
-            } else if choices.default_of(name, &before) != choices.default_of(name, word) {
+            } else if choices
+                .default_of(name, &before)
+                .is_some_and(|default| Some(default) != choices.default_of(name, word))
+            {
                 format!("it has another default for {set}")
             } else {
                 continue;
@@ -265,6 +283,8 @@ impl<'c> Lines<'c> {
         let (_, value) = take(document, path)?;
         let written = match value.get_ref() {
             DeValue::Table(_) => format!("[{path}]"),
+            // Points may fill pages.
+            DeValue::Array(_) => path.to_owned(),
             _ => format!("{path} = {}", &self.shown[value.span()]),
         };
         Some(BuildWarning::new(format!(
@@ -272,6 +292,16 @@ impl<'c> Lines<'c> {
         )))
     }
 }
+
+/// Keys of a curve that belong to its source, such as a factor that converts units.
+const KEYS_OF_SOURCE: [&str; 6] = [
+    "column",
+    "scale",
+    "offset",
+    "remove_drift",
+    "low_pass_harmonics",
+    "interpolation",
+];
 
 /// Returns the entries of the table at the dotted `path`, with those of every word of its choices.
 fn items_at<'i>(items: &'i [Item], path: &str) -> Vec<&'i Item> {

@@ -251,7 +251,7 @@ impl Rig {
         for joint in &self.joints {
             if has_zeroed && joint.keys.point_mm.is_some() {
                 let message = format!(
-                    "the axis of \"{}\" passes through a point of the bearing, but a joint before it reads zero where the machine settles",
+                    "the `point_mm` of \"{}\" assumes that the joints before it are at zero, but one of them reads zero only where the machine settles",
                     joint.keys.name
                 );
                 return fault(

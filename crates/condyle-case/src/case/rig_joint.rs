@@ -55,7 +55,7 @@ settings! {
         axis: [f64; 3], in within(-1.0, 1.0);
         /// Body that it moves, which determines the sign.
         moves: MovedBody = MovedBody::Counterface;
-        /// Point of a rotation's axis in the bearing frame while the joints before it are at zero, which carry it along; through the centre of the counterface if not given.
+        /// Point of a rotation's axis, in the bearing frame with all joints before it at zero; those joints carry it along. The centre of the counterface if not given.
         point_mm: Option<[f64; 3]> = None, in within(-1000.0, 1000.0);
         /// Level from which the height of `point_mm`, its second number, is measured; the origin if not given.
         point_from: Option<PointLevel> = None;
@@ -209,11 +209,13 @@ impl RigJointKeys {
     }
 
     /// Returns the fault of a joint that cannot read zero where the machine has settled: zero would be its reading there and the
-    /// value of its drive.
+    /// value of its drive, and both cannot hold.
     fn fault_of_zero(&self) -> Option<(&'static str, Fault)> {
+        if self.zeroed != Some(true) {
+            return None;
+        }
         let is_free = matches!(self.settling, Settling::Free | Settling::HeldAtZero);
         let why = match self.kind {
-            _ if self.zeroed != Some(true) => return None,
             JointKind::Rotation => "only translations can",
             JointKind::Translation if is_free || self.drive == DriveWord::Loaded => return None,
             JointKind::Translation => "its drive holds it; settling = \"free\" releases it",
@@ -332,7 +334,7 @@ impl Settings for RigJoint {
     }
 }
 
-/// Part of the largest component of an axis below which another one is round-off.
+/// Components of an axis smaller than this part of the largest are round-off.
 const AXIS_ROUND_OFF: f64 = 1e-6;
 
 impl RigJoint {

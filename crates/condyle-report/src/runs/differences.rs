@@ -185,8 +185,13 @@ fn ranking(first: &Run, second: &Run) -> Option<String> {
     let is_same_polyethylene =
         own.get(&WEAR_OVER_CONVENTIONAL) == other.get(&WEAR_OVER_CONVENTIONAL);
     let percent = 100.0 * by.part_below(of, is_same_polyethylene)?;
+    let without = if by.has_discretisation() && of.has_discretisation() {
+        ""
+    } else {
+        ", without the discretisation errors, which are not estimated"
+    };
     Some(format!(
-        "{two} wears less than {one} in {percent:.0} % of laboratories, by the calibrated law."
+        "{two} wears less than {one} in {percent:.0} % of laboratories, by the calibrated law{without}."
     ))
 }
 

@@ -99,7 +99,7 @@ pub trait ContactModel {
     /// Returns the number of surface nodes.
     fn node_count(&self) -> usize;
 
-    /// Begins the cycle of the next activity; each has one cycle before the contact leaves its memory.
+    /// Begins the cycle of the next activity; it is called once for each activity.
     fn begin_cycle(&mut self) {}
 
     /// Begins an increment, whose motions are near those of the same increment of the previous cycle.
@@ -149,8 +149,8 @@ pub trait ContactModel {
     }
 }
 
-/// The memory that a contact leaves to the next one, with the same counterface and an insert that may have worn; bounds of another
-/// counterface would miss its contact.
+/// The memory that a contact leaves to the next one, with the same counterface and an insert that may have worn. With another
+/// counterface, bounds from the memory could miss contact.
 #[derive(Debug, Default)]
 pub struct ContactMemory {
     /// The part on which results depend.

@@ -80,7 +80,8 @@ impl<'a> Simulator<'a> {
     /// between are a cycle that repeats itself.
     ///
     /// A motion that starts, or that follows a change of the geometry, requires little more than one cycle for that,
-    /// seldom two. Further calls on the same contact solve the cycles of further activities. `watch` receives the number of increments solved after each; its break stops the solution.
+    /// seldom two. Further calls on the same contact solve the cycles of further activities. `watch` receives the number of
+    /// increments solved after each; its break stops the solution.
     ///
     /// # Errors
     /// An increment that cannot be solved.

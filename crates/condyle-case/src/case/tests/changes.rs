@@ -136,6 +136,8 @@ fn a_choice_that_is_set_leaves_out_keys_of_other_choices_and_warns() {
     assert!(warnings(&case)[0].starts_with("[contact.foundation]: ignored"));
 }
 
+const HIP: &str = "[machine]\npreset = \"iso-14242-1-like\"\n[femur]\nshape = \"sphere\"\nradius_mm = 14.0\n[insert]\nshape = \"cup\"\n";
+
 #[test]
 fn a_source_of_a_curve_that_is_set_replaces_the_points_of_a_written_case() {
     let written = changed("", &[]).unwrap().to_toml();
@@ -145,12 +147,33 @@ fn a_source_of_a_curve_that_is_set_replaces_the_points_of_a_written_case() {
         assert_eq!(case.machine, changed("", &[&set]).unwrap().machine);
         assert!(warnings(&case)[0].contains(&format!("ignored, since {curve}.waveform is set")));
     }
-    const RIG: &str = "[machine]\npreset = \"iso-14242-1-like\"\n[femur]\nshape = \"sphere\"\nradius_mm = 14.0\n[insert]\nshape = \"cup\"\n";
-    let written = changed(RIG, &[]).unwrap().to_toml();
+    let written = changed(HIP, &[]).unwrap().to_toml();
     let set = ["machine.joints.flexion.motion.knots_deg=[[0, 0], [50, 20]]"];
     assert!(changed(&written, &set).is_ok());
     let set = ["machine.joints.flexion.motion.waveform=iso-like-flexion"];
     assert!(changed(&written, &set).is_ok());
+}
+
+#[test]
+fn the_last_of_two_values_counts_and_values_for_it_stay() {
+    let constant = "[wear]\nlaw = \"archard\"\nwear_factor_mm3_per_nm = 2.0e-7\n";
+    let set = ["wear.law=kang", "wear.law=archard"];
+    assert_eq!(
+        changed(constant, &set).unwrap(),
+        changed(constant, &[]).unwrap()
+    );
+    let factor = "[material]\nwear_over_conventional = 0.3\n";
+    let case = changed(factor, &["material.cross_linking=high"]).unwrap();
+    assert_eq!(
+        case.material.cross_linking.wear_over_conventional(),
+        Some(0.3)
+    );
+    let scaled = "[machine.axial_force]\nfile = \"load.csv\"\nscale = 1000.0\noffset = 3.0\n";
+    let set = ["machine.axial_force.waveform=stairs-like"];
+    let files = MemoryFiles::default().with("/case.toml", scaled);
+    let changes = set.map(|change| Assignment::parse(change).unwrap());
+    let case = CaseReader::new(files).read_changed(Path::new("/case.toml"), &changes);
+    assert_eq!(case.unwrap().machine, changed("", &set).unwrap().machine);
 }
 
 /// Every table of choices, with its dotted path.
@@ -173,7 +196,6 @@ fn choices<'i>(items: &'i [Item], above: &str, found: &mut Vec<(String, &'i Choi
 
 #[test]
 fn a_choice_that_is_set_means_the_same_where_all_keys_are_written() {
-    const HIP: &str = "[machine]\npreset = \"iso-14242-1-like\"\n[femur]\nshape = \"sphere\"\nradius_mm = 14.0\n[insert]\nshape = \"cup\"\n";
     let items = Case::items_with(WEAR_LAWS);
     let mut all = Vec::new();
     choices(&items, "", &mut all);

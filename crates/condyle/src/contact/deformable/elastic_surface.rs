@@ -50,8 +50,9 @@ pub(crate) struct ElasticSurface {
     influence: OnceLock<Influence>,
     /// The flat part of the backside, and whether the insert rests on it; otherwise the whole backside is bonded.
     floor: Floor,
-    backside: Vec<u32>,
     rests: bool,
+    /// The nodes of the whole backside.
+    backside: Vec<u32>,
     /// The tray, if the insert rests on it, and the spacing of its points, mm.
     tray: Mutex<Option<(f64, Arc<Tray>)>>,
 }
@@ -107,8 +108,8 @@ impl ElasticSurface {
             tangential: OnceLock::new(),
             influence: OnceLock::new(),
             floor,
-            backside: insert.backside_nodes().to_vec(),
             rests,
+            backside: insert.backside_nodes().to_vec(),
             tray: Mutex::default(),
         })
     }
