@@ -402,6 +402,33 @@ fn the_compliance_is_renewed_where_the_insert_has_become_thinner() {
 }
 
 #[test]
+fn a_compliance_belongs_to_one_backside() {
+    let meshing = Meshing {
+        edge_mm: 1.5,
+        layers: 3,
+    };
+    let below = flat_insert((9.0, 9.0), 6.0, meshing).unwrap();
+    let mesh = below.mesh().clone();
+    let is_on_top = |quad: &[u32; 4]| quad.iter().all(|&node| mesh.nodes[node as usize].y > -1e-9);
+    let (top, rest): (Vec<_>, Vec<_>) = mesh.boundary_quads().into_iter().partition(is_on_top);
+    let all_around = Insert::new(mesh.clone(), &top, &rest).unwrap();
+    let pressed_n = |law: &Deformable, insert: &Insert| {
+        let pair = Pair::new(Counterface::sphere(RADIUS_MM), insert.clone());
+        down_n(
+            pair.contact(law).as_mut(),
+            &over([0.0, RADIUS_MM - 0.1, 0.0]),
+        )
+    };
+    let (law_below, law_around) = (law(&below, 0.0), law(&all_around, 0.0));
+    let [soft_n, stiff_n] = [
+        pressed_n(&law_below, &below),
+        pressed_n(&law_around, &all_around),
+    ];
+    assert!(stiff_n > 1.02 * soft_n, "{soft_n} {stiff_n}");
+    assert_eq!(pressed_n(&law_below, &all_around), stiff_n);
+}
+
+#[test]
 fn an_answer_does_not_depend_on_what_was_asked_of_the_compliance() {
     // Of a law that another case, or a run that was stopped, has used before.
     let pair = generic();

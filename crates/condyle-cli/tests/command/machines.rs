@@ -147,6 +147,24 @@ fn a_machine_that_cannot_press_is_refused_with_its_line() {
     said.assert_refused(2, &["one joint that presses", "rig.toml:"]);
 }
 
+#[test]
+fn the_range_of_a_spline_is_that_of_the_curve() {
+    let bench = Bench::new();
+    let step = |percent: u32| format!("[{percent}, {}]", if percent < 50 { 20 } else { 0 });
+    let step: Vec<String> = (0..20).map(|place| step(5 * place)).collect();
+    let step = step.join(", ");
+    let shown = bench.say(&["machine", "show", "pin-on-disc"]).out;
+    let turn = format!(
+        "\n[[joints]]\nname = \"spin\"\nkind = \"rotation\"\naxis = [0, 1, 0]\ndrive = \"prescribed\"\n\
+         [joints.motion]\ninterpolation = \"spline\"\nknots_deg = [{step}]\n"
+    );
+    bench.write("rig.toml", &format!("{shown}{turn}"));
+    let checked = bench.say(&["machine", "check", "rig.toml"]).out;
+    // By 10.78 % of the step: `verify_the_overshoot_of_a_spline_at_a_step`.
+    assert!(checked.contains(" -2.15"), "{checked}");
+    assert!(checked.contains(" to 22.15"), "{checked}");
+}
+
 /// A ball in a wide cup under 500 N, on a machine that tilts it before it moves aside and down.
 const TILTED: &str = "[femur]\nshape = \"sphere\"\nradius_mm = 14.0\nstart_mm = [4, 0]\n\
                       [insert]\nshape = \"cup\"\nradius_mm = 18\nopening_deg = 60\ninclination_deg = 0\nedge_mm = 2\nlayers = 1\n\

@@ -285,4 +285,14 @@ mod tests {
         assert!((spring.force(3.5).0 + 7.24).abs() < 1e-12);
         assert!((spring.force(-4.5).0 - 67.6).abs() < 1e-12);
     }
+
+    #[test]
+    fn a_force_that_is_no_number_is_the_largest() {
+        let mut forces = Vec6::zeros();
+        forces[1] = f64::NAN;
+        forces[4] = 3.0;
+        assert!(Levers([1.0; 6]).largest_n(&forces).is_nan());
+        forces[1] = -5.0;
+        assert_eq!(Levers([1.0; 6]).largest_n(&forces), 5.0);
+    }
 }

@@ -53,6 +53,14 @@ fn a_machine_by_joints_is_written_and_read_back() {
 }
 
 #[test]
+fn round_off_of_an_axis_is_no_tilt() {
+    let exact = Case::parse(HIP, "case.toml", Path::new("")).unwrap();
+    let rounded = HIP.replace("axis = [0, -1, 0]", "axis = [1e-9, -1, -3e-8]");
+    let rounded = Case::parse(&rounded, "case.toml", Path::new("")).unwrap();
+    assert_eq!(rounded, exact);
+}
+
+#[test]
 fn verify_rotations_of_the_presets_have_the_signs_of_their_names() {
     let (anterior, lateral, up) = (Vec3::x(), Vec3::z(), Vec3::y());
     // A positive rotation moves the first direction of the counterface towards the second. The stem of a head points up, and
