@@ -233,40 +233,43 @@ pub(crate) fn slides_slowly(finished: &Finished<'_>) -> Option<PlausibilityWarni
     is_slow.then(|| warning("slides_slowly", value, message, advice))
 }
 
+/// Returns the first warning of a check of the waveform of each joint.
+fn of_each_joint(
+    finished: &Finished<'_>,
+    check: impl Fn(JointIndex, SolvedCycle<'_>) -> Option<PlausibilityWarning>,
+) -> Vec<PlausibilityWarning> {
+    // The last cycle has the same waveforms.
+    let first = || finished.cycles().filter(|cycle| cycle.name == "first");
+    let of_joint = |index| first().find_map(|cycle| check(index, cycle));
+    JointIndex::ALL.into_iter().filter_map(of_joint).collect()
+}
+
 /// Warns of a waveform whose jumps or peaks lie between the increments: each joint once.
 ///
 /// Slip is the rate at the end of an increment times its duration, so a jump between two ends has no slip, and one at an end too much.
 pub(crate) fn coarse_increments(finished: &Finished<'_>) -> Vec<PlausibilityWarning> {
-    let mut warnings = Vec::new();
-    for index in JointIndex::ALL {
-        let coarse = |cycle: SolvedCycle<'_>| {
-            let machine = finished.machine(&cycle);
-            let (kind, count) = (machine.mechanism.joint(index).kind(), cycle.rows.len());
-            let (of, percent) = match &machine.joint(index).drive {
-                Drive::Locked(_) => return None,
-                Drive::Prescribed(waveform) => ("path", missed_path(waveform, kind, count)),
-                Drive::Loaded(waveform) => ("peak", missed_peak(waveform, count)),
-            };
-            let message = format!(
-                "the increments resolve the {of} of `{}`{} with an error of {percent:.1} %",
-                machine.mechanism.joint(index).symbol,
-                finished.activity_in_words(&cycle)
-            );
-            let advice = "Use more increments, interpolation = \"spline\" for samples, or a waveform whose jumps take several increments.";
-            let value = (percent, MAX_MISSED_PERCENT, "%");
-            (percent > MAX_MISSED_PERCENT)
-                .then(|| warning("increments_coarse", value, message, advice))
+    of_each_joint(finished, |index, cycle| {
+        let machine = finished.machine(&cycle);
+        let (kind, count) = (machine.mechanism.joint(index).kind(), cycle.rows.len());
+        let (of, percent) = match &machine.joint(index).drive {
+            Drive::Locked(_) => return None,
+            Drive::Prescribed(waveform) => ("path", missed_path(waveform, kind, count)),
+            Drive::Loaded(waveform) => ("peak", missed_peak(waveform, count)),
         };
-        // The last cycle has the same waveforms.
-        let mut first = finished.cycles().filter(|cycle| cycle.name == "first");
-        warnings.extend(first.find_map(coarse));
-    }
-    warnings
+        let message = format!(
+            "the increments resolve the {of} of `{}`{} with an error of {percent:.1} %",
+            machine.mechanism.joint(index).symbol,
+            finished.activity_in_words(&cycle)
+        );
+        let advice = "Use more increments, interpolation = \"spline\" for samples, or a waveform whose jumps take several increments.";
+        let value = (percent, MAX_MISSED_PERCENT, "%");
+        (percent > MAX_MISSED_PERCENT).then(|| warning("increments_coarse", value, message, advice))
+    })
 }
 
 /// Warns of a spline that leaves the range of its samples, as it does at a step: each joint once.
 pub(crate) fn overshoots(finished: &Finished<'_>) -> Vec<PlausibilityWarning> {
-    let overshooting = |index: JointIndex, cycle: SolvedCycle<'_>| {
+    of_each_joint(finished, |index, cycle| {
         let machine = finished.machine(&cycle);
         let (Drive::Prescribed(waveform) | Drive::Loaded(waveform)) = &machine.joint(index).drive
         else {
@@ -282,19 +285,16 @@ pub(crate) fn overshoots(finished: &Finished<'_>) -> Vec<PlausibilityWarning> {
         let value = (percent, MAX_OVERSHOOT_PERCENT, "%");
         (percent > MAX_OVERSHOOT_PERCENT)
             .then(|| warning("waveform_overshoots", value, message, advice))
-    };
-    let of_joint = |index| {
-        finished
-            .cycles()
-            .find_map(|cycle| overshooting(index, cycle))
-    };
-    JointIndex::ALL.into_iter().filter_map(of_joint).collect()
+    })
 }
 
 /// Returns the distance by which a waveform leaves the range of its knots, % of that range; 0 for noise, which [`noisy_motion`]
 /// reports.
 fn overshoot_percent(waveform: &Waveform) -> f64 {
     const STEPS: usize = 1000;
+    if waveform.interpolation() == Interpolation::HalfCosine {
+        return 0.0;
+    }
     let turns = |knots: &&[Knot]| {
         (knots[1].value - knots[0].value) * (knots[2].value - knots[1].value) < 0.0
     };
@@ -304,7 +304,7 @@ fn overshoot_percent(waveform: &Waveform) -> f64 {
     }
     let knots = waveform.knots().iter().map(|knot| knot.value);
     let ([low, high], [lowest, highest]) = (extremes(knots), extremes(sampled(waveform, STEPS)));
-    if low == high || waveform.interpolation() == Interpolation::HalfCosine {
+    if low == high {
         return 0.0;
     }
     100.0 * (low - lowest).max(highest - high) / (high - low)
