@@ -65,14 +65,9 @@ fn described(joint: &RigJoint, scale: f64) -> String {
     let (kind, drive) = (format!("{:?}", keys.kind).to_lowercase(), keys.drive.word());
     let range = match (&joint.waveform, keys.turns_per_cycle) {
         (Some(waveform), _) => {
-            // A spline leaves the range of its points.
-            let between = (0..1000).map(|place| waveform.at(f64::from(place) / 1000.0).0);
-            let points = waveform.knots().iter().map(|knot| knot.value);
-            let values: Vec<f64> = points.chain(between).collect();
-            let least = values.iter().copied().fold(f64::INFINITY, f64::min);
-            let most = values.iter().copied().fold(f64::NEG_INFINITY, f64::max);
             // Three decimals; the sum turns -0 into 0.
-            let [least, most] = [least, most].map(|end| (1e3 * scale * end).round() / 1e3 + 0.0);
+            let rounded = |end: f64| (1e3 * scale * end).round() / 1e3 + 0.0;
+            let [least, most] = waveform.range().map(rounded);
             format!(" {least} to {most} {}", joint.unit())
         }
         (None, Some(turns)) => format!(" {turns} turns a cycle"),

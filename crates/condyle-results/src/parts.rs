@@ -4,7 +4,7 @@
 use condyle::{
     evolve::March,
     machine::{
-        CycleRow, JointDescription, JointIndex, Mechanism,
+        CycleRow, JointDescription, JointIndex, Mechanism, extremes,
         knee::{AP, FLEXION, IE, KNEE, MEDIAL, VV},
     },
     spatial::Pose,
@@ -93,11 +93,7 @@ pub fn kinematics_file(number: usize, name: &str) -> String {
 
 /// Returns the largest less smallest position of a joint of a machine, in the unit of files.
 pub fn joint_range(rows: &[CycleRow], mechanism: &Mechanism, joint: JointIndex) -> f64 {
-    let values = || rows.iter().map(|row| joint.of(&row.positions));
-    let (low, high) = (
-        values().fold(f64::INFINITY, f64::min),
-        values().fold(f64::NEG_INFINITY, f64::max),
-    );
+    let [low, high] = extremes(rows.iter().map(|row| joint.of(&row.positions)));
     mechanism.joint(joint).kind().in_files(high - low)
 }
 

@@ -8,14 +8,15 @@ use condyle::{
         PressureLaw, Response, StateField, Tangent,
     },
     creep::LeePienkowski,
-    evolve::{Activity, March, MarchState, Schedule, WearTest},
+    evolve::{Activity, March, MarchError, MarchState, Schedule, Updates, WearTest},
     geometry::{Counterface, Insert, Meshing, flat_insert},
     machine::{
-        Drive, Interpolation, JointIndex, Knot, Machine, TimeSettings, Waveform,
+        Axis, Drive, Interpolation, JointDescription, JointIndex, Knot, Machine, TimeSettings,
+        Waveform,
         knee::{self, KNEE},
     },
     spatial::RelativeMotion,
-    wear::{Archard, FamilyConstants, NamedLaw, WEAR_LAWS},
+    wear::{Archard, FamilyConstants, MeanCycle, NamedLaw, NodeWear, WEAR_LAWS, WearLaw},
 };
 
 /// A contact that counts the steps it has accepted, and keeps the count as its history.
@@ -472,4 +473,57 @@ fn neutral_is_where_ap_ml_and_is_read_zero() {
         pose.translation.y < 24.0 && pose.translation.y > 23.5,
         "the ball rests on the plate"
     );
+}
+
+#[test]
+fn values_that_no_test_can_have_are_refused() {
+    let message = |change: &dyn Fn(&mut WearTest)| {
+        let mut test = test();
+        change(&mut test);
+        March::start(test).err().unwrap().to_string()
+    };
+    let mut twice = test().activities;
+    twice.extend(twice.clone());
+    let all_shares = message(&|test| test.activities = twice.clone());
+    assert!(all_shares.contains("add up to 2"), "{all_shares}");
+    assert!(message(&|test| test.activities.clear()).contains("add up to 0"));
+    assert!(message(&|test| test.activities[0].share = f64::NAN).contains("shares"));
+    assert!(message(&|test| test.schedule.cycles = 0.0).contains("0 cycles"));
+    assert!(message(&|test| test.schedule = Schedule::fixed(1.0, 0)).contains("Fixed(0)"));
+    let never = Updates::Auto { tolerance: 0.0 };
+    assert!(message(&|test| test.schedule.updates = never).contains("tolerance"));
+    let one_region = |test: &mut WearTest| {
+        let insert = Insert::clone(&test.insert).with_one_region("plate");
+        test.insert = Arc::new(insert);
+    };
+    assert!(message(&one_region).contains("1 regions"));
+
+    let of_joint = |change: fn(&mut JointDescription)| {
+        let mut mechanism = KNEE.clone();
+        change(&mut mechanism.joints[knee::AP.place()]);
+        let machine = Machine::new(Box::leak(Box::new(mechanism)));
+        message(&|test| test.activities[0].machine = machine.clone())
+    };
+    let long = of_joint(|joint| joint.axis = Axis::Along([1.0, 0.0, 1.0]));
+    assert!(long.contains("has the length 1.41"), "{long}");
+    assert!(of_joint(|joint| joint.axis = Axis::About([1.0, 0.0, 0.0])).contains("zeroed"));
+}
+
+#[test]
+fn a_law_that_adds_material_ends_the_march() {
+    #[derive(Debug)]
+    struct Depth(f64);
+    impl WearLaw for Depth {
+        fn wear(&self, _cycle: &MeanCycle<'_>) -> NodeWear {
+            NodeWear::of_depth(self.0)
+        }
+    }
+    for depth_mm in [-1e-8, f64::NAN, f64::INFINITY] {
+        let wear = Arc::new(Depth(depth_mm));
+        let mut march = March::start(WearTest { wear, ..test() }).unwrap();
+        let error = march.run().unwrap_err();
+        let is_the_depth = matches!(error, MarchError::InvalidDepth { update: 1, .. });
+        assert!(is_the_depth, "{error}");
+        assert_eq!(march.cycles(), 0.0);
+    }
 }

@@ -1,8 +1,7 @@
 //! Checks of the machine: whether it reaches its loads, and whether its springs stay within their travel.
 
 use condyle::machine::{
-    Axis, CycleRow, Drive, Interpolation, JointIndex, JointKind, Knot, Machine, Spring,
-    TestedJoint, Waveform,
+    CycleRow, Drive, JointIndex, JointKind, Machine, Spring, TestedJoint, Waveform,
     knee::{AP, IE, IS, KNEE, ML, VV},
 };
 use condyle_results::{PlausibilityWarning, joint_range};
@@ -48,32 +47,12 @@ const FARTHEST_MM: f64 = 10.0;
 /// Smallest plausible peak of the axial force on a joint, N; our choice: the smallest of a standard is 150 N, on the disc of a neck,
 /// and the largest one in kN is 3.
 const MIN_PEAK_LOAD_N: f64 = 10.0;
-/// Smallest plausible ranges of prescribed motions; our choice: the smallest of a standard are 4 degrees, on a disc, and 3 mm, and in
-/// radians and m, those of a hip and a knee are 0.75 and 0.005.
-const MIN_TURN_DEG: f64 = 2.0;
-const MIN_STROKE_MM: f64 = 0.1;
-/// The same of a prescribed AP motion of a joint, which in cm is 0.5.
-const MIN_AP_STROKE_MM: f64 = 1.0;
-/// Largest excess of the path of a prescribed motion over that of the smoothed motion, %; our choice: noise of 6 % changed the mass of
-/// a knee by 12 %.
-const MAX_NOISE_PERCENT: f64 = 3.0;
-/// Part of the increments at which a noisy motion reverses: noise of 0.01 mm does so at a quarter of them.
-const MIN_REVERSALS: f64 = 0.15;
-/// Increments of a cycle from which smoothing keeps every motion of a joint.
-const MIN_ROWS_OF_NOISE: usize = 100;
 /// Smallest sliding speed over the slip tolerance; our choice: friction then has 98 % of its full value.
 const MIN_SPEED_OVER_TOLERANCE: f64 = 5.0;
 /// Path in a cycle below which a surface that is only pressed counts as not sliding, mm; our choice.
 const MIN_PATH_MM: f64 = 0.01;
-/// Largest error of the path of a motion or the peak of a load by the ends of increments, %; our choice: the preset waveforms have at
-/// most 0.1 % at 200 increments and 3.5 % at 50, and a jump within an increment has tens.
-const MAX_MISSED_PERCENT: f64 = 5.0;
 /// Smallest plausible peak of the axial force on specimens, N; our choice: pins are pressed by tens to hundreds of newtons.
 const MIN_PEAK_LOAD_OF_SPECIMENS_N: f64 = 1.0;
-
-/// Largest distance by which a spline may leave the range of its samples, % of that range; our choice: that of measured loads and
-/// motions is 2 % at most, and that of a step from one sample to the next 10 % or more.
-const MAX_OVERSHOOT_PERCENT: f64 = 5.0;
 
 /// A load of the machine that contact and springs do not balance.
 struct Missed {
@@ -114,106 +93,6 @@ pub(crate) fn load_small(finished: &Finished<'_>) -> Option<PlausibilityWarning>
     (peak_n < least_n).then(|| warning("load_small", value, message, advice))
 }
 
-/// Warns of prescribed motions so small that their unit is probably not degrees or mm, or so noisy that the noise wears: each once.
-pub(crate) fn motions(finished: &Finished<'_>) -> Vec<PlausibilityWarning> {
-    let mut warnings: Vec<PlausibilityWarning> = Vec::new();
-    for index in JointIndex::ALL {
-        let is_moved = |cycle: &SolvedCycle<'_>| {
-            let machine = finished.machine(cycle);
-            let is_prescribed = matches!(machine.joint(index).drive, Drive::Prescribed(_));
-            // A constant curve varies by round-off.
-            is_prescribed && joint_range(cycle.rows, machine.mechanism, index) > 1e-6
-        };
-        for check in [small_motion, noisy_motion] {
-            let mut moved = finished.cycles().filter(is_moved);
-            warnings.extend(moved.find_map(|cycle| check(finished, &cycle, index)));
-        }
-    }
-    warnings
-}
-
-fn small_motion(
-    finished: &Finished<'_>,
-    cycle: &SolvedCycle<'_>,
-    index: JointIndex,
-) -> Option<PlausibilityWarning> {
-    let machine = finished.machine(cycle);
-    let description = machine.mechanism.joint(index);
-    // Heights and varus are small in any unit.
-    let is_along_y = matches!(description.axis, Axis::Along([0.0, _, 0.0]));
-    let is_varus = *machine.mechanism == KNEE && index == VV;
-    if is_along_y || is_varus {
-        return None;
-    }
-    let is_ap_of_joint = matches!(description.axis, Axis::Along([_, 0.0, 0.0]))
-        && machine.mechanism.tests != TestedJoint::Specimen;
-    let (least, unit, advice) = match description.kind() {
-        JointKind::Rotation => (
-            MIN_TURN_DEG,
-            "degrees",
-            "Write rotations in degrees: a waveform in radians needs scale = 57.2958.",
-        ),
-        JointKind::Translation => (
-            if is_ap_of_joint {
-                MIN_AP_STROKE_MM
-            } else {
-                MIN_STROKE_MM
-            },
-            "mm",
-            "Write translations in mm: a waveform in m needs scale = 1000, and one in cm scale = 10.",
-        ),
-    };
-    let range = joint_range(cycle.rows, machine.mechanism, index);
-    let of_activity = finished.activity_in_words(cycle);
-    let message = format!(
-        "the prescribed motion {} is {range:.2} {unit} in the {} cycle{of_activity}; that of a machine is at least {least} {unit}",
-        description.symbol, cycle.name
-    );
-    let value = (range, least, unit);
-    (range < least).then(|| warning("motion_small", value, message, advice))
-}
-
-/// Compares the path of a prescribed motion with that of the motion smoothed over seven increments.
-fn noisy_motion(
-    finished: &Finished<'_>,
-    cycle: &SolvedCycle<'_>,
-    index: JointIndex,
-) -> Option<PlausibilityWarning> {
-    // The smoothing polynomial of second degree by Savitzky and Golay: it keeps curves, and removes most of the noise.
-    const WEIGHTS: [f64; 7] = [-2.0, 3.0, 6.0, 7.0, 6.0, 3.0, -2.0];
-    const SUM: f64 = 21.0;
-    let machine = finished.machine(cycle);
-    let count = cycle.rows.len();
-    let at = |row: usize| index.of(&cycle.rows[row % count].positions);
-    let smooth = |row: usize| {
-        let weighted = WEIGHTS.iter().enumerate();
-        weighted
-            .map(|(place, weight)| weight * at(row + place))
-            .sum::<f64>()
-            / SUM
-    };
-    let path = |value: &dyn Fn(usize) -> f64| -> f64 {
-        (0..count)
-            .map(|row| (value(row + 1) - value(row)).abs())
-            .sum()
-    };
-    let turns = |row: &usize| (at(row + 1) - at(*row)) * (at(row + 2) - at(row + 1)) < 0.0;
-    let reversals = (0..count).filter(turns).count() as f64;
-    // Smoothing shortens the path of a motion with corners, too, which has few.
-    if count < MIN_ROWS_OF_NOISE || reversals < MIN_REVERSALS * count as f64 {
-        return None;
-    }
-    let percent = 100.0 * (path(&at) / path(&smooth).max(f64::MIN_POSITIVE) - 1.0);
-    let message = format!(
-        "the prescribed motion {}{} is noisy: its path is {percent:.0} % longer than that of the smoothed motion, and noise wears",
-        machine.mechanism.joint(index).symbol,
-        finished.activity_in_words(cycle)
-    );
-    let advice = "Filter it: low_pass_harmonics = 15 in the table of its waveform.";
-    let value = (percent, MAX_NOISE_PERCENT, "%");
-    (percent > MAX_NOISE_PERCENT).then(|| warning("motion_noisy", value, message, advice))
-}
-
 /// Warns of sliding that is not fast compared with the slip tolerance, below which friction is small. Once it has vanished, the error
 /// estimate, which doubles the tolerance, changes nothing more.
 pub(crate) fn slides_slowly(finished: &Finished<'_>) -> Option<PlausibilityWarning> {
@@ -231,127 +110,6 @@ pub(crate) fn slides_slowly(finished: &Finished<'_>) -> Option<PlausibilityWarni
     let value = (path_mm, least_mm, "mm");
     let is_slow = path_mm > MIN_PATH_MM && path_mm < least_mm;
     is_slow.then(|| warning("slides_slowly", value, message, advice))
-}
-
-/// Returns the first warning of a check of the waveform of each joint.
-fn of_each_joint(
-    finished: &Finished<'_>,
-    check: impl Fn(JointIndex, SolvedCycle<'_>) -> Option<PlausibilityWarning>,
-) -> Vec<PlausibilityWarning> {
-    // The last cycle has the same waveforms.
-    let first = || finished.cycles().filter(|cycle| cycle.name == "first");
-    let of_joint = |index| first().find_map(|cycle| check(index, cycle));
-    JointIndex::ALL.into_iter().filter_map(of_joint).collect()
-}
-
-/// Warns of a waveform whose jumps or peaks lie between the increments: each joint once.
-///
-/// Slip is the rate at the end of an increment times its duration, so a jump between two ends has no slip, and one at an end too much.
-pub(crate) fn coarse_increments(finished: &Finished<'_>) -> Vec<PlausibilityWarning> {
-    of_each_joint(finished, |index, cycle| {
-        let machine = finished.machine(&cycle);
-        let (kind, count) = (machine.mechanism.joint(index).kind(), cycle.rows.len());
-        let (of, percent) = match &machine.joint(index).drive {
-            Drive::Locked(_) => return None,
-            Drive::Prescribed(waveform) => ("path", missed_path(waveform, kind, count)),
-            Drive::Loaded(waveform) => ("peak", missed_peak(waveform, count)),
-        };
-        let message = format!(
-            "the increments resolve the {of} of `{}`{} with an error of {percent:.1} %",
-            machine.mechanism.joint(index).symbol,
-            finished.activity_in_words(&cycle)
-        );
-        let advice = "Use more increments, interpolation = \"spline\" for samples, or a waveform whose jumps take several increments.";
-        let value = (percent, MAX_MISSED_PERCENT, "%");
-        (percent > MAX_MISSED_PERCENT).then(|| warning("increments_coarse", value, message, advice))
-    })
-}
-
-/// Warns of a spline that leaves the range of its samples, as it does at a step: each joint once.
-pub(crate) fn overshoots(finished: &Finished<'_>) -> Vec<PlausibilityWarning> {
-    of_each_joint(finished, |index, cycle| {
-        let machine = finished.machine(&cycle);
-        let (Drive::Prescribed(waveform) | Drive::Loaded(waveform)) = &machine.joint(index).drive
-        else {
-            return None;
-        };
-        let percent = overshoot_percent(waveform);
-        let message = format!(
-            "the curve of `{}`{} leaves the range of its samples by {percent:.0} % of it: a spline overshoots at steps",
-            machine.mechanism.joint(index).symbol,
-            finished.activity_in_words(&cycle)
-        );
-        let advice = "Write interpolation = \"half-cosine\" in the table of its waveform, or give more samples where it changes fast.";
-        let value = (percent, MAX_OVERSHOOT_PERCENT, "%");
-        (percent > MAX_OVERSHOOT_PERCENT)
-            .then(|| warning("waveform_overshoots", value, message, advice))
-    })
-}
-
-/// Returns the distance by which a waveform leaves the range of its knots, % of that range; 0 for noise, which [`noisy_motion`]
-/// reports.
-fn overshoot_percent(waveform: &Waveform) -> f64 {
-    const STEPS: usize = 1000;
-    if waveform.interpolation() == Interpolation::HalfCosine {
-        return 0.0;
-    }
-    let turns = |knots: &&[Knot]| {
-        (knots[1].value - knots[0].value) * (knots[2].value - knots[1].value) < 0.0
-    };
-    let turns = waveform.knots().windows(3).filter(turns).count() as f64;
-    if turns > MIN_REVERSALS * waveform.knots().len() as f64 {
-        return 0.0;
-    }
-    let knots = waveform.knots().iter().map(|knot| knot.value);
-    let ([low, high], [lowest, highest]) = (extremes(knots), extremes(sampled(waveform, STEPS)));
-    if low == high {
-        return 0.0;
-    }
-    100.0 * (low - lowest).max(highest - high) / (high - low)
-}
-
-/// Returns the lowest and the highest of some values.
-fn extremes(values: impl Iterator<Item = f64>) -> [f64; 2] {
-    values.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], value| {
-        [low.min(value), high.max(value)]
-    })
-}
-
-/// Instants of each increment at which a waveform is compared with its values at the ends of increments.
-const FINE: usize = 20;
-
-/// Returns the values of a waveform at equal steps of a cycle, both ends included.
-fn sampled(waveform: &Waveform, count: usize) -> impl Iterator<Item = f64> + '_ {
-    (0..=count).map(move |place| waveform.at(place as f64 / count as f64).0)
-}
-
-/// Returns the error of the path of a motion by its rates at the ends of increments, %.
-fn missed_path(waveform: &Waveform, kind: JointKind, increments: usize) -> f64 {
-    let fine: Vec<f64> = sampled(waveform, FINE * increments).collect();
-    let step = |pair: &[f64]| match (kind, pair[1] - pair[0]) {
-        (JointKind::Translation, step) => step.abs(),
-        // A turn that goes on through the end of the cycle returns there to its first value.
-        (JointKind::Rotation, step) => step.sin().atan2(step.cos()).abs(),
-    };
-    let path: f64 = fine.windows(2).map(step).sum();
-    // A constant curve varies by round-off.
-    if path < 1e-6 {
-        return 0.0;
-    }
-    let rates = (0..increments).map(|place| waveform.at(place as f64 / increments as f64).1.abs());
-    let by_rates = rates.sum::<f64>() / increments as f64;
-    100.0 * (by_rates / path - 1.0).abs()
-}
-
-/// Returns the part of the largest load by which the ends of increments miss the highest or the lowest load, %.
-fn missed_peak(waveform: &Waveform, increments: usize) -> f64 {
-    let [low, high] = extremes(sampled(waveform, FINE * increments));
-    let [low_here, high_here] = extremes(sampled(waveform, increments));
-    let largest = high.max(-low);
-    if largest == 0.0 {
-        return 0.0;
-    }
-    100.0 * (low_here - low).max(high - high_here) / largest
 }
 
 pub(crate) fn not_reached(finished: &Finished<'_>) -> Vec<PlausibilityWarning> {
@@ -667,8 +425,6 @@ mod loads_tests {
 
 #[cfg(test)]
 mod motions_tests {
-    use condyle::machine::{Interpolation, Knot};
-
     use super::*;
 
     fn row(medial_n: f64, lateral_n: f64) -> CycleRow {
@@ -698,48 +454,5 @@ mod motions_tests {
             rows: &rows,
         };
         assert_eq!(lifted_percent(&cycle), 50.0);
-    }
-
-    #[test]
-    fn jumps_and_peaks_within_an_increment_are_missed() {
-        let waveform = |knots: &[(f64, f64)], interpolation| {
-            let knots = knots
-                .iter()
-                .map(|&(percent, value)| Knot { percent, value });
-            Waveform::new(knots.collect(), interpolation).unwrap()
-        };
-        let (slides, turns) = (JointKind::Translation, JointKind::Rotation);
-        let jumps = [(0.0, 0.0), (49.99, 0.0), (50.0, 8.0), (99.99, 8.0)];
-        let jumps = waveform(&jumps, Interpolation::HalfCosine);
-        assert!(missed_path(&jumps, slides, 200) > 99.0);
-        let smooth = waveform(&[(0.0, 0.0), (50.0, 0.5)], Interpolation::HalfCosine);
-        assert!(missed_path(&smooth, slides, 200) < 0.1);
-        let whole_turn = Waveform::turning(0.0, std::f64::consts::TAU);
-        assert!(missed_path(&whole_turn, turns, 200) < 1e-6);
-        let spike = [(0.0, 10.0), (50.05, 10.0), (50.2, 100.0), (50.45, 10.0)];
-        let spike = waveform(&spike, Interpolation::HalfCosine);
-        assert!(missed_peak(&spike, 200) > 80.0 && missed_peak(&smooth, 200) < 1e-9);
-    }
-
-    #[test]
-    fn verify_the_overshoot_of_a_spline_at_a_step() {
-        let curve = |value: fn(f64) -> f64, interpolation| {
-            let knot = |place: u32| {
-                let percent = 5.0 * f64::from(place);
-                let value = value(percent);
-                Knot { percent, value }
-            };
-            Waveform::new((0..20).map(knot).collect(), interpolation).unwrap()
-        };
-        let step: fn(f64) -> f64 = |percent| f64::from(u8::from(percent < 50.0));
-        // At an infinite step, the slopes at the knots are 3/(3 + sqrt 3), times -0.268 from knot to knot.
-        let overshoot = overshoot_percent(&curve(step, Interpolation::Spline));
-        assert!((overshoot - 10.78).abs() < 0.05, "{overshoot}");
-        assert_eq!(
-            overshoot_percent(&curve(step, Interpolation::HalfCosine)),
-            0.0
-        );
-        let sine = |percent: f64| (0.02 * std::f64::consts::PI * percent).sin();
-        assert!(overshoot_percent(&curve(sine, Interpolation::Spline)) < 1.0);
     }
 }

@@ -7,6 +7,7 @@
 pub(crate) mod bodies;
 pub(crate) mod finished;
 pub(crate) mod loads;
+pub(crate) mod waveforms;
 
 use condyle::evolve::March;
 use condyle_case::case::BuildWarning;
@@ -86,9 +87,9 @@ pub(crate) fn warnings(
             .flatten(),
     );
     warnings.extend(PLACE.iter().filter_map(one));
-    warnings.extend(loads::motions(&finished));
-    warnings.extend(loads::overshoots(&finished));
-    warnings.extend(loads::coarse_increments(&finished));
+    warnings.extend(waveforms::motions(&finished));
+    warnings.extend(waveforms::overshoots(&finished));
+    warnings.extend(waveforms::coarse_increments(&finished));
     warnings.extend(loads::not_reached(&finished));
     warnings.extend(loads::springs_far(&finished));
     warnings.extend(loads::ranges(&finished));

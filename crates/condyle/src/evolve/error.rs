@@ -62,6 +62,16 @@ pub enum MarchError {
         place_mm: Vec3,
         wear_and_creep_mm: Option<[f64; 2]>,
     },
+    /// The wear law adds material, or its depth is not a number.
+    #[error(
+        "update {update}: the wear law gives a depth of {depth_mm} mm in a cycle at ({:.1}, {:.1}) mm; a depth is finite, and 0 or more",
+        place_mm.x, place_mm.z
+    )]
+    InvalidDepth {
+        update: usize,
+        place_mm: Vec3,
+        depth_mm: f64,
+    },
     /// Elements below the worn surface are inverted.
     #[error(
         "update {update}: {count} elements below the worn surface are inside out, the worst at ({:.1}, {:.1}, {:.1}) \
@@ -112,6 +122,9 @@ impl MarchError {
 #[derive(Clone, Debug, PartialEq, Error)]
 #[non_exhaustive]
 pub enum PlacementError {
+    /// A value of the test that its type permits, and the march does not.
+    #[error("no wear test: {0}")]
+    InvalidTest(String),
     /// Nothing of the insert lies below the counterface.
     #[error(
         "counterface and insert are apart: lowered at x {:.1}, z {:.1} mm the counterface passes the insert without \

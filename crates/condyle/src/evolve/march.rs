@@ -21,6 +21,7 @@ use crate::{
     geometry::{ArticulatingSurface, Counterface, Insert},
     machine::{Chain, Ligament, MachineState, SolverCounters},
     spatial::Pose,
+    wear::{MeanCycle, NodeWear},
 };
 
 /// A wear test in progress.
@@ -53,8 +54,11 @@ impl March {
     /// Places the counterface on the unworn insert and lets it settle.
     ///
     /// # Errors
-    /// Bodies that do not meet, that overlap deeply, or that do not come to rest.
+    /// A value that no test can have, and bodies that do not meet, that overlap deeply, or that do not come to rest.
     pub fn start(test: WearTest) -> Result<Self, PlacementError> {
+        if let Some(invalid) = test.invalid_value() {
+            return Err(PlacementError::InvalidTest(invalid));
+        }
         let (counterface, surface) = (prepared(&test), test.contact.surface(&test.insert));
         let mut counters = SolverCounters::default();
         let bodies = Bodies {
@@ -83,6 +87,9 @@ impl March {
     }
 
     /// Continues from a state of the same test.
+    ///
+    /// # Panics
+    /// If the state has another number of nodes or activities than the test.
     pub fn resume(test: WearTest, state: MarchState) -> Self {
         let counterface = prepared(&test);
         Self::from_parts(test, counterface, state)
@@ -270,7 +277,7 @@ impl March {
         // The wear of one cycle, and the interval over which it can be extrapolated.
         let shared = solved.with_shares(&self.test.activities);
         let mean = mean_cycles(&shared, &solved.surface);
-        let worn = worn(self.test.wear.as_ref(), &mean);
+        let worn = self.worn(&mean, &solved.surface)?;
         let contact = self.test.contact.as_ref();
         let rates = Rates::new(contact, &self.insert, &solved.surface, &mean, &worn);
         let start = self.step_start(&rates);
@@ -323,7 +330,7 @@ impl March {
         };
         let shared = solved.with_shares(&self.test.activities);
         let mean = mean_cycles(&shared, &solved.surface);
-        let worn = worn(self.test.wear.as_ref(), &mean);
+        let worn = self.worn(&mean, &solved.surface)?;
         let rates = Rates::new(
             self.test.contact.as_ref(),
             &self.insert,
@@ -339,6 +346,33 @@ impl March {
         self.state.final_cycle = Some(solved.peaks(stress));
         self.keep(self.cycles(), solved);
         Ok(ControlFlow::Continue(()))
+    }
+
+    /// Returns the wear per mean cycle at every node.
+    ///
+    /// # Errors
+    /// A law that adds material, or gives no number.
+    fn worn(
+        &self,
+        mean: &[MeanCycle<'_>],
+        surface: &ArticulatingSurface,
+    ) -> Result<Vec<NodeWear>, MarchError> {
+        let worn = worn(self.test.wear.as_ref(), mean);
+        let is_valid = |depth_mm: f64| depth_mm.is_finite() && depth_mm >= 0.0;
+        match worn.iter().position(|worn| !is_valid(worn.depth_mm)) {
+            Some(node) => Err(MarchError::InvalidDepth {
+                update: self.update_in_progress(),
+                place_mm: surface.positions[node],
+                depth_mm: worn[node].depth_mm,
+            }),
+            None => Ok(worn),
+        }
+    }
+
+    /// Returns the number of the update in progress, from 1.
+    fn update_in_progress(&self) -> usize {
+        let left = self.test.schedule.cycles - self.cycles();
+        self.state.update_in_progress(left)
     }
 
     /// Solves one repeating cycle of every activity on the present surface.
@@ -371,7 +405,7 @@ impl March {
         };
         if !solved.touch() {
             let (end, added_inertia) = (&solved.cycles[0].end, counters.added_inertia);
-            let update = state.update_in_progress(test.schedule.cycles - state.cycles());
+            let update = self.update_in_progress();
             return Err(MarchError::lost_contact(update, test, end, added_inertia));
         }
         Ok(ControlFlow::Continue(solved))

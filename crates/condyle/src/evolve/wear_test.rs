@@ -3,10 +3,11 @@
 use std::sync::Arc;
 
 use crate::{
+    Vec3,
     contact::ContactLaw,
     creep::LeePienkowski,
     geometry::{Counterface, Insert},
-    machine::{Machine, TimeSettings},
+    machine::{Axis, JointDescription, JointKind, Machine, TimeSettings},
     wear::{NamedLaw, WearLaw},
 };
 
@@ -87,6 +88,56 @@ impl WearTest {
     pub fn machine(&self) -> &Machine {
         &self.activities[0].machine
     }
+
+    /// Returns a message for the first value that its type permits and that no test can have.
+    pub(super) fn invalid_value(&self) -> Option<String> {
+        let shares = || self.activities.iter().map(|activity| activity.share);
+        let total = shares().fold(0.0, |sum, share| sum + share);
+        let is_part = |share: f64| (0.0..=1.0).contains(&share);
+        // Shares in files are decimals, whose sum is rounded.
+        let add_up = shares().all(is_part) && (total - 1.0).abs() < 1e-9;
+        let has_updates = match self.schedule.updates {
+            Updates::Fixed(updates) => updates > 0,
+            Updates::Auto { tolerance } => tolerance > 0.0,
+        };
+        let (cycles, sides) = (self.schedule.cycles, self.insert.regions().count());
+        let mut mechanisms = self
+            .activities
+            .iter()
+            .map(|activity| activity.machine.mechanism);
+        let mut joints = mechanisms.clone().flat_map(|mechanism| &mechanism.joints);
+        let joint = joints.find_map(invalid_joint);
+        let has_regions = mechanisms.all(|mechanism| [0, sides].contains(&mechanism.regions.len()));
+        let checks = [
+            (joint.is_none(), joint.unwrap_or_default()),
+            (
+                add_up,
+                format!("the shares of its activities are not from 0 to 1, or add up to {total}"),
+            ),
+            (cycles > 0.0, format!("{cycles} cycles")),
+            (has_updates, format!("{:?}", self.schedule.updates)),
+            (
+                has_regions,
+                format!("the insert has {sides} regions, the mechanism another number"),
+            ),
+        ];
+        let mut failed = checks.into_iter().filter(|(is_met, _)| !is_met);
+        failed.next().map(|(_, message)| message)
+    }
+}
+
+/// Returns a message for a joint that no chain can have.
+fn invalid_joint(joint: &JointDescription) -> Option<String> {
+    let (Axis::Along(axis) | Axis::About(axis) | Axis::AboutCounterface(axis)) = joint.axis;
+    let length = Vec3::from(axis).norm();
+    if (length - 1.0).abs() > 1e-9 {
+        return Some(format!(
+            "the axis of the joint \"{}\" has the length {length}, not 1",
+            joint.name
+        ));
+    }
+    let is_turned = joint.is_zeroed && joint.kind() == JointKind::Rotation;
+    is_turned.then(|| format!("the joint \"{}\" is zeroed, but rotates", joint.name))
 }
 
 /// The cycles of a test, and the updates of the geometry.

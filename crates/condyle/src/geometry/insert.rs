@@ -52,7 +52,8 @@ impl Insert {
     /// The hexahedra are to stand in columns below the articulating surface: nodes outside of columns stay in place as it wears.
     ///
     /// # Errors
-    /// An empty mesh or surface, an inverted element, or a node without thickness below it.
+    /// An empty mesh or surface, an inverted element, a quad of the articulating surface that does not face out of the mesh, or a node
+    /// without thickness below it.
     pub fn new(
         mesh: HexMesh,
         articulating: &[[u32; 4]],
@@ -364,6 +365,31 @@ mod tests {
         assert!(unworn.thickness_mm().iter().all(|left| *left == 5.0));
         assert!(Arc::ptr_eq(&unworn.unworn, &worn.unworn));
         assert!(Arc::ptr_eq(&unworn.mesh.hexes, &worn.mesh.hexes));
+    }
+
+    #[test]
+    fn quads_that_do_not_face_out_of_the_mesh_are_refused() {
+        let mesh = block().mesh().clone();
+        let is_at = |height_mm: f64| {
+            let nodes = &mesh.nodes;
+            move |quad: &[u32; 4]| quad.iter().all(|&node| nodes[node as usize].y == height_mm)
+        };
+        let lowest_mm = mesh
+            .nodes
+            .iter()
+            .map(|node| node.y)
+            .fold(f64::MAX, f64::min);
+        let top = mesh.boundary_quads_where(is_at(0.0));
+        let bottom = mesh.boundary_quads_where(is_at(lowest_mm));
+        assert!(Insert::new(mesh.clone(), &top, &bottom).is_ok());
+        let mut inwards = top.clone();
+        inwards[3].reverse();
+        let mut twice = top.clone();
+        twice.push(top[0]);
+        for (quads, quad) in [(inwards, 3), (twice, top.len())] {
+            let error = Insert::new(mesh.clone(), &quads, &bottom).unwrap_err();
+            assert_eq!(error, InsertError::NotOnBoundary { quad });
+        }
     }
 
     #[test]

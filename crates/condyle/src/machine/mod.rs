@@ -33,4 +33,6 @@ pub use mechanism::{
 pub(crate) use settle::settle_from;
 pub use settle::{NotSettled, settle};
 pub use simulator::Simulator;
-pub use waveform::{Interpolation, Knot, Waveform, WaveformError, low_passed, without_drift};
+pub use waveform::{
+    Interpolation, Knot, Waveform, WaveformError, extremes, low_passed, without_drift,
+};

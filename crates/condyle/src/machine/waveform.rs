@@ -209,6 +209,19 @@ impl Waveform {
         };
         (value, slope * 100.0 / span)
     }
+
+    /// Returns the lowest and the highest value, from those at the knots, which a spline can leave, and at a thousand instants.
+    pub fn range(&self) -> [f64; 2] {
+        let between = (0..1000).map(|place| self.at(f64::from(place) / 1000.0).0);
+        extremes(self.knots.iter().map(|knot| knot.value).chain(between))
+    }
+}
+
+/// Returns the lowest and the highest of some values; infinite and reversed if there are none.
+pub fn extremes(values: impl IntoIterator<Item = f64>) -> [f64; 2] {
+    let nothing = [f64::INFINITY, f64::NEG_INFINITY];
+    let wider = |[low, high]: [f64; 2], value: f64| [low.min(value), high.max(value)];
+    values.into_iter().fold(nothing, wider)
 }
 
 /// Rejects samples that end before 100 % and jump from there to the first one: far, and steeper than anywhere else.

@@ -286,7 +286,8 @@ const WITH_TWIN: f64 = 1.5;
 
 impl ContactLaw for Deformable {
     /// # Panics
-    /// If an insert other than that from which the law was made does not define an elastic solid.
+    /// If an insert other than that from which the law was made does not define an elastic solid, or if an insert that rests on
+    /// its tray yields, or sticks and slips on its surface.
     fn contact<'a>(
         &'a self,
         bodies: Bodies<'a>,
@@ -312,6 +313,10 @@ impl ContactLaw for Deformable {
             spacing_mm,
         } = self.backside
         {
+            assert!(
+                histories.is_empty(),
+                "a resting insert neither yields nor sticks"
+            );
             let (tray, surface) = (surface.tray(spacing_mm), Arc::clone(&surface));
             histories.push(Box::new(RestingInsert::new(
                 &state, surface, tray, friction,

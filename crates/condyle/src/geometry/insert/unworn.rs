@@ -1,5 +1,7 @@
 //! The state of an insert as it was made, which wear does not change.
 
+use std::collections::HashSet;
+
 use condyle_fem::{HEX_EDGES, HexMesh, numbered};
 use condyle_mesh::{
     bounds,
@@ -29,6 +31,11 @@ pub enum InsertError {
     /// A surface that cannot be meshed in columns.
     #[error(transparent)]
     Columns(#[from] ColumnError),
+    /// A quad of a surface that is inside the mesh, faces in, or stands twice.
+    #[error(
+        "quad {quad} of the articulating surface is not on the boundary of the mesh, faces into it, or stands twice"
+    )]
+    NotOnBoundary { quad: usize },
     /// A hexahedron that is inverted or flat.
     #[error(
         "hexahedron {hex} of the insert is inverted or flat (scaled Jacobian {quality:.3}); repair the mesh or use a larger edge"
@@ -93,8 +100,14 @@ impl UnwornInsert {
         if let Some((hex, quality)) = qualities.find(|(_, quality)| *quality <= 0.0) {
             return Err(InsertError::BadElement { hex, quality });
         }
-        let (surface_nodes, faces) = numbered(articulating);
         let boundary = mesh.boundary_quads();
+        // Each is removed when it is found, so that one that stands twice is not.
+        let mut left: HashSet<_> = boundary.iter().copied().map(from_lowest).collect();
+        let mut quads = articulating.iter().copied().map(from_lowest);
+        if let Some(quad) = quads.position(|quad| !left.remove(&quad)) {
+            return Err(InsertError::NotOnBoundary { quad });
+        }
+        let (surface_nodes, faces) = numbered(articulating);
         let faces_around = FacesAround::new(surface_nodes.len(), &faces);
         let positions = mesh.positions(&surface_nodes).collect();
         let surface = ArticulatingSurface::new(positions, &faces_around);
@@ -119,6 +132,13 @@ impl UnwornInsert {
         let nodes = self.surface_nodes.iter();
         nodes.map(|&node| self.nodes[node as usize])
     }
+}
+
+/// Returns a quad from its lowest node on, in the same direction.
+fn from_lowest(mut quad: [u32; 4]) -> [u32; 4] {
+    let lowest = (0..4).min_by_key(|&corner| quad[corner]);
+    quad.rotate_left(lowest.unwrap_or_default());
+    quad
 }
 
 /// Returns the direction of the boundary edge that leads down from each node of the articulating surface, if it has
