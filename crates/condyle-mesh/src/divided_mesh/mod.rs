@@ -112,6 +112,11 @@ impl DividedMesh {
         clusters.collect()
     }
 
+    /// Returns the outward normal of a triangle.
+    pub fn normal(&self, triangle: usize) -> Vec3 {
+        self.planes[triangle].0
+    }
+
     /// Returns the squared distance from a point to the triangle's plane, mm2: a cheap lower bound.
     pub fn plane_distance2(&self, triangle: usize, point: &Vec3) -> f64 {
         let (normal, offset) = self.planes[triangle];

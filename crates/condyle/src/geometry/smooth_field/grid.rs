@@ -3,6 +3,7 @@
 use condyle_mesh::{Cluster, DividedMesh};
 use serde::{Deserialize, Serialize};
 
+use super::visibility::Visibility;
 use crate::Vec3;
 
 /// Distance between grid nodes, mm: the spline's error on a ball of radius 20 mm is then below
@@ -86,73 +87,130 @@ pub const BEYOND_BAND_MM: f64 = 1e3;
 
 /// Returns the gap at every node of a grid within the band, [`BEYOND_BAND_MM`] elsewhere.
 ///
+/// Inside a thin wall and behind it, the gap is that to the articulating surface, though the other side of the wall is nearer: the spline
+/// near the surface reads nodes up to 3 mm below it, and a bend of the gaps in the middle of the wall would make the surface wavy.
+///
 /// Each of `threads` fills its own layers, and no number depends on the thread that computed it. With one thread, the
 /// thread of the caller does the work.
-pub fn gaps_at_nodes(grid: &NodeGrid, curved: &DividedMesh, threads: usize) -> Vec<f64> {
+pub fn gaps_at_nodes(
+    grid: &NodeGrid,
+    curved: &DividedMesh,
+    seen: &Visibility,
+    threads: usize,
+) -> Vec<f64> {
+    let triangles = 0..curved.mesh.triangles.len();
+    let sees = |triangle| seen.sees(&curved.mesh.corners(triangle));
+    let is_seen: Vec<bool> = triangles.map(sees).collect();
     let mut gaps = vec![BEYOND_BAND_MM; grid.node_count()];
     if threads <= 1 {
-        fill_layers(grid, curved, 0, &mut gaps);
+        fill_layers(grid, curved, &is_seen, 0, &mut gaps);
         return gaps;
     }
     let [_, _, layer] = grid.strides();
     let layers = grid.counts[2].div_ceil(threads);
     std::thread::scope(|scope| {
         for (index, part) in gaps.chunks_mut(layer * layers).enumerate() {
-            scope.spawn(move || fill_layers(grid, curved, index * layers, part));
+            let is_seen = &is_seen;
+            scope.spawn(move || fill_layers(grid, curved, is_seen, index * layers, part));
         }
     });
     gaps
 }
 
-/// Fills the layers of nodes from `first_layer` with their gaps to the nearest triangle.
-fn fill_layers(grid: &NodeGrid, curved: &DividedMesh, first_layer: usize, gaps: &mut [f64]) {
-    let nearest = nearest_triangles(grid, curved, first_layer, gaps.len());
+/// Fills the layers of nodes from `first_layer` with their gaps to the nearest triangle, or to the seen side of a wall.
+fn fill_layers(
+    grid: &NodeGrid,
+    curved: &DividedMesh,
+    is_seen: &[bool],
+    first_layer: usize,
+    gaps: &mut [f64],
+) {
     let [_, row, layer] = grid.strides();
-    for (here, (gap, triangle)) in gaps.iter_mut().zip(nearest).enumerate() {
-        if let Some(triangle) = triangle {
-            let (i, j, k) = (here % row, here % layer / row, here / layer);
-            // Only for the nearest facet: the gap to the curved surface is far more expensive than the distance to a facet.
-            let node = grid.position(i, j, k + first_layer);
-            let foot = curved.foot(triangle, &node);
-            *gap = (node - foot.point).dot(&foot.normal);
+    // Only for the nearest facet: the gap to the curved surface is far more expensive than the distance to a facet.
+    let foot = |here: usize, triangle: u32| {
+        let (i, j, k) = (here % row, here % layer / row, here / layer);
+        let node = grid.position(i, j, k + first_layer);
+        (node, curved.foot(triangle as usize, &node))
+    };
+    let mut clusters = curved.clusters();
+    let band_mm = vec![BAND_MM; gaps.len()];
+    let nearest = nearest_triangles(grid, curved, &clusters, first_layer, &band_mm, |_, _| true);
+    let is_hidden = |triangle: u32| triangle != NONE && !is_seen[triangle as usize];
+    let reach_mm = |&triangle: &u32| if is_hidden(triangle) { WALL_MM } else { 0.0 };
+    let reach_mm: Vec<f64> = nearest.iter().map(reach_mm).collect();
+    let is_across = |here: usize, triangle: usize| {
+        let cosine = |near: u32| curved.normal(near as usize).dot(&curved.normal(triangle));
+        is_seen[triangle] && cosine(nearest[here]) < MAX_COSINE_ACROSS
+    };
+    clusters.retain(|cluster| is_seen[cluster.triangles.clone()].contains(&true));
+    let across = nearest_triangles(grid, curved, &clusters, first_layer, &reach_mm, is_across);
+    for (here, gap) in gaps.iter_mut().enumerate() {
+        if nearest[here] == NONE {
+            continue;
+        }
+        let (node, near) = foot(here, nearest[here]);
+        *gap = (node - near.point).dot(&near.normal);
+        if across[here] != NONE {
+            let far = foot(here, across[here]).1;
+            let (normal, wall) = (curved.normal(across[here] as usize), far.point - near.point);
+            let is_straight = |way: Vec3| way.dot(&normal) > MIN_COSINE_OF_WALL * way.norm();
+            // Beside the edge of a wall, the nearest side counts.
+            if is_straight(far.point - node) && is_straight(wall) {
+                *gap = (node - far.point).dot(&far.normal);
+            }
         }
     }
 }
 
-/// Returns the triangle nearest to each of `count` nodes from `first_layer` on; none beyond the band.
+/// Distance behind the articulating surface up to which the gap is that to it, though the other side of a wall is nearer, mm: the
+/// spline at the surface reads nodes 2.5 spacings away along each axis.
+const WALL_MM: f64 = 5.5;
+/// Smallest cosine between the normal of the articulating surface and the way to it through the wall.
+const MIN_COSINE_OF_WALL: f64 = 0.9;
+/// Largest cosine between the normals of the sides of a wall, which may be a wedge.
+const MAX_COSINE_ACROSS: f64 = -0.3;
+
+/// No triangle.
+const NONE: u32 = u32::MAX;
+
+/// Returns the nearest of the triangles that count to each node from `first_layer` on, within its reach, mm; [`NONE`] beyond.
 fn nearest_triangles(
     grid: &NodeGrid,
     curved: &DividedMesh,
+    clusters: &[Cluster],
     first_layer: usize,
-    count: usize,
-) -> impl Iterator<Item = Option<usize>> {
-    const NONE: u32 = u32::MAX;
+    reach_mm: &[f64],
+    counts: impl Fn(usize, usize) -> bool,
+) -> Vec<u32> {
     /// Parts by which rounding may place a point nearer than it is: every bound is wider, so that it changes no result.
     const ROUNDING: f64 = 1e-9;
     let [_, row, layer] = grid.strides();
-    let last_layer = first_layer + count / layer;
-    let clusters = curved.clusters();
+    let last_layer = first_layer + reach_mm.len() / layer;
+    let farthest_mm = reach_mm.iter().copied().fold(0.0, f64::max);
     let rows_around = |cluster: &Cluster| {
-        let [xs, ys, zs] = grid.nodes_around(&cluster.centre, cluster.radius_mm + BAND_MM);
+        let [xs, ys, zs] = grid.nodes_around(&cluster.centre, cluster.radius_mm + farthest_mm);
         let layers = zs[0].max(first_layer)..zs[1].min(last_layer);
         layers.flat_map(move |k| (ys[0]..ys[1]).map(move |j| (xs[0]..xs[1], j, k)))
     };
     let number = move |i: usize, j: usize, k: usize| i + row * j + layer * (k - first_layer);
     // Squared distances: the root is taken once, for the nearest triangle only.
-    let mut nearest2 = vec![BAND_MM * BAND_MM; count];
+    let mut nearest2: Vec<f64> = reach_mm.iter().map(|mm| mm * mm).collect();
     // One corner of each cluster gives upper bounds, with which most clusters are out of question for most nodes.
-    for cluster in &clusters {
-        let [corner, ..] = curved.mesh.corners(cluster.triangles.start);
+    for cluster in clusters {
+        let first = cluster.triangles.start;
+        let corner = curved.mesh.corners(first)[0];
         for (across, j, k) in rows_around(cluster) {
-            let nodes = &mut nearest2[number(0, j, k)..][across.clone()];
-            for (i, nearest2) in across.zip(nodes) {
-                let distance2 = (grid.position(i, j, k) - corner).norm_squared();
-                *nearest2 = nearest2.min(distance2 * (1.0 + ROUNDING));
+            for i in across {
+                let here = number(i, j, k);
+                let distance2 = (grid.position(i, j, k) - corner).norm_squared() * (1.0 + ROUNDING);
+                if distance2 < nearest2[here] && counts(here, first) {
+                    nearest2[here] = distance2;
+                }
             }
         }
     }
-    let mut nearest = vec![NONE; count];
-    for cluster in &clusters {
+    let mut nearest = vec![NONE; nearest2.len()];
+    for cluster in clusters {
         for (across, j, k) in rows_around(cluster) {
             for i in across {
                 let (here, node) = (number(i, j, k), grid.position(i, j, k));
@@ -162,7 +220,9 @@ fn nearest_triangles(
                 }
                 for triangle in cluster.triangles.clone() {
                     // The plane is never farther than the triangle, and cheaper to evaluate.
-                    if curved.plane_distance2(triangle, &node) >= nearest2[here] {
+                    if curved.plane_distance2(triangle, &node) >= nearest2[here]
+                        || !counts(here, triangle)
+                    {
                         continue;
                     }
                     let distance2 = curved.distance2(triangle, &node);
@@ -173,8 +233,7 @@ fn nearest_triangles(
             }
         }
     }
-    let found = nearest.into_iter();
-    found.map(|triangle| (triangle != NONE).then_some(triangle as usize))
+    nearest
 }
 
 /// Lower bound of the straight distance over the distance along grid lines, 1/sqrt(3).
