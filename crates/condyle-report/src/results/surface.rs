@@ -184,11 +184,11 @@ impl SurfaceFields {
         faces.map(|(quad, area)| area * mean(values, quad)).sum()
     }
 
-    /// Returns the area of the faces of a region where the mean of a field is above `threshold`, mm2.
+    /// Returns the area of a region where a field is above `threshold`, mm2.
     pub fn area_above(&self, values: &[f64], threshold: f64, region: Region) -> f64 {
         let faces = self.faces(region);
-        let above = faces.filter(|&(quad, _)| mean(values, quad) > threshold);
-        above.map(|(_, area)| area).sum()
+        let above = |quad: [u32; 4]| part_above(quad.map(|node| values[node as usize]), threshold);
+        faces.map(|(quad, area)| area * above(quad)).sum()
     }
 
     fn in_region(&self, values: &[f64], region: Region) -> impl Iterator<Item = Extreme> {
@@ -209,6 +209,18 @@ impl SurfaceFields {
             is_inside.then(|| (quad, (c - a).cross(&(d - b)).norm() / 2.0))
         })
     }
+}
+
+/// Returns the part of a quad where the bilinear field with these corners is above `threshold`.
+fn part_above([a, b, c, d]: [f64; 4], threshold: f64) -> f64 {
+    const SIDE: u32 = 8;
+    let place = |at: u32| (f64::from(at) + 0.5) / f64::from(SIDE);
+    let value = |at: &u32| {
+        let (u, v) = (place(at % SIDE), place(at / SIDE));
+        (1.0 - v) * (a + u * (b - a)) + v * (d + u * (c - d))
+    };
+    let above = (0..SIDE * SIDE).filter(|at| value(at) > threshold);
+    above.count() as f64 / f64::from(SIDE * SIDE)
 }
 
 fn mean(values: &[f64], quad: [u32; 4]) -> f64 {
@@ -374,6 +386,7 @@ mod tests {
                 .collect(),
             is_cup: true,
             ..SurfaceFields::default()
+        assert!((surface.area_above(&values, 0.25, Region::Whole) - 1.75).abs() < 1e-12);
         };
         for (&(polar, around), [x, z]) in places.iter().zip(cup.flat()) {
             let arc = 10.0 * polar.to_radians();
