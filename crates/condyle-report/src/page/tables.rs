@@ -22,7 +22,7 @@ const LARGEST_OF_CYCLE: [(&str, &str, &str); 2] = [
     ),
     (
         "sliding_distance_mm",
-        "Longest sliding distance in a cycle",
+        "Longest sliding distance in the last cycle, mean of all activities by their shares",
         "mm",
     ),
 ];
