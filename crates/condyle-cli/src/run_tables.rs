@@ -37,6 +37,11 @@ pub fn add_prediction(prediction: &Prediction, summary: &Summary, lines: &mut Li
         "interval from {}",
         prediction.sources_in_words('x')
     ));
+    if summary.wear_laws.len() >= 2 {
+        lines.line(
+            "   its middle is the median over laboratories and all constants that fit measurements; the table has one set of constants for each law",
+        );
+    }
 }
 
 /// Returns a number with two significant digits: an interval of a factor has no more.
