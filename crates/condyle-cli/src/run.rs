@@ -83,6 +83,9 @@ fn print_summary(summary: &Summary, out: &Path, json: bool) -> Done {
     let wear_over_conventional = summary.get(&WEAR_OVER_CONVENTIONAL);
     run_tables::add_laws(&summary.wear_laws, wear_over_conventional, &mut lines);
     run_tables::add_activities(&summary.activities, &mut lines);
+    if let Some(axes) = &summary.axes {
+        lines.line(axes);
+    }
     let rows = rows(summary);
     let labels = rows.iter().map(|(label, _)| label.len());
     let width = labels.max().unwrap_or_default().max(26) + 2;
