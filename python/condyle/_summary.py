@@ -156,6 +156,8 @@ class Summary:
     """The joints of the machine: ``column`` of ``kinematics.csv``, ``title``, and the ``positive`` direction."""
     neutral_pose: dict[str, Any]
     """Pose of the settled femur in the insert frame: there AP, ML and IS of a knee read zero."""
+    axes: str
+    """The place that the machine's axes pass through: the ball or socket found in the mesh of the counterface, or its origin."""
     warnings: list[str]
     """Corrections of the input, and doubts about it."""
     version: str

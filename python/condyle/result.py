@@ -138,7 +138,8 @@ class Result(Summary):
         ``wear_depth_mm``, ``depth_per_cycle_mm``, ``peak_pressure_mpa``, ``sliding_distance_mm``, ``cross_shear``,
         ``thickness_mm``, ``principal_direction``; 0 at nodes outside of the articulating surface. NaN at updates without the field,
         such as ``von_mises_mpa`` of the unworn insert. Depth, thickness and positions are those after the update. Fields of a
-        cycle, such as pressure, are those of the cycle that was repeated up to the update: update ``k`` has the cycle at
+        cycle, such as pressure, are those of the cycle that was repeated up to the update (of several activities, the highest pressure,
+        and the mean of the others by their shares): update ``k`` has the cycle at
         ``update_cycles[k - 1]``, and the last update of a finished run the final cycle.
         """
         return self._run["fields"]

@@ -35,6 +35,8 @@ interface Facts {
   cycles: CycleFacts[];
   neutral_pose: Pose | null;
   has_femur: boolean;
+  // The name of the moving body, such as "femur" or "head".
+  counterface: string;
   charts: ChartFacts[];
   missing: string[];
 }

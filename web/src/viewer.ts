@@ -334,7 +334,8 @@ export class Viewer {
     if (this.cycles.length) box.append(this.instants.box, this.play);
     box.append(element("div", { class: "views" }, ...this.viewButtons()));
     const more = this.moreControls();
-    if (more.childElementCount) box.append(element("details", { class: "more" }, element("summary", {}, "Cycle, sections and femur"), more));
+    if (more.childElementCount)
+      box.append(element("details", { class: "more" }, element("summary", {}, `Cycle, sections and ${this.scene.facts.counterface}`), more));
     return box;
   }
 
@@ -350,7 +351,8 @@ export class Viewer {
     );
     larger.value = 1;
     box.append(larger.box, this.sectionSlider("z"), this.sectionSlider("x"));
-    if (this.scene.facts.has_femur) box.append(labelled("Femur", this.femurChoice()));
+    const { has_femur, counterface } = this.scene.facts;
+    if (has_femur) box.append(labelled(counterface.charAt(0).toUpperCase() + counterface.slice(1), this.femurChoice()));
     return box;
   }
 

@@ -124,7 +124,7 @@ fn table(calibration: &Calibration) -> Lines {
             test.measured_by,
             test.measured_mg_per_million_cycles,
             test.fitted_mg_per_million_cycles,
-            test.fitted_above_measured_percent
+            (10.0 * test.fitted_above_measured_percent).round() / 10.0 + 0.0 // -0 is 0.
         ));
         lines.notes(&test.remarks);
     }

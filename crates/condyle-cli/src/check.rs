@@ -63,6 +63,7 @@ fn rows(preview: &Preview) -> Vec<Row> {
     let (names, [counterface, bearing]) = (preview.directions(), preview.joint.bodies());
     let centre = from_origin(at_rest.flexion_axis_mm, names);
     let mut rows = rows_of_body(counterface, &preview.femur, names);
+    rows.extend(preview.axes.iter().map(|axes| ("  axes", axes.clone())));
     rows.extend(rows_of_body(bearing, &preview.insert.body, names));
     rows.extend(rows_of_insert(&preview.insert, names));
     rows.extend(match flexed {

@@ -118,8 +118,8 @@ fn add_gravimetric(gravimetric: &GravimetricComparison, lines: &mut Lines) {
         lines.line(format!("{name:<28}{value:>12.3}  {ends:>19}{r2:>10}"));
     }
     lines.line(format!(
-        "predicted is {:+.1} % of the measured rate, the line through all weighings",
-        gravimetric.predicted_above_measured_percent
+        "predicted is {:.1} % of the measured rate, the line through all weighings",
+        100.0 + gravimetric.predicted_above_measured_percent
     ));
     let range = &gravimetric.range_of_specimens_mg_per_million_cycles;
     lines.line(format!(

@@ -7,6 +7,7 @@ use condyle_lab::{Outcome, RunOptions};
 use condyle_results::{
     ErrorEstimate, ErrorParts, Part, Summary,
     catalogue::{self, MASS_LOSS_MG, Prominence, Scalar, WEAR_OVER_CONVENTIONAL},
+    with_digits,
 };
 
 use crate::{
@@ -82,6 +83,9 @@ fn print_summary(summary: &Summary, out: &Path, json: bool) -> Done {
     let wear_over_conventional = summary.get(&WEAR_OVER_CONVENTIONAL);
     run_tables::add_laws(&summary.wear_laws, wear_over_conventional, &mut lines);
     run_tables::add_activities(&summary.activities, &mut lines);
+    if let Some(axes) = &summary.axes {
+        lines.line(axes);
+    }
     let rows = rows(summary);
     let labels = rows.iter().map(|(label, _)| label.len());
     let width = labels.max().unwrap_or_default().max(26) + 2;
@@ -147,16 +151,17 @@ fn in_words(summary: &Summary, scalar: &Scalar) -> Option<String> {
     };
     let mut words = with_unit(summary.get(scalar)?);
     if let Some(error) = summary.error.as_ref().and_then(|errors| errors.get(scalar)) {
-        let (off, percent) = (with_unit(error.in_unit.total), error.percent.total);
+        let percent = with_digits(error.percent.total, 2);
+        let off = with_unit(error.in_unit.total);
         let parts = error.percent.parts().into_iter();
         let missing: Vec<String> = parts
             .filter(|(_, percent)| percent.is_none())
             .map(|(part, _)| part.name().replace('_', " "))
             .collect();
         words += &match missing.is_empty() {
-            true => format!(", discretisation error +/- {off} ({percent:.2} %)"),
+            true => format!(", discretisation error +/- {off} ({percent} %)"),
             false => format!(
-                ", discretisation error more than {off} ({percent:.2} %), which excludes {}",
+                ", discretisation error more than {off} ({percent} %), which excludes {}",
                 missing.join(" and ")
             ),
         };
@@ -180,7 +185,8 @@ fn in_parts(error: &ErrorParts) -> String {
     let part = |(part, percent): (Part, Option<f64>)| {
         let name = part.name().replace('_', " ");
         match percent {
-            Some(percent) => format!("{name} {percent:+.2} %"),
+            Some(percent) if percent < 0.0 => format!("{name} {} %", with_digits(percent, 2)),
+            Some(percent) => format!("{name} +{} %", with_digits(percent, 2)),
             None => format!("{name} unknown"),
         }
     };

@@ -3,6 +3,7 @@
 use condyle_results::{
     ActivitySummary, Interval, LawWear, Prediction, Summary,
     catalogue::{CYCLES, MASS_LOSS_MG, MAX_DEPTH_MM},
+    with_digits,
 };
 
 use crate::output::Lines;
@@ -36,6 +37,11 @@ pub fn add_prediction(prediction: &Prediction, summary: &Summary, lines: &mut Li
         "interval from {}",
         prediction.sources_in_words('x')
     ));
+    if summary.wear_laws.len() >= 2 {
+        lines.line(
+            "   its middle is the median over laboratories and all constants that fit measurements; the table has one set of constants for each law",
+        );
+    }
 }
 
 /// Returns a number with two significant digits: an interval of a factor has no more.
@@ -78,8 +84,10 @@ fn row_of_law(law: &LawWear) -> String {
         |percent| format!("{percent:.0} % of volume"),
     );
     format!(
-        "   {mark} {name:<25}{:>11.2}{:>10.2}{:>10.4}   {outside}",
-        law.mass_loss_mg_per_million_cycles, law.mass_loss_mg, law.max_depth_mm
+        "   {mark} {name:<25}{:>11} {:>9} {:>9}   {outside}",
+        with_digits(law.mass_loss_mg_per_million_cycles, 2),
+        with_digits(law.mass_loss_mg, 2),
+        with_digits(law.max_depth_mm, 4)
     )
 }
 
@@ -101,10 +109,10 @@ pub fn add_activities(activities: &[ActivitySummary], lines: &mut Lines) {
         let of_knee =
             knee.map(|knee| format!(" {:>7.2} {:>7.2}", knee.ap_range_mm, knee.ie_range_deg));
         lines.line(format_args!(
-            "   {:<20} {:>8.2} {:>9.2} {:>11.1} {:>7.0} {:>7.0}{}",
+            "   {:<20} {:>8} {:>9} {:>11.1} {:>7.0} {:>7.0}{}",
             activity.name,
-            100.0 * activity.share_of_cycles,
-            activity.mass_loss_mg,
+            with_digits(100.0 * activity.share_of_cycles, 2),
+            with_digits(activity.mass_loss_mg, 2),
             activity.peak_pressure_mpa,
             activity.peak_contact_area_mm2,
             activity.peak_axial_force_n,

@@ -50,6 +50,8 @@ pub struct Preview {
     pub femur: BodyFacts,
     /// The insert.
     pub insert: InsertFacts,
+    /// The place that the machine's axes pass through, where it depends on a ball or socket of a mesh.
+    pub axes: Option<String>,
     /// The settled femur on the insert.
     pub at_rest: AtRest,
     /// Expected time and memory of a run.
@@ -106,6 +108,7 @@ impl Preview {
             doubts,
             femur,
             insert,
+            axes: built.axes,
             at_rest,
             case,
             march,

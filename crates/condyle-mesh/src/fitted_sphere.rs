@@ -1,5 +1,7 @@
 //! The ball or socket that is part of a body of triangles, found without knowing where it is.
 
+use std::cmp::Reverse;
+
 use nalgebra::{Matrix4, Vector4};
 
 use crate::{Vec3, triangle_mesh::TriangleMesh};
@@ -30,6 +32,8 @@ pub struct FittedSphere {
 const PROPOSALS: usize = 4000;
 /// Facets that judge a proposal.
 const JUDGES: usize = 2000;
+/// Judges on a proposal that is not the largest, 5 %: the rounded corners of a block are no balls.
+const MIN_JUDGES: usize = JUDGES / 20;
 /// Distances to the sphere, as shares of its radius, within which a vertex is part of it, from the proposal to the last
 /// of three fits. The last is 0.07 mm of a hip: above the noise of a scan, and below a chamfer.
 const TOLERANCES: [f64; 4] = [0.03, 0.03, 0.01, 0.005];
@@ -54,28 +58,19 @@ impl Facet {
     }
 }
 
+/// Centre and radius, mm.
+type Sphere = (Vec3, f64);
+
 impl FittedSphere {
-    /// Returns the sphere with the largest part of the surface of a mesh on it, by its area; `None` if no sphere has a cap
-    /// of about 30 degrees.
+    /// Returns the sphere with the largest part of the surface of a mesh on it, by its area, of those with a cap of about 30
+    /// degrees or more; `None` without one.
     ///
     /// Facets propose spheres in pairs: their normals meet in the centre. The proposals are the same in every run. The best
     /// is fitted by least squares to the vertices of the facets on it. A closed mesh must face outwards or inwards
     /// throughout; the facets of an open one have no inside, and any sphere is found.
     pub fn new(mesh: &TriangleMesh, roundness: Roundness) -> Option<Self> {
         let facets = facets(mesh, roundness);
-        let (mut centre, mut radius) = best_proposal(&facets)?;
-        let mut part: Vec<&Facet> = Vec::new();
-        for tolerance in &TOLERANCES[1..] {
-            let on = facets.iter();
-            part = on
-                .filter(|facet| is_on(facet, &centre, radius, *tolerance))
-                .collect();
-            (centre, radius) = fitted(&part)?;
-        }
-        let area_mm2: f64 = part.iter().map(|facet| facet.area_mm2).sum();
-        if area_mm2 < MIN_AREA * std::f64::consts::PI * radius * radius {
-            return None;
-        }
+        let (part, area_mm2, (centre, radius)) = cap(&facets, best_proposal(&facets)?)?;
         let squares = part.iter().map(|facet| {
             let apart = facet
                 .corners
@@ -93,6 +88,22 @@ impl FittedSphere {
             opens_along: towards.try_normalize(0.0)?,
         })
     }
+}
+
+/// Returns the facets on the sphere that is fitted to those near a proposed one, their area, and the fitted sphere; `None` if
+/// they are less than the smallest cap.
+fn cap(facets: &[Facet], (mut centre, mut radius): Sphere) -> Option<(Vec<&Facet>, f64, Sphere)> {
+    let mut part: Vec<&Facet> = Vec::new();
+    for tolerance in &TOLERANCES[1..] {
+        let on = facets.iter();
+        part = on
+            .filter(|facet| is_on(facet, &centre, radius, *tolerance))
+            .collect();
+        (centre, radius) = fitted(&part)?;
+    }
+    let area_mm2 = part.iter().map(|facet| facet.area_mm2).sum();
+    let is_cap = area_mm2 >= MIN_AREA * std::f64::consts::PI * radius * radius;
+    is_cap.then_some((part, area_mm2, (centre, radius)))
 }
 
 /// Returns the facets of a mesh with normals that point to the centre of the sphere wanted; of an open mesh both ways.
@@ -126,8 +137,9 @@ fn facets(mesh: &TriangleMesh, roundness: Roundness) -> Vec<Facet> {
     facets
 }
 
-/// Returns the centre and radius of the proposed sphere with the largest part of the surface on it.
-fn best_proposal(facets: &[Facet]) -> Option<(Vec3, f64)> {
+/// Returns the proposed sphere with the largest part of the surface on it of those that have a cap: the cone of a lip touches
+/// more of larger spheres, but has none.
+fn best_proposal(facets: &[Facet]) -> Option<Sphere> {
     let area_mm2: f64 = facets.iter().map(|facet| facet.area_mm2).sum();
     let mut until_mm2 = 0.0;
     let until = facets.iter().map(|facet| {
@@ -137,34 +149,34 @@ fn best_proposal(facets: &[Facet]) -> Option<(Vec3, f64)> {
     let until: Vec<f64> = until.collect();
     let at = |share: f64| {
         let index = until.partition_point(|&until_mm2| until_mm2 < share * area_mm2);
-        facets.get(index)
+        facets.get(index).copied()
     };
-    let judges: Vec<Facet> = (0..JUDGES)
-        .filter_map(|n| at((n as f64 + 0.5) / JUDGES as f64).copied())
-        .collect();
-    let mut best: (usize, Option<(Vec3, f64)>) = (0, None);
-    for n in 1..=PROPOSALS {
+    let judge = |n: usize| at((n as f64 + 0.5) / JUDGES as f64);
+    let judges = (0..JUDGES).filter_map(judge).map(|facet| Facet {
+        area_mm2: area_mm2 / JUDGES as f64,
+        ..facet
+    });
+    let judges: Vec<Facet> = judges.collect();
+    let proposals = (1..=PROPOSALS).filter_map(|n| {
         // The additive sequence of the plastic number fills the square of pairs evenly.
         let share = |step: f64| (n as f64 * step).fract();
-        let (Some(one), Some(other)) = (at(share(0.754_877_666_2)), at(share(0.569_840_291_0)))
-        else {
-            continue;
-        };
-        let Some((centre, radius)) = proposal(one, other) else {
-            continue;
-        };
+        let (one, other) = (at(share(0.754_877_666_2))?, at(share(0.569_840_291_0))?);
+        let (centre, radius) = proposal(&one, &other)?;
         let agree = judges.iter();
         let agree = agree.filter(|judge| is_on(judge, &centre, radius, TOLERANCES[0]));
-        let count = agree.count();
-        if count > best.0 {
-            best = (count, Some((centre, radius)));
-        }
-    }
-    best.1
+        Some((agree.count(), (centre, radius)))
+    });
+    let mut proposals: Vec<(usize, Sphere)> = proposals.collect();
+    proposals.sort_by_key(|(count, _)| Reverse(*count));
+    let large = proposals.iter().filter(|(count, _)| *count >= MIN_JUDGES);
+    let mut large = large.map(|(_, sphere)| *sphere);
+    let with_cap = large.find(|sphere| cap(&judges, *sphere).is_some());
+    // A cap that is close to the smallest may have it in the whole surface only.
+    with_cap.or(proposals.first().map(|(_, sphere)| *sphere))
 }
 
 /// Returns centre and radius of the sphere that two facets touch, if their normals lead to its centre.
-fn proposal(one: &Facet, other: &Facet) -> Option<(Vec3, f64)> {
+fn proposal(one: &Facet, other: &Facet) -> Option<Sphere> {
     let (between, turn) = (one.middle() - other.middle(), one.normal - other.normal);
     // Both are a radius from the centre along their normals; parallel normals give no centre.
     let radius = -between.dot(&turn) / turn.norm_squared();
@@ -184,7 +196,7 @@ fn is_on(facet: &Facet, centre: &Vec3, radius: f64, tolerance: f64) -> bool {
 }
 
 /// Returns the sphere of least squares, |v|2 = 2 c v + (r2 - |c|2), through the corners of facets, weighed by area.
-fn fitted(part: &[&Facet]) -> Option<(Vec3, f64)> {
+fn fitted(part: &[&Facet]) -> Option<Sphere> {
     // An origin on the part, so that a body far from the origin of its file loses no digits.
     let origin = part.first()?.corners[0];
     let (mut matrix, mut right) = (Matrix4::zeros(), Vector4::zeros());
@@ -256,6 +268,21 @@ mod tests {
         assert!((0.01..0.025).contains(&socket.rms_mm), "{socket:?}");
         let block = TriangleMesh::block(Vec3::new(-10.0, 0.0, -15.0), Vec3::new(10.0, 8.0, 15.0));
         assert_eq!(FittedSphere::new(&block, Roundness::Convex), None);
+    }
+
+    #[test]
+    fn a_socket_is_found_inside_a_larger_conical_lip() {
+        // The lip slopes by 20 degrees, from the end of a socket of 20.3 mm to 30 mm from the axis.
+        let slope = 20_f64.to_radians();
+        let arc = (0..=16).map(|n| (2.5 * f64::from(n)).to_radians());
+        let socket = arc.map(|angle| (20.3 * angle.sin().max(1e-6), -20.3 * angle.cos()));
+        let mut profile: Vec<(f64, f64)> = socket.collect();
+        let (edge, height) = profile[profile.len() - 1];
+        let lip = (1..=20).map(|n| f64::from(n) * (30.0 - edge) / 20.0);
+        profile.extend(lip.map(|out| (edge + out, height + out * slope.tan())));
+        let body = TriangleMesh::revolved(&profile, 48);
+        let socket = FittedSphere::new(&body, Roundness::Concave).expect("40 degrees are a cap");
+        assert!((socket.radius_mm - 20.3).abs() < 1e-3, "{socket:?}");
     }
 
     #[test]

@@ -46,7 +46,8 @@ pub(crate) static MAPS: [MappedField; 6] = [
             ["map-sliding", "Sliding distance", "mm", "Highest"],
             CIVIDIS,
         ),
-        caption: "Sliding distance of the counterface over each place under pressure in the final cycle.",
+        caption: "Sliding distance of the counterface over each place under pressure in the final cycle: the mean of all activities by \
+         their shares of the cycles.",
     },
     MappedField {
         field: "cross_shear",

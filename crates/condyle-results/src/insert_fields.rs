@@ -47,13 +47,13 @@ described! {
     NODE_FIELDS: NodeField;
     /// Wear depth along the normal.
     wear_depth_mm = |source| source.at_surface(&source.march.fields().wear_depth_mm);
-    /// Wear depth of one cycle.
+    /// Wear depth of one cycle, the mean over all activities by their shares of the cycles.
     depth_per_cycle_mm = |source| source.at_surface(&source.march.fields().depth_per_cycle_mm);
-    /// Highest pressure in the cycle.
+    /// Highest pressure in the cycle of any activity.
     peak_pressure_mpa = |source| source.at_surface(&source.march.fields().peak_pressure_mpa);
-    /// Sliding distance under pressure in the cycle.
+    /// Sliding distance under pressure in the cycle, the mean over all activities by their shares of the cycles.
     sliding_distance_mm = |source| source.at_surface(&source.march.fields().sliding_distance_mm);
-    /// Cross-shear ratio.
+    /// Cross-shear ratio of the cycles of all activities together, by their shares.
     cross_shear = |source| source.at_surface(&source.march.fields().cross_shear);
     /// Thickness left.
     thickness_mm = |source| source.at_surface(&source.march.fields().thickness_mm);

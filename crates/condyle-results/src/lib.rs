@@ -7,6 +7,7 @@ pub mod catalogue;
 mod checkpoint;
 mod cycle_files;
 mod declared;
+mod digits;
 mod error_estimate;
 #[cfg(feature = "file-system")]
 mod files;
@@ -41,6 +42,7 @@ pub use cycle_files::{
     femur_vtu, frame_name, insert_frame,
 };
 pub use declared::results_schema;
+pub use digits::with_digits;
 pub use error_estimate::{ErrorEstimate, ErrorParts, Part, QuantityError, QuantityErrors};
 #[cfg(feature = "file-system")]
 pub use files::{DamagedFile, FolderLock, check_file, create_file, replace_file};

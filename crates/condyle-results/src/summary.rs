@@ -134,6 +134,9 @@ summary! {
         "The joints of the machine: `column` of `kinematics.csv`, `title`, and the `positive` direction.";
     neutral_pose: Option<NeutralPose> as Object, true, before Some(&UPDATES),
         "Pose of the settled femur in the insert frame: there AP, ML and IS of a knee read zero.";
+    /// None unless the counterface is a mesh of a joint with a ball or socket, and the case does not place its axis.
+    axes: Option<String> as Text, false, before Some(&UPDATES),
+        "The place that the machine's axes pass through: the ball or socket found in the mesh of the counterface, or its origin.";
     warnings: Vec<String> as Texts, true, before Some(&WALL_S), "Corrections of the input, and doubts about it.";
     version: String as Text, true, before None, "Version of condyle.";
     inputs_blake3: String as Text, true, before None, "Hash of case and meshes.";

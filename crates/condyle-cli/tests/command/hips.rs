@@ -369,6 +369,31 @@ fn verify_activities_include_the_final_cycle() {
 }
 
 #[test]
+fn check_and_run_state_where_the_axes_pass() {
+    let mesh = "shape = \"mesh\"\nfile = \"head.stl\"";
+    let case = TWO_ACTIVITIES.replace("shape = \"sphere\"\nradius_mm = 14.0", mesh);
+    let bench = Bench::with_case(&case);
+    let flat = "no ball or socket was found: axes pass through the file's origin";
+    for (cap_deg, words) in [
+        (36.0, "axes pass through the centre of a ball of 14.00 mm"),
+        (24.0, flat),
+    ] {
+        // A cap on a cylinder, with its centre at the origin.
+        let cap = arc(14.0, 1e-6, cap_deg);
+        let edge = 14.0 * f64::to_radians(cap_deg).sin();
+        let profile: Vec<(f64, f64)> = cap.chain([(edge, 9.0), (1e-6, 9.0)]).collect();
+        let mut stl = Vec::new();
+        write_stl(&mut stl, &TriangleMesh::revolved(&profile, AROUND)).unwrap();
+        std::fs::write(bench.path("head.stl"), stl).unwrap();
+        let said = bench.say(&["check", "case.toml"]);
+        assert!(said.out.contains(words), "{}{}", said.out, said.err);
+    }
+    let ran = bench.run_into("out").out;
+    assert!(ran.contains(flat), "{ran}");
+    assert_eq!(bench.summary("out").axes.as_deref(), Some(flat));
+}
+
+#[test]
 fn a_hip_is_described_in_its_own_words() {
     let bench = Bench::with_case(TWO_ACTIVITIES);
     let said = bench.say(&["check", "case.toml"]).out;

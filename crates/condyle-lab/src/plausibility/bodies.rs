@@ -1,7 +1,7 @@
 //! Checks of the places where an insert wears and of the pressures that it bears.
 
 use condyle::{
-    geometry::Dishes,
+    geometry::{ArticulatingSurface, Dishes},
     machine::{Chain, TestedJoint},
     spatial::Pose,
 };
@@ -12,7 +12,7 @@ use condyle_results::{
         BACKSIDE_LIFT_MM, MAX_DEPTH_MM, MAX_PLASTIC_STRAIN, PEAK_CONTACT_AREA_MM2,
         PEAK_PRESSURE_CYCLE, PEAK_PRESSURE_MPA,
     },
-    point_on_side,
+    point_on_side, with_digits,
 };
 
 use super::finished::{Finished, SolvedCycle, percent_of, warning};
@@ -79,7 +79,7 @@ pub(crate) fn wear_at_rim(finished: &Finished<'_>) -> Option<PlausibilityWarning
 /// Returns whether the surface is the end of a pin, which is pressed and worn up to its rim.
 fn is_end_of_pin(finished: &Finished<'_>) -> bool {
     let pressures_mpa = &finished.march.state().first_pressure_mpa;
-    let shares = finished.surface.shares.iter().zip(pressures_mpa);
+    let shares = finished.unworn.shares.iter().zip(pressures_mpa);
     let (mut whole_mm2, mut pressed_mm2) = (0.0, 0.0);
     for (share, pressure_mpa) in shares {
         whole_mm2 += share.area_mm2;
@@ -97,7 +97,7 @@ pub(crate) fn pressure_at_rim(finished: &Finished<'_>) -> Option<PlausibilityWar
     }
     let at_rim = pressures(finished)
         .into_iter()
-        .filter_map(|(cycle, pressures)| {
+        .filter_map(|(cycle, pressures, _)| {
             let pressed = pressures.iter().copied().enumerate();
             let (node, highest) = pressed.max_by(|a, b| a.1.total_cmp(&b.1))?;
             let from_rim_mm = finished.distance_to_rim_mm(node);
@@ -117,13 +117,26 @@ pub(crate) fn pressure_at_rim(finished: &Finished<'_>) -> Option<PlausibilityWar
     Some(warning("pressure_at_rim", value, message, advice))
 }
 
-/// Returns the highest pressure at every surface node in the first and in the last cycle, MPa.
-fn pressures<'a>(finished: &Finished<'a>) -> Vec<(&'static str, &'a [f64])> {
+/// The name of a cycle, the highest pressure at every surface node, MPa, and the surface on which it was solved.
+type Pressures<'a> = (&'static str, &'a [f64], &'a ArticulatingSurface);
+
+/// Returns the pressures in the first and in the last cycle.
+fn pressures<'a>(finished: &'a Finished<'_>) -> Vec<Pressures<'a>> {
     let state = finished.march.state();
     // After a single update, too, the final cycle is solved on the worn surface.
     let last = state.fields.as_ref();
-    let last = last.map(|fields| ("last", fields.peak_pressure_mpa.as_slice()));
-    let first = ("first", state.first_pressure_mpa.as_slice());
+    let last = last.map(|fields| {
+        (
+            "last",
+            fields.peak_pressure_mpa.as_slice(),
+            &finished.surface,
+        )
+    });
+    let first = (
+        "first",
+        state.first_pressure_mpa.as_slice(),
+        &finished.unworn,
+    );
     [first].into_iter().chain(last).collect()
 }
 
@@ -166,7 +179,7 @@ pub(crate) fn pressure_beyond_yield(finished: &Finished<'_>) -> Option<Plausibil
     let peak = finished.summary[&PEAK_PRESSURE_MPA];
     let extents = || {
         let cycles = pressures(finished).into_iter();
-        let extents = cycles.map(|(cycle, pressures)| extent(finished, cycle, pressures, limit));
+        let extents = cycles.map(|cycle| extent(finished, cycle, limit));
         extents.collect::<Vec<_>>().join("; ")
     };
     let yields = finished.summary.get(&MAX_PLASTIC_STRAIN).is_some();
@@ -187,28 +200,37 @@ pub(crate) fn pressure_beyond_yield(finished: &Finished<'_>) -> Option<Plausibil
     (peak > limit && !yields).then(|| warning("pressure_beyond_yield", value, message, &advice))
 }
 
-/// Returns the area above a limit of pressure in a cycle, and its time, in words.
-fn extent(finished: &Finished<'_>, cycle: &str, pressures: &[f64], limit_mpa: f64) -> String {
-    let shares = pressures.iter().zip(&finished.surface.shares);
+/// Returns the area above a limit of pressure at any instant of a cycle, and the time of the peak above it, in words.
+fn extent(
+    finished: &Finished<'_>,
+    (cycle, pressures, surface): Pressures<'_>,
+    limit_mpa: f64,
+) -> String {
+    let shares = pressures.iter().zip(&surface.shares);
     let above = shares.filter(|(pressure_mpa, _)| **pressure_mpa > limit_mpa);
-    let area_mm2 = above.fold(0.0, |sum, (_, share)| sum + share.area_mm2);
-    // Of several activities, the one with most time above the limit.
+    let area_mm2: f64 = above.map(|(_, share)| share.area_mm2).sum();
+    let area = match area_mm2 {
+        // The mean over a node's share is below the peak.
+        0.0 => "no node exceeds this pressure".to_owned(),
+        _ => format!(
+            "places of together {} mm2 exceed this pressure at some instant, not all at once",
+            with_digits(area_mm2, 0)
+        ),
+    };
     let solved = finished.cycles().filter(|solved| solved.name == cycle);
-    let percents = solved.map(|one| one.percent_of_rows(|row| row.peak_pressure_mpa > limit_mpa));
-    let percent = percents.fold(0.0, f64::max);
-    format!(
-        "in the {cycle} cycle, {area_mm2:.0} mm2 exceed this pressure, for {percent:.0} % of the cycle"
-    )
+    let times = solved.map(|one| {
+        let percent = one.percent_of_rows(|row| row.peak_pressure_mpa > limit_mpa);
+        let of_activity = finished.activity_in_words(&one);
+        format!("{percent:.0} % of the cycle{of_activity}")
+    });
+    let times = times.collect::<Vec<_>>().join(" and ");
+    format!("in the {cycle} cycle, {area}; the peak exceeds it for {times}")
 }
 
 /// Warns of a contact of a deformable insert on so few faces that its errors are larger than stated.
 pub(crate) fn contact_coarse(finished: &Finished<'_>) -> Option<PlausibilityWarning> {
     let state = finished.march.state();
-    let shares = finished
-        .surface
-        .shares
-        .iter()
-        .zip(&state.first_pressure_mpa);
+    let shares = finished.unworn.shares.iter().zip(&state.first_pressure_mpa);
     let pressed = shares.filter(|(_, pressure_mpa)| **pressure_mpa > 0.0);
     let (count, sum_mm2) = pressed.fold((0.0, 0.0), |(count, sum), (share, _)| {
         (count + 1.0, sum + share.area_mm2)
@@ -335,8 +357,7 @@ pub(crate) fn femur_on_eminence(finished: &Finished<'_>) -> Option<PlausibilityW
     if tests(finished) != TestedJoint::Knee {
         return None;
     }
-    let test = finished.march.test();
-    let unworn = test.insert.surface();
+    let unworn = &finished.unworn;
     let dishes = Dishes::find(&unworn.positions)?;
     let (mut whole_n, mut between_n) = (0.0, 0.0);
     for (node, pressure_mpa) in finished.march.state().first_pressure_mpa.iter().enumerate() {
@@ -394,7 +415,7 @@ fn pressed<'a>(
     values: &'a [f64],
 ) -> impl Iterator<Item = (f64, f64)> + 'a {
     let pressed_mpa = finished.march.state().first_pressure_mpa.iter();
-    let force_n = pressed_mpa.zip(&finished.surface.shares);
+    let force_n = pressed_mpa.zip(&finished.unworn.shares);
     let force_n = force_n.map(|(pressure_mpa, share)| pressure_mpa * share.area_mm2);
     force_n.zip(values.iter().copied())
 }

@@ -35,7 +35,10 @@ pub(crate) struct Finished<'a> {
     pub side: Side,
     /// The remarks on the bodies as they were built.
     pub of_build: &'a [BuildWarning],
+    /// The surface of the last cycle.
     pub surface: ArticulatingSurface,
+    /// That of the first one.
+    pub unworn: ArticulatingSurface,
     /// Ends of the edges at which the articulating surface ends.
     rim: Vec<[u32; 2]>,
     rim_nodes: BTreeSet<u32>,
@@ -76,6 +79,7 @@ impl<'a> Finished<'a> {
             summary,
             side,
             of_build,
+            unworn: march.test().contact.surface(&march.test().insert),
             surface,
         }
     }

@@ -41,6 +41,7 @@ pub(crate) struct Run<'a> {
     context: RunContext<'a>,
     inputs_blake3: String,
     warnings: Vec<BuildWarning>,
+    axes: Option<String>,
     clock: Clock,
 }
 
@@ -81,6 +82,7 @@ impl<'a> Run<'a> {
             context,
             inputs_blake3,
             warnings: built.warnings,
+            axes: built.axes,
             clock,
         })
     }
@@ -182,6 +184,7 @@ impl<'a> Run<'a> {
         let mut summary =
             Summary::new(&self.march, facts).expect("a march that is done has an update");
         summary.inputs_blake3.clone_from(&self.inputs_blake3);
+        summary.axes.clone_from(&self.axes);
         summary.warnings = self.warnings.iter().map(ToString::to_string).collect();
         summary.neutral_pose = Some(NeutralPose::new(&self.march, self.case.side_in_frame()));
         summary.wear_laws = self.wear_laws();

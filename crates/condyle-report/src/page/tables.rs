@@ -22,7 +22,7 @@ const LARGEST_OF_CYCLE: [(&str, &str, &str); 2] = [
     ),
     (
         "sliding_distance_mm",
-        "Longest sliding distance in a cycle",
+        "Longest sliding distance in the last cycle, mean of all activities by their shares",
         "mm",
     ),
 ];
@@ -260,8 +260,10 @@ pub(super) fn accuracy(results: &Results) -> Option<Accuracy> {
 }
 
 fn row(name: &str, unit: &str, error: &ErrorParts) -> Row {
-    let digits = |value: f64| match unit {
-        "%" => fixed(value, 2),
+    let digits = |value: f64| match value.abs() {
+        // The rounding of a part that is zero.
+        size if size < 1e-9 => "0".to_owned(),
+        size if size >= 0.1 && unit == "%" => fixed(value, 2),
         _ => significant(value, 2),
     };
     let parts = error.parts().into_iter().map(|(_, part)| part);

@@ -49,6 +49,7 @@ impl Scene {
             "cycles": cycles,
             "neutral_pose": self.neutral_pose,
             "has_femur": self.femur.is_some(),
+            "counterface": self.directions.joint.bodies()[0],
             "charts": charts,
             "missing": self.missing,
         }))

@@ -79,11 +79,13 @@ impl SceneInsert {
         let (count, surface) = (self.nodes_of_mesh, &self.articulating);
         let fields = &file.point_data;
         let fits = fields.iter().all(|(_, values)| values.len() == count);
-        let field = |(name, values): &(String, Vec<f64>)| (name.clone(), surface.pick(values));
         (file.mesh.nodes.len() == count && fits).then(|| SceneUpdate {
             cycles,
             nodes: surface.pick(&file.mesh.nodes),
-            fields: fields.iter().map(field).collect(),
+            fields: fields
+                .iter()
+                .map(|field| surface.pick_field(field))
+                .collect(),
         })
     }
 }

@@ -5,6 +5,7 @@ use condyle::parameter::split_unit;
 use condyle::machine::TestedJoint;
 
 use super::finished::FinishedRun;
+use crate::digits::with_digits;
 
 /// The places that show a number in addition to `summary.json`, the report's list and the Python and TypeScript types.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -232,9 +233,9 @@ impl Scalar {
         if self.is_share { 100.0 * value } else { value }
     }
 
-    /// The value as it is shown, without its unit.
+    /// The value as it is shown, without its unit; see [`with_digits`].
     pub fn text(&self, value: f64) -> String {
-        format!("{:.*}", self.decimals, self.shown(value))
+        with_digits(self.shown(value), self.decimals)
     }
 
     /// The name and the unit of the values of [`Self::text`]: `mass loss, mg`.

@@ -31,6 +31,8 @@ pub struct Built {
     pub test: WearTest,
     /// Repairs and other remarks, to be shown to the user.
     pub warnings: Vec<BuildWarning>,
+    /// The place that the machine's axes pass through, in words, where it depends on a ball or socket of a mesh.
+    pub axes: Option<String>,
 }
 
 impl Case {
@@ -69,38 +71,41 @@ impl Case {
         let as_linked = |law| self.material.cross_linking.under(law);
         let comparison_laws = self.wear.comparison_laws().into_iter().map(as_linked);
         let is_round = self.insert.shape.is_round();
-        let test = WearTest {
-            contact: self.contact_law(&insert, keep, bodies)?,
-            counterface: Arc::clone(&femur.surface),
-            flexion_axis_mm: femur.flexion_axis_mm,
-            // Wherever the file has it, the axis of a mesh starts in the centre of a round bearing.
-            start_mm: match &self.femur.shape {
-                FemurShape::Mesh(mesh) if is_round && mesh.start_mm.is_none() => (0.0, 0.0),
-                _ => femur.start_mm,
-            },
-            start_height_mm: is_round.then_some(0.0),
-            insert: match joint {
-                TestedJoint::Knee => insert,
-                _ => Arc::new(Insert::clone(&insert).with_one_region(joint.bodies()[1])),
-            },
-            activities,
-            wear: as_linked(self.wear.law()).law,
-            comparison_laws: comparison_laws.collect(),
-            law_family: true,
-            creep: self.creep.law(),
-            density_mg_per_mm3: self.material.density_mg_per_mm3,
-            time: self.time_settings(),
-            schedule: Schedule {
-                cycles: self.march.cycles as f64,
-                updates: match &self.march.update {
-                    Update::Fixed(fixed) => Updates::Fixed(fixed.updates as usize),
-                    Update::Auto(auto) => Updates::Auto {
-                        tolerance: auto.depth_tolerance_fraction,
+        Ok(Built {
+            test: WearTest {
+                contact: self.contact_law(&insert, keep, bodies)?,
+                counterface: Arc::clone(&femur.surface),
+                flexion_axis_mm: femur.flexion_axis_mm,
+                // Wherever the file has it, the axis of a mesh starts in the centre of a round bearing.
+                start_mm: match &self.femur.shape {
+                    FemurShape::Mesh(mesh) if is_round && mesh.start_mm.is_none() => (0.0, 0.0),
+                    _ => femur.start_mm,
+                },
+                start_height_mm: is_round.then_some(0.0),
+                insert: match joint {
+                    TestedJoint::Knee => insert,
+                    _ => Arc::new(Insert::clone(&insert).with_one_region(joint.bodies()[1])),
+                },
+                activities,
+                wear: as_linked(self.wear.law()).law,
+                comparison_laws: comparison_laws.collect(),
+                law_family: true,
+                creep: self.creep.law(),
+                density_mg_per_mm3: self.material.density_mg_per_mm3,
+                time: self.time_settings(),
+                schedule: Schedule {
+                    cycles: self.march.cycles as f64,
+                    updates: match &self.march.update {
+                        Update::Fixed(fixed) => Updates::Fixed(fixed.updates as usize),
+                        Update::Auto(auto) => Updates::Auto {
+                            tolerance: auto.depth_tolerance_fraction,
+                        },
                     },
                 },
             },
-        };
-        Ok(Built { test, warnings })
+            warnings,
+            axes: femur.axes.clone(),
+        })
     }
 
     /// Returns the law of contact of this case with an insert, or an error for a deformable insert that cannot be modelled

@@ -32,6 +32,8 @@ pub(super) struct BuiltFemur {
     pub flexion_axis_mm: (f64, f64),
     /// Radius of its ball or socket, which is fitted to a mesh.
     pub ball_radius_mm: Option<f64>,
+    /// Origin of the axes of a mesh without a fitted arc, in words.
+    pub axes: Option<String>,
     /// (x, z) of the flexion axis in the insert frame.
     pub start_mm: (f64, f64),
 }
@@ -59,6 +61,7 @@ impl Case {
             surface: Arc::new(surface),
             flexion_axis_mm: (0.0, 0.0),
             ball_radius_mm: None,
+            axes: None,
             start_mm: start_mm.map_or(default_mm, |start| on_the_right(start, side)),
         };
         Ok(match &self.femur.shape {
@@ -120,6 +123,7 @@ impl Case {
             surface: Arc::new(Counterface::Mesh(field)),
             flexion_axis_mm,
             ball_radius_mm: ball.map(|ball| ball.radius_mm),
+            axes: femur.axes_in_words(joint, ball.as_ref()),
             start_mm: (x + axis_ahead_mm(flexion_axis_mm, flexion_rad), z),
         })
     }
@@ -141,6 +145,30 @@ impl MeshFemur {
             (None, Some(ball)) => (ball.centre_mm.x, ball.centre_mm.y),
             (None, None) => (0.0, 0.0),
         }
+    }
+
+    /// Returns the place that the axes pass through, where it depends on a ball or socket that may not be found.
+    fn axes_in_words(&self, joint: TestedJoint, ball: Option<&FittedSphere>) -> Option<String> {
+        let is_given = self.flexion_axis_mm.is_some();
+        if is_given || matches!(joint, TestedJoint::Knee | TestedJoint::Ankle) {
+            return None;
+        }
+        let Some(ball) = ball else {
+            let origin = self.origin_mm.map_or("the file's origin", |_| "origin_mm");
+            return Some(format!(
+                "no ball or socket was found: axes pass through {origin}"
+            ));
+        };
+        // The surface faces down, and the centre of a ball is above it.
+        let name = if ball.opens_along.y > 0.0 {
+            "ball"
+        } else {
+            "socket"
+        };
+        let radius_mm = ball.radius_mm;
+        Some(format!(
+            "axes pass through the centre of a {name} of {radius_mm:.2} mm"
+        ))
     }
 
     /// Returns the arc whose centre is the flexion axis, of a joint that has one and a case that gives no axis.

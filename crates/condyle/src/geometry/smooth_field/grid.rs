@@ -185,12 +185,12 @@ fn nearest_triangles(
     /// Parts by which rounding may place a point nearer than it is: every bound is wider, so that it changes no result.
     const ROUNDING: f64 = 1e-9;
     let [_, row, layer] = grid.strides();
-    let last_layer = first_layer + reach_mm.len() / layer;
+    let layers = first_layer..first_layer + reach_mm.len() / layer;
     let farthest_mm = reach_mm.iter().copied().fold(0.0, f64::max);
     let rows_around = |cluster: &Cluster| {
         let [xs, ys, zs] = grid.nodes_around(&cluster.centre, cluster.radius_mm + farthest_mm);
-        let layers = zs[0].max(first_layer)..zs[1].min(last_layer);
-        layers.flat_map(move |k| (ys[0]..ys[1]).map(move |j| (xs[0]..xs[1], j, k)))
+        (zs[0].max(layers.start)..zs[1].min(layers.end))
+            .flat_map(move |k| (ys[0]..ys[1]).map(move |j| (xs[0]..xs[1], j, k)))
     };
     let number = move |i: usize, j: usize, k: usize| i + row * j + layer * (k - first_layer);
     // Squared distances: the root is taken once, for the nearest triangle only.
@@ -201,8 +201,8 @@ fn nearest_triangles(
         let corner = curved.mesh.corners(first)[0];
         for (across, j, k) in rows_around(cluster) {
             for i in across {
-                let here = number(i, j, k);
-                let distance2 = (grid.position(i, j, k) - corner).norm_squared() * (1.0 + ROUNDING);
+                let (here, node) = (number(i, j, k), grid.position(i, j, k));
+                let distance2 = (node - corner).norm_squared() * (1.0 + ROUNDING);
                 if distance2 < nearest2[here] && counts(here, first) {
                     nearest2[here] = distance2;
                 }
