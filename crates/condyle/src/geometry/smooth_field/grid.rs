@@ -193,9 +193,8 @@ fn nearest_triangles(
             .flat_map(move |k| (ys[0]..ys[1]).map(move |j| (xs[0]..xs[1], j, k)))
     };
     let number = move |i: usize, j: usize, k: usize| i + row * j + layer * (k - first_layer);
-    // Squared distances: the root is taken once, for the nearest triangle only.
     let mut nearest2: Vec<f64> = reach_mm.iter().map(|mm| mm * mm).collect();
-    // One corner of each cluster gives upper bounds, with which most clusters are out of question for most nodes.
+    // One corner of each cluster bounds the squared distance, with which most clusters are out of question for most nodes.
     for cluster in clusters {
         let first = cluster.triangles.start;
         let corner = curved.mesh.corners(first)[0];
