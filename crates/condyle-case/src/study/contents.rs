@@ -93,6 +93,7 @@ impl Study {
                 rank_by: outputs[0],
                 outputs,
                 pareto: None,
+                names_pareto: false,
                 bounds: Vec::new(),
             },
             rows: Vec::new(),

@@ -60,6 +60,13 @@ impl<'a> Data<'a> {
         })
     }
 
+    /// Returns the values of an output of the study's answers.
+    pub fn of(&self, output: &Scalar) -> &[f64] {
+        let mut outputs = self.outputs.iter();
+        let own = outputs.find(|(one, _)| one.key == output.key);
+        own.map_or(&[], |(_, values)| values)
+    }
+
     /// Returns the plausibility checks that a test does not pass; none if it is sound.
     pub fn doubts(&self, test: usize) -> Option<&String> {
         let place = self.doubts.values[test];

@@ -329,6 +329,7 @@ impl Answers {
             ("Pareto front", self.table_of_front()),
             ("Outputs", self.table_of_spreads()),
             ("Ranking", self.table_of_designs()),
+            ("Pairs of designs", self.table_of_beats()),
             ("Emulators", self.table_of_emulators()),
             ("Sobol indices", self.table_of_indices()),
             ("Elementary effects of Morris", self.table_of_elementary()),
@@ -413,8 +414,8 @@ impl Answers {
         counts.retain(|(_, count)| ranking.designs.iter().any(|design| count(design) > 0));
         let mut head = vec![design.as_str()];
         head.extend(counts.iter().map(|(name, _)| *name));
-        head.extend([&mean, "SD", "within limits", "best"]);
-        let mut rows = table(&head, &ranking.designs, |design| {
+        head.extend([&mean, "SD", "within limits", "best", "beats another"]);
+        table(&head, &ranking.designs, |design| {
             let counts = counts.iter();
             let counts = counts.map(|(_, count)| format!("{} of {}", count(design), design.tests));
             let numbers = [
@@ -422,19 +423,34 @@ impl Answers {
                 shown(design.standard_deviation),
                 with_interval(design.within_limits, design.within_limits_interval),
                 with_interval(design.best, design.best_interval),
+                percent(design.wins),
             ];
             let name = [design.name.clone()].into_iter();
             name.chain(counts).chain(numbers).collect()
-        });
-        for (place, other) in ranking.designs.iter().enumerate() {
-            rows[0].push(format!("beats {}", other.name));
-            for (own, design) in ranking.designs.iter().enumerate() {
-                let share = (own != place)
-                    .then(|| with_interval(design.beats[place], design.beats_intervals[place]));
-                rows[own + 1].push(share.unwrap_or_else(|| "-".to_owned()));
-            }
-        }
-        rows
+        })
+    }
+
+    /// Returns how often each design beats each other one.
+    fn table_of_beats(&self) -> Vec<Vec<String>> {
+        let Some(ranking) = &self.ranking else {
+            return Vec::new();
+        };
+        let names = ranking.designs.iter().map(|design| design.name.as_str());
+        let head: Vec<&str> = std::iter::once("design, how often it beats")
+            .chain(names)
+            .collect();
+        table(&head, &ranking.designs, |design| {
+            let shares = design.beats.iter().zip(&design.beats_intervals);
+            let shares = shares
+                .zip(&ranking.designs)
+                .map(
+                    |((share, interval), other)| match other.name == design.name {
+                        true => "-".to_owned(),
+                        false => with_interval(*share, *interval),
+                    },
+                );
+            std::iter::once(design.name.clone()).chain(shares).collect()
+        })
     }
 
     fn table_of_emulators(&self) -> Vec<Vec<String>> {
@@ -673,13 +689,66 @@ fn sentence_of_designs(ranking: &Ranking) -> Option<String> {
         |one| one.failed,
     );
     let doubtful = listed("Doubtful tests", |one| one.doubtful);
+    let answer = match first.keeps_limits {
+        true => sentence_of_first(ranking, first),
+        false => sentence_of_nearest(ranking, first),
+    };
+    Some(format!("{answer}{failed}{doubtful}"))
+}
+
+fn sentence_of_first(ranking: &Ranking, first: &RankedDesign) -> String {
     let best = with_interval(first.best, first.best_interval);
     let within = with_interval(first.within_limits, first.within_limits_interval);
-    let (name, title) = (&first.name, ranking.title);
-    Some(format!(
-        "{name} ranks first: it has the least {title} under {best} of the {compared} disturbances, and keeps every limit under \
-         {within}.{failed}{doubtful}"
-    ))
+    let (name, title, compared) = (&first.name, ranking.title, ranking.disturbances);
+    let limits = match ranking.limits.len() {
+        1 => String::new(),
+        _ => format!(", and keeps every limit under {within}"),
+    };
+    format!(
+        "{name} ranks first: it has the least {title} under {best} of the {compared} disturbances{limits}."
+    )
+}
+
+/// Returns that no design keeps the limits, which one comes nearest, and what is wrong with that of the least output.
+fn sentence_of_nearest(ranking: &Ranking, nearest: &RankedDesign) -> String {
+    let limits = &ranking.limits;
+    let probability = limits[0].probability;
+    let enough = match limits[..limits.len() - 1]
+        .iter()
+        .all(|one| one.probability == probability)
+    {
+        true => format!("{} of the disturbances", percent(probability)),
+        false => "the required part of the disturbances".to_owned(),
+    };
+    let keeps = if limits.len() == 1 {
+        "can be solved"
+    } else {
+        "keeps every limit"
+    };
+    let name = &nearest.name;
+    let within = with_interval(nearest.within_limits, nearest.within_limits_interval);
+    let broken = |design: &RankedDesign| {
+        let kept = design.kept.iter().zip(limits);
+        let broken = kept.filter(|(kept, limit)| **kept < limit.probability);
+        let broken =
+            broken.map(|(kept, limit)| format!("{} under {}", limit.words, percent(*kept)));
+        broken.collect::<Vec<_>>().join(", ")
+    };
+    let nearest_one = match nearest.within_limits > 0.0 {
+        true => format!("{name} comes nearest, under {within}: {}.", broken(nearest)),
+        false => format!("None does under any; {name}: {}.", broken(nearest)),
+    };
+    let mut designs = ranking.designs.iter();
+    let least = designs.find(|one| one.wins > nearest.wins && one.best > 0.5);
+    let least = least.map_or_else(String::new, |least| {
+        let (name, best) = (&least.name, with_interval(least.best, least.best_interval));
+        format!(
+            " {name} has the least {} under {best}, but breaks a limit: {}.",
+            ranking.title,
+            broken(least)
+        )
+    });
+    format!("No design {keeps} under {enough}. {nearest_one}{least}")
 }
 
 /// Returns a title as it stands within a sentence: "AP force" keeps its capitals.

@@ -1,5 +1,6 @@
 //! Names and numbers of answers in words.
 
+use condyle_case::study::Bound;
 use condyle_results::{catalogue, split_unit};
 
 /// Returns the label of an output; of an input, its key.
@@ -18,6 +19,16 @@ pub(crate) fn labelled(key: &str) -> String {
         Some(unit) if !key.contains('.') => format!("{}, {unit}", label(key)),
         _ => label(key),
     }
+}
+
+/// Returns both sides of a limit in words.
+pub(crate) fn sides_in_words(bound: &Bound) -> impl Iterator<Item = String> {
+    let (label, unit) = (bound.output.label, bound.output.unit());
+    bound.sides().map(move |(sign, limit)| {
+        let side = if sign > 0.0 { "at most" } else { "at least" };
+        let words = format!("{label} {side} {limit} {unit}");
+        words.trim_end().to_owned()
+    })
 }
 
 /// Returns a number with four significant digits; a dash for one that is not known.
