@@ -22,7 +22,7 @@ pub fn write_study_page(
     title: &str,
     lede: &str,
     tables: &[(String, Vec<Vec<String>>)],
-    pictures: &[(&'static str, String, String)],
+    pictures: &[(String, String, String)],
 ) -> Result<PathBuf, ReportError> {
     for (name, _, svg) in pictures {
         write_text(folder.join(name), svg)?;

@@ -4,7 +4,10 @@ use condyle_case::study::Design;
 use serde::Serialize;
 
 use crate::{
-    answers::data::Data,
+    answers::{
+        data::{Data, of_design},
+        words::label,
+    },
     random::Random,
     statistics::{central_interval, mean},
 };
@@ -33,6 +36,11 @@ pub(crate) struct Indices {
 }
 
 impl Indices {
+    /// Returns the output in words, with the design if there are several.
+    pub fn title(&self) -> String {
+        of_design(&label(self.output), self.design.as_deref())
+    }
+
     /// Returns the first index in words. It cannot exceed the total one, except by the scatter of both.
     pub fn first_in_words(&self) -> String {
         in_words(self.first, self.first_interval, self.total)

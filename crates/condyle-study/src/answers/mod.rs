@@ -137,17 +137,31 @@ impl Answers {
         })
     }
 
-    /// Effects of inputs on an output, the largest first.
-    pub(crate) fn effects_on(&self, output: &str) -> Vec<&Effect> {
-        let own = self.effects.iter().filter(|one| one.output == output);
-        largest_first(own, |one| one.span)
+    /// Returns the names of the designs that are compared, the one that ranks first before the others; a single one without a name
+    /// in other studies.
+    pub(crate) fn designs(&self) -> Vec<Option<&str>> {
+        let designs = self.ranking.iter().flat_map(|ranking| &ranking.designs);
+        let names: Vec<_> = designs.map(|design| Some(design.name.as_str())).collect();
+        if names.is_empty() { vec![None] } else { names }
     }
 
-    /// Effects of inputs on an output that are means over an input, the largest first; none where tests were chosen by those
-    /// before them, unless the means are those of an emulator.
-    pub(crate) fn main_effects_on(&self, output: &str) -> Vec<&Effect> {
+    /// Returns the distribution of the first output of a design.
+    pub(crate) fn first_spread(&self, design: Option<&str>) -> Option<&Spread> {
+        let mut spreads = self.spreads.iter();
+        spreads.find(|one| one.design.as_deref() == design)
+    }
+
+    /// Effects of inputs on an output of a design, the largest first.
+    pub(crate) fn effects_on(&self, output: &str, design: Option<&str>) -> Vec<&Effect> {
+        let is_own = |one: &&Effect| one.output == output && one.design.as_deref() == design;
+        largest_first(self.effects.iter().filter(is_own), |one| one.span)
+    }
+
+    /// Effects of inputs on an output of a design that are means over an input, the largest first; none where tests were chosen by
+    /// those before them, unless the means are those of an emulator.
+    pub(crate) fn main_effects_on(&self, output: &str, design: Option<&str>) -> Vec<&Effect> {
         let is_sequential = ["optimise", "adaptive"].contains(&self.design);
-        let mut own = self.effects_on(output);
+        let mut own = self.effects_on(output, design);
         own.retain(|effect| effect.is_emulated || !is_sequential);
         own
     }
@@ -161,19 +175,33 @@ impl Answers {
         })
     }
 
-    /// Sobol indices of the first output and the first design, the largest total first.
-    pub(crate) fn largest_indices(&self) -> Vec<&Indices> {
-        let kind = |one: &Indices| (one.output, one.design.clone());
-        let first = self.indices.first().map(kind);
+    /// Sobol indices of a design: those of its first output, the largest total first, then those of each output with a limit in
+    /// the same order.
+    pub(crate) fn largest_indices(&self, design: Option<&str>) -> Vec<Vec<&Indices>> {
         let own = self.indices.iter();
-        largest_first(own.filter(|one| Some(kind(one)) == first), |one| one.total)
-    }
-
-    /// Returns the output of [`Self::largest_indices`] in words, with the design if there are several.
-    pub(crate) fn output_of_indices(&self) -> String {
-        self.indices.first().map_or_else(String::new, |one| {
-            of_design(&label(one.output), one.design.as_deref())
-        })
+        let own: Vec<&Indices> = own.filter(|one| one.design.as_deref() == design).collect();
+        let mut outputs = own.chunk_by(|one, other| one.output == other.output);
+        let Some(first) = outputs.next() else {
+            return Vec::new();
+        };
+        let first = largest_first(first.iter().copied(), |one| one.total);
+        let has_limit = |output: &str| {
+            let mut spreads = self.spreads.iter();
+            spreads.any(|one| one.output == output && !one.beyond.is_empty())
+        };
+        let limited = outputs.filter(|indices| has_limit(indices[0].output));
+        let in_order = |indices: &[&'_ Indices]| {
+            let of = |one: &&Indices| indices.iter().position(|other| other.input == one.input);
+            first.iter().filter_map(of).collect::<Vec<_>>()
+        };
+        let limited = limited.map(|indices| {
+            in_order(indices)
+                .into_iter()
+                .map(|place| indices[place])
+                .collect()
+        });
+        let limited: Vec<Vec<&Indices>> = limited.collect();
+        std::iter::once(first).chain(limited).collect()
     }
 
     /// Returns the number of doubtful tests and that of each doubt, the most frequent first, in a sentence; none if all are sound.
@@ -220,10 +248,12 @@ impl Answers {
             let indices = self.sentence_of_indices().unwrap_or_default();
             Some(format!("{aim} {indices}").trim().to_owned())
         };
-        of_aim()
-            .or_else(of_optimum)
-            .or_else(of_designs)
-            .or_else(|| self.sentence_of_indices())
+        let of_tests = || {
+            let both = [of_designs(), self.sentence_of_indices()];
+            let both: Vec<String> = both.into_iter().flatten().collect();
+            (!both.is_empty()).then(|| both.join(" "))
+        };
+        of_aim().or_else(of_optimum).or_else(of_tests)
     }
 
     /// Returns the doubts about the optimum, or about a front and its knee, in sentences; empty if they are sound.
@@ -247,11 +277,11 @@ impl Answers {
     }
 
     fn sentence_of_indices(&self) -> Option<String> {
-        let all = self.largest_indices();
-        let [one, other, ..] = all.as_slice() else {
+        let all = self.largest_indices(self.designs()[0]);
+        let [one, other, ..] = all.first()?.as_slice() else {
             return None;
         };
-        let (both, output) = (one.first + other.first, self.output_of_indices());
+        let (both, output) = (one.first + other.first, one.title());
         // Only an excess that the scatter of both does not explain.
         if one.first_interval[0] + other.first_interval[0] > 1.0 {
             return Some(format!(
@@ -302,7 +332,8 @@ impl Answers {
 
     /// Tables in Markdown, short enough for a terminal.
     pub fn markdown(&self) -> String {
-        let tables = self.tables();
+        let designs = self.designs();
+        let tables = self.tables(&designs[..1]);
         let mut parts: Vec<String> = tables.iter().map(|(_, rows)| aligned(rows)).collect();
         if let Some(first) = self.failed.first() {
             let (failed, kept, own) = (self.failed_tests(), self.kept, first.tests);
@@ -311,6 +342,9 @@ impl Answers {
                 format!("{failed} of {kept} tests failed, {own} of them because of: {reason}\n");
             parts.insert(1, failed);
         }
+        if designs.len() > 1 {
+            parts.push("Indices and effects of the other designs are on the page.\n".to_owned());
+        }
         parts.extend(self.doubts());
         parts.extend(Some(self.doubts_of_optimum() + "\n").filter(|one| one != "\n"));
         parts.extend(self.end_of_search());
@@ -318,8 +352,15 @@ impl Answers {
         parts.join("\n")
     }
 
-    /// Tables with their headings; the first row of each is its head.
-    pub(crate) fn tables(&self) -> Vec<(String, Vec<Vec<String>>)> {
+    /// Tables with their headings, those of indices and effects for each of `designs`; the first row of each is its head.
+    pub(crate) fn tables(&self, designs: &[Option<&str>]) -> Vec<(String, Vec<Vec<String>>)> {
+        let of_designs = designs.iter().flat_map(|design| {
+            [
+                ("Sobol indices", self.table_of_indices(*design)),
+                ("Effects of inputs", self.table_of_effects(*design)),
+            ]
+            .map(|(name, rows)| (of_design(name, *design), rows))
+        });
         let tables = [
             ("Best", self.table_of_best()),
             (
@@ -331,12 +372,11 @@ impl Answers {
             ("Ranking", self.table_of_designs()),
             ("Pairs of designs", self.table_of_beats()),
             ("Emulators", self.table_of_emulators()),
-            ("Sobol indices", self.table_of_indices()),
             ("Elementary effects of Morris", self.table_of_elementary()),
-            ("Effects of inputs", self.table_of_effects()),
         ];
-        let filled = tables.into_iter().filter(|(_, rows)| !rows.is_empty());
-        filled.map(|(name, rows)| (name.to_owned(), rows)).collect()
+        let tables = tables.map(|(name, rows)| (name.to_owned(), rows));
+        let all = tables.into_iter().chain(of_designs);
+        all.filter(|(_, rows)| !rows.is_empty()).collect()
     }
 
     fn table_of_spreads(&self) -> Vec<Vec<String>> {
@@ -503,20 +543,31 @@ impl Answers {
         }
     }
 
-    fn table_of_indices(&self) -> Vec<Vec<String>> {
+    fn table_of_indices(&self, design: Option<&str>) -> Vec<Vec<String>> {
         let range = |[low, high]: [f64; 2]| format!("{low:.3} to {high:.3}");
-        let all = self.largest_indices();
-        let counted = all.first().map_or(0, |one| one.bases);
-        let kind = self.kind_of_tests();
-        let input = format!("input, by {}, {counted} {kind}", self.output_of_indices());
-        table_of_most(&[&input, "first", "95 %", "total", "95 %"], &all, |index| {
-            vec![
+        let all = self.largest_indices(design);
+        let Some((first, limited)) = all.split_first() else {
+            return Vec::new();
+        };
+        let (counted, kind) = (first[0].bases, self.kind_of_tests());
+        let input = format!("input, by {}, {counted} {kind}", first[0].title());
+        let limited_heads = limited
+            .iter()
+            .map(|one| format!("{}: total", label(one[0].output)));
+        let limited_heads: Vec<String> = limited_heads.collect();
+        let mut head = vec![input.as_str(), "first", "95 %", "total", "95 %"];
+        head.extend(limited_heads.iter().flat_map(|one| [one.as_str(), "95 %"]));
+        let places: Vec<usize> = (0..first.len()).collect();
+        table_of_most(&head, &places.iter().collect::<Vec<_>>(), |place| {
+            let index = first[*place];
+            let mut row = vec![
                 self.name_of(&index.input).to_owned(),
                 index.first_in_words(),
                 range(index.first_interval),
-                index.total_in_words(),
-                range(index.total_interval),
-            ]
+            ];
+            let totals = std::iter::once(first).chain(limited).map(|one| one[*place]);
+            row.extend(totals.flat_map(|one| [one.total_in_words(), range(one.total_interval)]));
+            row
         })
     }
 
@@ -539,16 +590,16 @@ impl Answers {
         })
     }
 
-    /// Returns the table of effects, for designs without a specific table.
-    fn table_of_effects(&self) -> Vec<Vec<String>> {
+    /// Returns the table of effects in a design, for studies without a specific table.
+    fn table_of_effects(&self, design: Option<&str>) -> Vec<Vec<String>> {
         let is_counted = self.design == "saltelli";
         if is_counted || !self.elementary.is_empty() {
             return Vec::new();
         }
         let output = self.effects.first().map_or("", |one| one.output);
-        let all = self.main_effects_on(output);
+        let all = self.main_effects_on(output, design);
         let unit = split_unit(output).1.unwrap_or_default();
-        let moves = format!("moves {} by, {unit}", label(output));
+        let moves = format!("moves {} by, {unit}", of_design(&label(output), design));
         let dash = || "-".to_owned();
         let head = ["input", &moves, "by chance up to", "rank correlation"];
         table_of_most(&head, &all, |effect| {
