@@ -105,7 +105,11 @@ pub fn bars_svg(title: &str, unit: &str, middle: Option<f64>, bars: &[Bar]) -> S
             body += &format!(r#"<path class="mark" d="M{from:.1} {y:.1}H{to:.1}"/>"#);
             label_at = label_at.max(to);
         }
-        let (label, label_x) = (significant(high - low, 3), label_at + 6.0);
+        let label = match bar.interval.filter(|_| bar.is_grey) {
+            Some([_, most]) => format!("below {}", significant(most, 2)),
+            None => significant(high - low, 3),
+        };
+        let label_x = label_at + 6.0;
         body += &format!(r#"<text x="{label_x:.1}" y="{base:.1}">{label}</text>"#);
     }
     if let Some(middle) = middle {
@@ -223,6 +227,11 @@ mod tests {
         let svg = bars_svg("Mass & more", "mg", Some(1.0), &bars);
         assert_eq!(svg.matches("<rect class=\"bar\"").count(), 1);
         assert_eq!(svg.matches("<rect class=\"bar grey\"").count(), 1);
+        // A bar that may be chance states the end of its interval.
+        assert!(
+            svg.contains(">2.00<") && svg.contains(">below 2.1<"),
+            "{svg}"
+        );
         assert!(svg.contains("friction &lt;a&gt;") && svg.contains("Mass &amp; more"));
         assert!(roxmltree::Document::parse(&svg).is_ok());
     }

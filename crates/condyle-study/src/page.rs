@@ -22,7 +22,7 @@ use crate::{
     },
     error::StudyError,
     plan::Plan,
-    statistics::{extent, quantile},
+    statistics::{extent, mean, quantile},
     store::Store,
 };
 
@@ -196,9 +196,10 @@ fn indices(answers: &Answers, design: Option<&str>) -> Option<Picture> {
         name: answers.name_of(&index.input).to_owned(),
         span: [0.0, index.total],
         interval: Some(index.total_interval),
-        is_grey: false,
+        is_grey: index.total_interval[0] <= 0.0,
     });
-    let caption = "The part of the variance that would remain if all other inputs were known, with 95 % intervals.";
+    let caption = "The part of the variance that would remain if all other inputs were known, with 95 % intervals; bars whose interval \
+                   contains 0 are grey.";
     let svg = bars_svg(&title, "", None, &most.collect::<Vec<_>>());
     Some(("indices.svg", caption.to_owned(), svg))
 }
@@ -243,7 +244,7 @@ fn tornado(answers: &Answers, design: Option<&str>) -> Option<Picture> {
     }
     let title = format!("Effects on {}", spread.name());
     let mut caption = "The range of the means over a tenth of each input's values, or at each of its levels; the line is \
-                       the mean of all tests."
+                       the mean of the bars."
         .to_owned();
     let by_chance = effects.iter().filter_map(|effect| effect.span_by_chance);
     if let Some(most) = by_chance.reduce(f64::max) {
@@ -252,7 +253,8 @@ fn tornado(answers: &Answers, design: Option<&str>) -> Option<Picture> {
             " An inactive input would span up to {most} {unit} by chance; bars within their chance are grey."
         );
     }
-    let svg = bars_svg(&title, &superscript(spread.unit), Some(spread.mean), &all);
+    let means: Vec<f64> = effects.iter().map(|effect| effect.mean).collect();
+    let svg = bars_svg(&title, &superscript(spread.unit), Some(mean(&means)), &all);
     Some(("tornado.svg", caption, svg))
 }
 

@@ -209,7 +209,7 @@ impl Beyond {
 pub(crate) fn is_sampled(plan: &Plan, point: usize) -> bool {
     let study = plan.study();
     match &study.design {
-        Design::LatinHypercube(_) | Design::Sobol(_) | Design::Rows(_) => true,
+        Design::LatinHypercube(_) | Design::Sobol(_) => true,
         Design::Saltelli(_) => {
             let (_, test) = Saltelli::of(point as u64, study.inputs.len());
             !matches!(test, Saltelli::Changed(_))
@@ -217,6 +217,7 @@ pub(crate) fn is_sampled(plan: &Plan, point: usize) -> bool {
         Design::Morris(_)
         | Design::FullFactorial(_)
         | Design::OneAtATime(_)
+        | Design::Rows(_)
         | Design::Optimise(_)
         | Design::Adaptive(_) => false,
     }

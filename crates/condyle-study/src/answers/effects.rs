@@ -31,16 +31,18 @@ pub(crate) struct Effect {
     pub design: Option<String>,
     pub input: String,
     pub name: String,
-    /// Spearman's; none for words.
+    /// Spearman's; none for words, and for tests that were chosen by those before them.
     pub rank_correlation: Option<f64>,
     /// Mean value of the input in each slice or at each level, and mean of the output there.
     pub means: Vec<(f64, f64)>,
     /// The levels, where they are words.
     pub words: Vec<String>,
+    /// Mean of the output over all of them.
+    pub mean: f64,
     /// Largest less smallest mean of the output, in its unit.
     pub span: f64,
-    /// The 95th percentile of the span of an inactive input; none if the tests are not a random sample, or the means are
-    /// those of an emulator.
+    /// The 95th percentile of the span of an inactive input, or the span that may be an error of the emulator; none if the tests are
+    /// not a random sample.
     pub span_by_chance: Option<f64>,
     /// True if the means are those of the predictions of an emulator.
     pub is_emulated: bool,
@@ -80,14 +82,20 @@ fn effect(
     let mut own = own.filter(|one| one.output == output.key && one.design == name);
     let predicted = own.next().and_then(|one| one.main_effects.get(place));
     // Equal inputs are sorted by the output, so that sums do not depend on the order of the tests.
-    let mut pairs = predicted.unwrap_or(&tested).clone();
+    let mut pairs = predicted.map_or(&tested, |own| &own.means).clone();
     pairs.sort_by(|one, other| one.0.total_cmp(&other.0).then(one.1.total_cmp(&other.1)));
     let slices = slices(&pairs);
     let means: Vec<(f64, f64)> = slices.iter().map(|slice| means(slice)).collect();
     if means.len() < 2 {
         return None;
     }
-    let is_counted = data.is_sample() && predicted.is_none();
+    let span = span(means.iter().map(|mean| mean.1));
+    let span_by_chance = match predicted {
+        Some(own) => Some(own.error * span / deviation(&means)).filter(|one| one.is_finite()),
+        None => data.is_sample().then(|| span_by_chance(&slices)),
+    };
+    let correlation = rank_correlation(&tested);
+    let correlation = correlation.filter(|_| column.words.is_empty() && !data.plan.is_sequential());
     let most = (MAX_POINTS / designs(study)).max(1);
     let every = tested.len().div_ceil(most).max(1);
     Some(Effect {
@@ -95,10 +103,11 @@ fn effect(
         design: name,
         input: input.key.clone(),
         name: input.name.clone(),
-        rank_correlation: rank_correlation(&tested).filter(|_| column.words.is_empty()),
+        rank_correlation: correlation,
         words: column.words.clone(),
-        span: span(means.iter().map(|mean| mean.1)),
-        span_by_chance: is_counted.then(|| span_by_chance(&slices)),
+        mean: mean(&pairs.iter().map(|pair| pair.1).collect::<Vec<_>>()),
+        span,
+        span_by_chance,
         is_emulated: predicted.is_some(),
         means,
         points: tested.into_iter().step_by(every).collect(),
@@ -136,6 +145,13 @@ fn slices(sorted: &[(f64, f64)]) -> Vec<&[(f64, f64)]> {
 fn means(slice: &[(f64, f64)]) -> (f64, f64) {
     let (x, y): (Vec<f64>, Vec<f64>) = slice.iter().copied().unzip();
     (mean(&x), mean(&y))
+}
+
+/// Returns the standard deviation of the means of slices, which are equally likely.
+fn deviation(means: &[(f64, f64)]) -> f64 {
+    let own: Vec<f64> = means.iter().map(|mean| mean.1).collect();
+    let count = own.len() as f64;
+    standard_deviation(&own) * ((count - 1.0) / count).sqrt()
 }
 
 /// Returns the largest less smallest value; 0 for none.
@@ -447,7 +463,11 @@ mod tests {
         let found = effects(&data, &emulated(&data).0);
         // Over the means of tenths, of both designs, of which the second has twice the effects.
         for (effect, exact) in found.iter().zip([2.7, 5.4, 0.45, 0.9, 0.0, 0.0]) {
-            assert!(effect.is_emulated && effect.span_by_chance.is_none());
+            let by_chance = effect.span_by_chance.unwrap();
+            assert!(effect.is_emulated && (effect.span > by_chance) == (exact > 0.0));
+            // The line of the picture is within each bar.
+            let [low, high] = extent(effect.means.iter().map(|mean| mean.1));
+            assert!(low <= effect.mean && effect.mean <= high);
             assert!(
                 (effect.span - exact).abs() < 0.05,
                 "{}: {}",

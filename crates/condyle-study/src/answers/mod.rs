@@ -24,7 +24,7 @@ use crate::{
         indices::Indices,
         ranking::{Best, Front, RankedDesign, Ranking},
         robust::Robust,
-        words::{chance, label, labelled, percent, percents, shown, with_interval},
+        words::{chance, label, labelled, percent, percents, shown},
     },
     error::StudyError,
     plan::Plan,
@@ -461,8 +461,8 @@ impl Answers {
             let numbers = [
                 shown(design.mean),
                 shown(design.standard_deviation),
-                with_interval(design.within_limits, design.within_limits_interval),
-                with_interval(design.best, design.best_interval),
+                ranking.share(design.within_limits, design.within_limits_interval),
+                ranking.share(design.best, design.best_interval),
                 percent(design.wins),
             ];
             let name = [design.name.clone()].into_iter();
@@ -486,7 +486,7 @@ impl Answers {
                 .map(
                     |((share, interval), other)| match other.name == design.name {
                         true => "-".to_owned(),
-                        false => with_interval(*share, *interval),
+                        false => ranking.share(*share, *interval),
                     },
                 );
             std::iter::once(design.name.clone()).chain(shares).collect()
@@ -744,12 +744,16 @@ fn sentence_of_designs(ranking: &Ranking) -> Option<String> {
         true => sentence_of_first(ranking, first),
         false => sentence_of_nearest(ranking, first),
     };
-    Some(format!("{answer}{failed}{doubtful}"))
+    let parts = match ranking.is_sample {
+        true => "",
+        false => " The disturbances are no random sample: the percentages are parts of them.",
+    };
+    Some(format!("{answer}{parts}{failed}{doubtful}"))
 }
 
 fn sentence_of_first(ranking: &Ranking, first: &RankedDesign) -> String {
-    let best = with_interval(first.best, first.best_interval);
-    let within = with_interval(first.within_limits, first.within_limits_interval);
+    let best = ranking.share(first.best, first.best_interval);
+    let within = ranking.share(first.within_limits, first.within_limits_interval);
     let (name, title, compared) = (&first.name, ranking.title, ranking.disturbances);
     let limits = match ranking.limits.len() {
         1 => String::new(),
@@ -777,7 +781,7 @@ fn sentence_of_nearest(ranking: &Ranking, nearest: &RankedDesign) -> String {
         "keeps every limit"
     };
     let name = &nearest.name;
-    let within = with_interval(nearest.within_limits, nearest.within_limits_interval);
+    let within = ranking.share(nearest.within_limits, nearest.within_limits_interval);
     let broken = |design: &RankedDesign| {
         let kept = design.kept.iter().zip(limits);
         let broken = kept.filter(|(kept, limit)| **kept < limit.probability);
@@ -792,7 +796,7 @@ fn sentence_of_nearest(ranking: &Ranking, nearest: &RankedDesign) -> String {
     let mut designs = ranking.designs.iter();
     let least = designs.find(|one| one.wins > nearest.wins && one.best > 0.5);
     let least = least.map_or_else(String::new, |least| {
-        let (name, best) = (&least.name, with_interval(least.best, least.best_interval));
+        let (name, best) = (&least.name, ranking.share(least.best, least.best_interval));
         format!(
             " {name} has the least {} under {best}, but breaks a limit: {}.",
             ranking.title,

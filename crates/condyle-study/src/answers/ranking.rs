@@ -5,7 +5,10 @@ use condyle_results::catalogue::Scalar;
 use serde::Serialize;
 
 use crate::{
-    answers::{data::Data, words::sides_in_words},
+    answers::{
+        data::Data,
+        words::{percent, sides_in_words, with_interval},
+    },
     error::StudyError,
     plan::designs,
     search::{Standing, standing, starting_test},
@@ -23,6 +26,8 @@ pub(crate) struct Ranking {
     pub disturbances: usize,
     /// Those under which the tests of all designs are solved.
     pub solved: usize,
+    /// True if the disturbances are a random sample, so that shares of them are probabilities.
+    pub is_sample: bool,
     /// The limits, then that of being solved.
     pub limits: Vec<RankedLimit>,
     pub designs: Vec<RankedDesign>,
@@ -124,9 +129,18 @@ impl Ranking {
             unit: output.unit(),
             disturbances: compared.len(),
             solved: solved_by_all(&outcomes).len(),
+            is_sample: data.is_sample(),
             designs: ranked(&outcomes, &limits),
             limits,
         }))
+    }
+
+    /// Returns a share of the disturbances in words, with the interval of the probability if they are a sample.
+    pub fn share(&self, share: f64, interval: [f64; 2]) -> String {
+        match self.is_sample {
+            true => with_interval(share, interval),
+            false => percent(share),
+        }
     }
 }
 
@@ -405,11 +419,13 @@ pub(crate) struct InputOfFront {
 const MAX_POINTS: usize = 1000;
 
 impl Front {
-    /// Returns the front; none if the study has a single output.
+    /// Returns the front; none if the study neither searches for it nor names two outputs.
     pub fn read(data: &Data<'_>, store: &Store) -> Result<Option<Self>, StudyError> {
         let study = data.plan.study();
         // Tests under different disturbances say nothing of the designs.
-        let Some(outputs) = study.answers.pareto.filter(|_| !study.is_robust()) else {
+        let is_searched = study.objectives().len() > 1;
+        let is_asked = (is_searched || study.answers.names_pareto) && !study.is_robust();
+        let Some(outputs) = study.answers.pareto.filter(|_| is_asked) else {
             return Ok(None);
         };
         let one = store.column(data.plan, outputs[0].key)?.values;
@@ -427,7 +443,6 @@ impl Front {
             extent(tests.iter().map(|test| test.2))[1],
         ];
         let front = undominated(tests.clone());
-        let is_searched = study.objectives().len() > 1;
         let inputs = study.inputs.iter().zip(&data.inputs);
         let input = |(input, column): (&Input, &Column)| {
             let values = front.iter().map(|test| column.values[test.0 as usize]);
