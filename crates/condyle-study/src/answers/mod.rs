@@ -24,7 +24,7 @@ use crate::{
         indices::Indices,
         ranking::{Best, Front, RankedDesign, Ranking},
         robust::Robust,
-        words::{chance, label, labelled, percent, percents, shown},
+        words::{chance_in_words, label, labelled, percent, percents, shown, with_interval},
     },
     error::StudyError,
     plan::Plan,
@@ -278,24 +278,28 @@ impl Answers {
 
     fn sentence_of_indices(&self) -> Option<String> {
         let all = self.largest_indices(self.designs()[0]);
-        let [one, other, ..] = all.first()?.as_slice() else {
-            return None;
-        };
-        let (both, output) = (one.first + other.first, one.title());
+        let two = all.first()?.get(..2)?;
+        let (named, [sum, low, high]) = indices::sum_of_first(two);
+        let (first, output) = (named.first()?, two[0].title());
         // Only an excess that the scatter of both does not explain.
-        if one.first_interval[0] + other.first_interval[0] > 1.0 {
+        if low > 1.0 {
             return Some(format!(
                 "The {} {} are too few for indices of {output}: those of two inputs add up to {}.",
-                one.bases,
+                first.bases,
                 self.kind_of_tests(),
-                percent(both)
+                percent(sum)
             ));
         }
-        let both = percent(both.min(1.0));
-        let [one, other] = [one, other].map(|index| title_of_path(self.name_of(&index.input)).0);
+        let title = |index: &Indices| title_of_path(self.name_of(&index.input)).0;
+        let explain = match named.get(1) {
+            Some(other) => format!("and {} explain", within_sentence(&title(other))),
+            None => "explains".to_owned(),
+        };
+        let [sum, low, high] = [sum, low, high].map(|share| share.clamp(0.0, 1.0));
+        let share = with_interval(sum, [low, high]);
         Some(format!(
-            "{one} and {} explain {both} of the variance of {output}.",
-            within_sentence(&other)
+            "{} {explain} {share} of the variance of {output}.",
+            title(first)
         ))
     }
 
@@ -497,11 +501,16 @@ impl Answers {
         if self.emulated.is_empty() {
             return Vec::new();
         }
+        // The indices of a Saltelli design are those of its tests.
+        let used = match self.design {
+            "saltelli" => "used for limits",
+            _ => "used for indices and limits",
+        };
         let head = [
             "emulator of",
             "tests",
             "Q2",
-            "used for indices and limits",
+            used,
             "unit",
             "5 %",
             "median",
@@ -511,10 +520,8 @@ impl Answers {
             "beyond its limit",
         ];
         table(&head, &self.emulated, |one| {
-            let beyond = one.beyond.iter().map(|beyond| {
-                let [low, high] = beyond.interval.map(chance);
-                format!("{} ({low} to {high})", chance(beyond.probability))
-            });
+            let beyond = one.beyond.iter();
+            let beyond = beyond.map(|one| chance_in_words(one.probability, one.interval));
             let why_not = one.why_not_used();
             let used = why_not.map_or_else(|| "yes".to_owned(), |why| format!("no, {why}"));
             let numbers = one.distribution.as_ref().map(|own| {
