@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use crate::error::ReportError;
 use crate::figure::{Axis, Curve, MEASURED, Panel, escape, finite_range, sheet, svg_file, titled};
 pub use crate::number::title_of_path;
-use crate::number::{path_in_words, significant};
+use crate::number::{path_in_words, significant, with_powers};
 use crate::sheets::{Sheets, filled, write_text};
 
 const MAX_INTERVALS: usize = 6;
@@ -35,7 +35,9 @@ pub fn write_study_page(
         let named = if place == 0 { row.len() } else { 1 };
         let cells = row.iter_mut().take(named);
         cells.for_each(|cell| *cell = path_in_words(cell));
+        row.iter_mut().for_each(|cell| *cell = with_powers(cell));
     }
+    let lede = &with_powers(lede);
     let sheets = Sheets {
         kicker: "condyle study",
         title,
@@ -118,7 +120,7 @@ pub fn bars_svg(title: &str, unit: &str, middle: Option<f64>, bars: &[Bar]) -> S
     }
     let described = bars.iter().map(|bar| {
         let [low, high] = bar.span.map(|end| significant(end, 4));
-        format!("{}: {low} to {high}", bar.name)
+        format!("{}: {low} to {high}", path_in_words(&bar.name))
     });
     let described = described.collect::<Vec<_>>().join("; ");
     svg_file(title, &described, (WIDTH, bottom + 26.0), &body)

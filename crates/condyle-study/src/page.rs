@@ -18,7 +18,7 @@ use crate::{
         emulated::Emulated,
         ranking::{Best, Front, Ranking},
         robust::Robust,
-        words::{label, shown},
+        words::{label, shown, sides_in_words},
     },
     error::StudyError,
     plan::Plan,
@@ -63,9 +63,29 @@ pub fn write_answers(plan: &Plan, folder: &Path) -> Result<Answers, StudyError> 
     let ended = answers.end_of_search().unwrap_or_default();
     let lede = format!("{answer} {tests}; {end}. {ended} {doubts}");
     let lede = lede.trim();
-    let (tables, pictures) = (answers.tables(&answers.designs()), pictures(&answers));
+    let (mut tables, pictures) = (answers.tables(&answers.designs()), pictures(&answers));
+    tables.push(("What was tested".to_owned(), tested(plan)));
     write_study_page(folder, title.unwrap_or("A study"), lede, &tables, &pictures)?;
     Ok(answers)
+}
+
+/// Returns the table of what was tested, within which limits, and with which version.
+fn tested(plan: &Plan) -> Vec<Vec<String>> {
+    let study = plan.study();
+    let limits = study.answers.bounds.iter().flat_map(|bound| {
+        let probability = format!("probability {}", bound.probability);
+        sides_in_words(bound).map(move |words| (format!("limit: {words}"), probability.clone()))
+    });
+    let version = concat!("condyle ", env!("CARGO_PKG_VERSION"));
+    let written = [
+        ("version", version),
+        ("hash of the inputs", plan.inputs_blake3()),
+    ];
+    let written = written.map(|(name, value)| (name.to_owned(), value.to_owned()));
+    let all = study.described().into_iter().chain(limits).chain(written);
+    let head = ("what".to_owned(), "value".to_owned());
+    let rows = once(head).chain(all);
+    rows.map(|(name, value)| vec![name, value]).collect()
 }
 
 fn write_json(path: &Path, content: &impl Serialize) -> Result<(), StudyError> {

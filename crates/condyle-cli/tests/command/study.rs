@@ -287,6 +287,17 @@ fn designs_are_ranked_under_the_same_disturbances() {
     assert_eq!(ranking["disturbances"], 5);
     assert_eq!(ranking["designs"][0]["name"], "deep", "{ranking}");
     assert_eq!(ranking["designs"][0]["beats"][1], 1.0);
+    // A page that a reviewer can sign.
+    let page = fs::read_to_string(bench.path("out").join("study.html")).unwrap();
+    for words in [
+        "deep ranks first with a peak pressure of",
+        "less than shallow (",
+        "<td>design deep</td><td>insert.sagittal_radius_mm=45</td>",
+        "<td>Friction of contact</td>",
+        "<td>hash of the inputs</td>",
+    ] {
+        assert!(page.contains(words), "{words}");
+    }
 }
 
 #[test]

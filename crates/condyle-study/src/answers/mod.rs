@@ -22,7 +22,7 @@ use crate::{
         effects::{Effect, Elementary},
         emulated::{Emulated, emulated},
         indices::Indices,
-        ranking::{Best, Front, RankedDesign, Ranking},
+        ranking::{Best, Front, Lead, RankedDesign, Ranking},
         robust::Robust,
         words::{chance_in_words, label, labelled, percent, percents, shown, with_interval},
     },
@@ -606,9 +606,10 @@ impl Answers {
         let output = self.effects.first().map_or("", |one| one.output);
         let all = self.main_effects_on(output, design);
         let unit = split_unit(output).1.unwrap_or_default();
-        let moves = format!("moves {} by, {unit}", of_design(&label(output), design));
+        let moves = format!("moves {} by, {unit}", label(output));
+        let input = of_design("input", design);
         let dash = || "-".to_owned();
-        let head = ["input", &moves, "by chance up to", "rank correlation"];
+        let head = [&input, &moves, "by chance up to", "rank correlation"];
         table_of_most(&head, &all, |effect| {
             let correlation = effect.rank_correlation.map(|one| format!("{one:+.2}"));
             vec![
@@ -766,9 +767,32 @@ fn sentence_of_first(ranking: &Ranking, first: &RankedDesign) -> String {
         1 => String::new(),
         _ => format!(", and keeps every limit under {within}"),
     };
+    let next = first.lead.as_ref().zip(ranking.designs.get(1));
+    let lead = next.map_or_else(String::new, |(lead, next)| {
+        in_words_of_lead(ranking, lead, next)
+    });
     format!(
-        "{name} ranks first: it has the least {title} under {best} of the {compared} disturbances{limits}."
+        "{name} ranks first{lead}: it has the least {title} under {best} of the {compared} disturbances{limits}."
     )
+}
+
+/// Returns how much less the output of the first design is than that of the next one.
+fn in_words_of_lead(ranking: &Ranking, lead: &Lead, next: &RankedDesign) -> String {
+    let Lead { mean, range } = lead;
+    let ([low, high], less) = match *mean >= 0.0 {
+        true => (*range, "less"),
+        false => (range.map(|end| -end), "more"),
+    };
+    let [low, high] = [low.min(high), low.max(high)].map(shown);
+    let (unit, title) = (ranking.unit, ranking.title);
+    let own = shown(next.mean - mean);
+    let (part, mean) = (percent(mean.abs() / next.mean.abs()), shown(mean.abs()));
+    let words = format!(
+        " with a {title} of {own} {unit}, {mean} {unit} ({part}) {less} than {} ({low} to {high} {unit} {less} under 95 % of the \
+         disturbances)",
+        next.name
+    );
+    words.replace(" )", ")").replace("  ", " ")
 }
 
 /// Returns that no design keeps the limits, which one comes nearest, and what is wrong with that of the least output.

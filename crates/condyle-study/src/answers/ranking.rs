@@ -12,7 +12,7 @@ use crate::{
     error::StudyError,
     plan::designs,
     search::{Standing, standing, starting_test},
-    statistics::{extent, mean, standard_deviation, wilson_interval},
+    statistics::{central_interval, extent, mean, standard_deviation, wilson_interval},
     store::{Column, Store},
 };
 
@@ -69,6 +69,16 @@ pub(crate) struct RankedDesign {
     /// that are not solved, count half.
     pub beats: Vec<f64>,
     pub beats_intervals: Vec<[f64; 2]>,
+    /// Of all designs but the last.
+    pub lead: Option<Lead>,
+}
+
+/// The output of the next design less that of a design under the same disturbance, where all designs are solved.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub(crate) struct Lead {
+    pub mean: f64,
+    /// The range that holds 95 % of the differences.
+    pub range: [f64; 2],
 }
 
 /// The output of one design under every disturbance.
@@ -212,20 +222,34 @@ fn ranked(all: &[Outcomes], limits: &[RankedLimit]) -> Vec<RankedDesign> {
             .then(one.mean.total_cmp(&other.mean))
     });
     let outcomes: Vec<&Outcomes> = order.iter().map(|(_, own)| *own).collect();
-    let beats = order.into_iter().map(|(mut design, own)| {
-        let tests = own.values.len() as f64;
-        let wins = outcomes
+    let lead = |own: &Outcomes, next: &Outcomes| {
+        let differences = solved
             .iter()
-            .map(|other| wins(&own.values, &other.values));
-        let shares = wins.map(|wins| (wins / tests.max(1.0), wilson_interval(wins, tests)));
-        (design.beats, design.beats_intervals) = shares.unzip();
-        design
-    });
+            .map(|row| next.values[*row] - own.values[*row]);
+        let differences: Vec<f64> = differences.collect();
+        (!differences.is_empty()).then(|| Lead {
+            mean: mean(&differences),
+            range: central_interval(differences),
+        })
+    };
+    let beats = order
+        .into_iter()
+        .enumerate()
+        .map(|(place, (mut design, own))| {
+            design.lead = outcomes.get(place + 1).and_then(|next| lead(own, next));
+            let tests = own.values.len() as f64;
+            let wins = outcomes
+                .iter()
+                .map(|other| wins(&own.values, &other.values));
+            let shares = wins.map(|wins| (wins / tests.max(1.0), wilson_interval(wins, tests)));
+            (design.beats, design.beats_intervals) = shares.unzip();
+            design
+        });
     beats.collect()
 }
 
 impl Outcomes {
-    /// Returns the design compared with `all`, without the list of those that it beats, which depends on their order.
+    /// Returns the design compared with `all`, without what depends on their order.
     fn compared(&self, all: &[Outcomes], solved: &[usize], limits: &[RankedLimit]) -> RankedDesign {
         let tests = self.values.len() as f64;
         let is_best = |row: &usize| {
@@ -261,6 +285,7 @@ impl Outcomes {
             best_interval: wilson_interval(hits, tests),
             beats: Vec::new(),
             beats_intervals: Vec::new(),
+            lead: None,
         }
     }
 }
@@ -553,6 +578,11 @@ mod tests {
         let ranked = ranked_within(&all);
         assert_eq!(names(&ranked), ["conforming", "standard", "flat"]);
         assert_eq!((ranked[1].best, ranked[2].best), (0.0, 0.03));
+        let lead = ranked[0].lead.as_ref().unwrap();
+        assert_eq!(
+            (lead.mean, lead.range, &ranked[2].lead),
+            (8.0, [8.0; 2], &None)
+        );
         for (design, wins) in ranked.iter().zip([0.985, 0.485, 0.03]) {
             assert!((design.wins - wins).abs() < 1e-12, "{design:?}");
         }
