@@ -87,7 +87,7 @@ class Answers(Answer):
         spreads: tuple[Answer, ...]
         """For each output and alternative: ``least``, ``percentiles``, ``most``, ``mean``, ``beyond`` its limits, and more."""
         effects: tuple[Answer, ...]
-        """For each output and input: ``means``, their ``span``, ``span_by_chance``, and ``is_emulated``."""
+        """For each input, output and alternative: ``means``, their ``span``, ``span_by_chance``, and ``is_emulated``."""
         elementary: tuple[Answer, ...]
         """Elementary effects of a Morris design: ``mu``, ``mu_star``, ``sigma``."""
         indices: tuple[Answer, ...]

@@ -28,7 +28,7 @@ pub(crate) fn write_text(path: PathBuf, text: &str) -> Result<PathBuf, ReportErr
 }
 
 /// File name, caption and text of a picture.
-pub(crate) type Sheet = (&'static str, String, String);
+pub(crate) type Sheet = (String, String, String);
 
 /// Returns text and caption of a picture. Every picture calls its title and description `t` and `d`: on one page these
 /// need different names.
@@ -71,7 +71,7 @@ mod tests {
             vec![vec!["x".to_owned()], vec!["<1>".to_owned()]],
         )];
         let pictures = [(
-            "one.svg",
+            "one.svg".to_owned(),
             "what".to_owned(),
             "<svg id=\"t\"></svg>".to_owned(),
         )];

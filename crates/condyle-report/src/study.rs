@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use crate::error::ReportError;
 use crate::figure::{Axis, Curve, MEASURED, Panel, escape, finite_range, sheet, svg_file, titled};
 pub use crate::number::title_of_path;
-use crate::number::{path_in_words, significant};
+use crate::number::{path_in_words, significant, with_powers};
 use crate::sheets::{Sheets, filled, write_text};
 
 const MAX_INTERVALS: usize = 6;
@@ -22,7 +22,7 @@ pub fn write_study_page(
     title: &str,
     lede: &str,
     tables: &[(String, Vec<Vec<String>>)],
-    pictures: &[(&'static str, String, String)],
+    pictures: &[(String, String, String)],
 ) -> Result<PathBuf, ReportError> {
     for (name, _, svg) in pictures {
         write_text(folder.join(name), svg)?;
@@ -35,7 +35,9 @@ pub fn write_study_page(
         let named = if place == 0 { row.len() } else { 1 };
         let cells = row.iter_mut().take(named);
         cells.for_each(|cell| *cell = path_in_words(cell));
+        row.iter_mut().for_each(|cell| *cell = with_powers(cell));
     }
+    let lede = &with_powers(lede);
     let sheets = Sheets {
         kicker: "condyle study",
         title,
@@ -105,7 +107,11 @@ pub fn bars_svg(title: &str, unit: &str, middle: Option<f64>, bars: &[Bar]) -> S
             body += &format!(r#"<path class="mark" d="M{from:.1} {y:.1}H{to:.1}"/>"#);
             label_at = label_at.max(to);
         }
-        let (label, label_x) = (significant(high - low, 3), label_at + 6.0);
+        let label = match bar.interval.filter(|_| bar.is_grey) {
+            Some([_, most]) => format!("below {}", significant(most, 2)),
+            None => significant(high - low, 3),
+        };
+        let label_x = label_at + 6.0;
         body += &format!(r#"<text x="{label_x:.1}" y="{base:.1}">{label}</text>"#);
     }
     if let Some(middle) = middle {
@@ -114,7 +120,7 @@ pub fn bars_svg(title: &str, unit: &str, middle: Option<f64>, bars: &[Bar]) -> S
     }
     let described = bars.iter().map(|bar| {
         let [low, high] = bar.span.map(|end| significant(end, 4));
-        format!("{}: {low} to {high}", bar.name)
+        format!("{}: {low} to {high}", path_in_words(&bar.name))
     });
     let described = described.collect::<Vec<_>>().join("; ");
     svg_file(title, &described, (WIDTH, bottom + 26.0), &body)
@@ -223,6 +229,11 @@ mod tests {
         let svg = bars_svg("Mass & more", "mg", Some(1.0), &bars);
         assert_eq!(svg.matches("<rect class=\"bar\"").count(), 1);
         assert_eq!(svg.matches("<rect class=\"bar grey\"").count(), 1);
+        // A bar that may be chance states the end of its interval.
+        assert!(
+            svg.contains(">2.00<") && svg.contains(">below 2.1<"),
+            "{svg}"
+        );
         assert!(svg.contains("friction &lt;a&gt;") && svg.contains("Mass &amp; more"));
         assert!(roxmltree::Document::parse(&svg).is_ok());
     }

@@ -11,7 +11,7 @@ use serde::Serialize;
 use crate::{
     answers::{
         emulated::MIN_Q2,
-        words::{chance, shown},
+        words::{chance_in_words, shown},
     },
     design::sobol::sobol_places,
     emulator::Emulator,
@@ -285,8 +285,7 @@ impl Aim {
         };
         let error = match (self.error, &self.probability) {
             (Some(_), Some(found)) => {
-                let [low, high] = found.interval.map(chance);
-                format!("it is {} ({low} to {high})", chance(found.value))
+                format!("it is {}", chance_in_words(found.value, found.interval))
             }
             (Some(error), None) => {
                 let percent = shown(100.0 * error);

@@ -18,7 +18,7 @@ use crate::{
         emulated::Emulated,
         ranking::{Best, Front, Ranking},
         robust::Robust,
-        words::{label, shown},
+        words::{label, shown, sides_in_words},
     },
     error::StudyError,
     plan::Plan,
@@ -63,9 +63,29 @@ pub fn write_answers(plan: &Plan, folder: &Path) -> Result<Answers, StudyError> 
     let ended = answers.end_of_search().unwrap_or_default();
     let lede = format!("{answer} {tests}; {end}. {ended} {doubts}");
     let lede = lede.trim();
-    let (tables, pictures) = (answers.tables(), pictures(&answers));
+    let (mut tables, pictures) = (answers.tables(&answers.designs()), pictures(&answers));
+    tables.push(("What was tested".to_owned(), tested(plan)));
     write_study_page(folder, title.unwrap_or("A study"), lede, &tables, &pictures)?;
     Ok(answers)
+}
+
+/// Returns the table of what was tested, within which limits, and with which version.
+fn tested(plan: &Plan) -> Vec<Vec<String>> {
+    let study = plan.study();
+    let limits = study.answers.bounds.iter().flat_map(|bound| {
+        let probability = format!("probability {}", bound.probability);
+        sides_in_words(bound).map(move |words| (format!("limit: {words}"), probability.clone()))
+    });
+    let version = concat!("condyle ", env!("CARGO_PKG_VERSION"));
+    let written = [
+        ("version", version),
+        ("hash of the inputs", plan.inputs_blake3()),
+    ];
+    let written = written.map(|(name, value)| (name.to_owned(), value.to_owned()));
+    let all = study.described().into_iter().chain(limits).chain(written);
+    let head = ("what".to_owned(), "value".to_owned());
+    let rows = once(head).chain(all);
+    rows.map(|(name, value)| vec![name, value]).collect()
 }
 
 fn write_json(path: &Path, content: &impl Serialize) -> Result<(), StudyError> {
@@ -75,14 +95,30 @@ fn write_json(path: &Path, content: &impl Serialize) -> Result<(), StudyError> {
 /// The file, its caption, and its text.
 type Picture = (&'static str, String, String);
 
-fn pictures(answers: &Answers) -> Vec<Picture> {
+/// Returns the pictures of each design, the one that ranks first before the others; their files are numbered from the second design
+/// on.
+fn of_designs(answers: &Answers) -> impl Iterator<Item = (String, String, String)> {
+    let designs = answers.designs().into_iter().enumerate();
+    designs.flat_map(move |(place, design)| {
+        let all = [indices, tornado, main_effects].map(|draw| draw(answers, design));
+        all.into_iter().flatten().map(move |(file, caption, svg)| {
+            let file = match place {
+                0 => file.to_owned(),
+                _ => file.replace(".svg", &format!("_{}.svg", place + 1)),
+            };
+            (file, caption, svg)
+        })
+    })
+}
+
+fn pictures(answers: &Answers) -> Vec<(String, String, String)> {
     // The front is the answer of a search for it, and one more picture of other studies.
     let of_front = |is_searched| {
         let own = answers.front.as_ref();
         own.filter(|own| own.is_searched == is_searched)
             .and_then(front)
     };
-    let all = [
+    let first = [
         answers
             .ranking
             .as_ref()
@@ -91,16 +127,19 @@ fn pictures(answers: &Answers) -> Vec<Picture> {
         answers.best.as_ref().and_then(progress),
         answers.robust.as_ref().map(robust),
         of_front(true),
-        indices(answers),
         elementary(answers),
-        tornado(answers),
+    ];
+    let last = [
         distributions(answers),
-        main_effects(answers),
         scatter(answers),
         emulators(answers),
         of_front(false),
     ];
-    all.into_iter().flatten().collect()
+    let [first, last] = [first.to_vec(), last.to_vec()].map(|some| {
+        let some = some.into_iter().flatten();
+        some.map(|(file, caption, svg)| (file.to_owned(), caption, svg))
+    });
+    first.chain(of_designs(answers)).chain(last).collect()
 }
 
 /// Powers in units as they are printed.
@@ -167,22 +206,20 @@ fn robust(robust: &Robust) -> Picture {
     ("robust.svg", caption, svg)
 }
 
-fn indices(answers: &Answers) -> Option<Picture> {
-    let all = answers.largest_indices();
-    if all.is_empty() {
-        return None;
-    }
+fn indices(answers: &Answers, design: Option<&str>) -> Option<Picture> {
+    let all = answers.largest_indices(design).into_iter().next()?;
     let title = format!(
         "Total Sobol index: part of the variance of {}",
-        answers.output_of_indices()
+        all.first()?.title()
     );
     let most = all.into_iter().take(MAX_INPUTS).map(|index| Bar {
         name: answers.name_of(&index.input).to_owned(),
         span: [0.0, index.total],
         interval: Some(index.total_interval),
-        is_grey: false,
+        is_grey: index.total_interval[0] <= 0.0,
     });
-    let caption = "The part of the variance that would remain if all other inputs were known, with 95 % intervals.";
+    let caption = "The part of the variance that would remain if all other inputs were known, with 95 % intervals; bars whose interval \
+                   contains 0 are grey.";
     let svg = bars_svg(&title, "", None, &most.collect::<Vec<_>>());
     Some(("indices.svg", caption.to_owned(), svg))
 }
@@ -206,9 +243,9 @@ fn elementary(answers: &Answers) -> Option<Picture> {
     Some(("morris.svg", caption.to_owned(), svg))
 }
 
-fn tornado(answers: &Answers) -> Option<Picture> {
-    let spread = answers.spreads.first()?;
-    let mut effects = answers.main_effects_on(spread.output);
+fn tornado(answers: &Answers, design: Option<&str>) -> Option<Picture> {
+    let spread = answers.first_spread(design)?;
+    let mut effects = answers.main_effects_on(spread.output, design);
     effects.truncate(MAX_INPUTS);
     let all = effects.iter().map(|effect| {
         let [low, _] = extent(effect.means.iter().map(|mean| mean.1));
@@ -225,9 +262,9 @@ fn tornado(answers: &Answers) -> Option<Picture> {
     if all.is_empty() || all.iter().any(|bar| !bar.span[0].is_finite()) {
         return None;
     }
-    let title = format!("Effects on {}", spread.title);
+    let title = format!("Effects on {}", spread.name());
     let mut caption = "The range of the means over a tenth of each input's values, or at each of its levels; the line is \
-                       the mean of all tests."
+                       the mean of the bars."
         .to_owned();
     let by_chance = effects.iter().filter_map(|effect| effect.span_by_chance);
     if let Some(most) = by_chance.reduce(f64::max) {
@@ -236,9 +273,7 @@ fn tornado(answers: &Answers) -> Option<Picture> {
             " An inactive input would span up to {most} {unit} by chance; bars within their chance are grey."
         );
     }
-    let own = answers.spreads.iter();
-    let own = own.filter(|one| one.output == spread.output);
-    let means: Vec<f64> = own.map(|one| one.mean).collect();
+    let means: Vec<f64> = effects.iter().map(|effect| effect.mean).collect();
     let svg = bars_svg(&title, &superscript(spread.unit), Some(mean(&means)), &all);
     Some(("tornado.svg", caption, svg))
 }
@@ -270,9 +305,9 @@ fn distributions(answers: &Answers) -> Option<Picture> {
     Some(("distributions.svg", caption.to_owned(), svg))
 }
 
-fn main_effects(answers: &Answers) -> Option<Picture> {
-    let spread = answers.spreads.first()?;
-    let effects = answers.main_effects_on(spread.output);
+fn main_effects(answers: &Answers, design: Option<&str>) -> Option<Picture> {
+    let spread = answers.first_spread(design)?;
+    let effects = answers.main_effects_on(spread.output, design);
     let is_emulated = effects.iter().any(|effect| effect.is_emulated);
     let all: Vec<Plot> = effects
         .into_iter()
@@ -289,32 +324,38 @@ fn main_effects(answers: &Answers) -> Option<Picture> {
     };
     let caption = format!(
         "Mean of {of}{} over each input, in slices of a tenth of its values or at each level.",
-        spread.title
+        spread.name()
     );
     if all.is_empty() {
         return None;
     }
-    let svg = plots_svg("Main effects", &all, 4, &["", "", "mean"]);
+    let title = of_design("Main effects", design);
+    let svg = plots_svg(&title, &all, 4, &["", "", "mean"]);
     Some(("main_effects.svg", caption, svg))
 }
 
 fn scatter(answers: &Answers) -> Option<Picture> {
     let first = answers.spreads.first()?;
-    let columns = answers.effects_on(first.output);
+    let columns = answers.effects_on(first.output, answers.designs()[0]);
     let columns = &columns[..columns.len().min(MAX_COLUMNS)];
     let mut all = Vec::new();
-    // One of each output: the effects are those of all designs.
     let outputs = answers
         .spreads
         .chunk_by(|one, next| one.output == next.output);
-    for spread in outputs.map(|designs| &designs[0]) {
+    for designs in outputs {
         for column in columns {
-            let mut effects = answers.effects.iter();
-            let own = effects.find(|one| one.output == spread.output && one.input == column.input);
-            all.extend(own.map(|effect| Plot {
-                clouds: effect.points.clone(),
-                ..plot(spread, effect)
-            }));
+            let points = designs.iter().map(|spread| {
+                let mut own = answers
+                    .effects
+                    .iter()
+                    .filter(|one| one.output == spread.output);
+                let own = own.find(|one| one.input == column.input && one.design == spread.design);
+                own.map(|effect| effect.points.clone()).unwrap_or_default()
+            });
+            all.push(Plot {
+                clouds: points.collect(),
+                ..plot(&designs[0], column)
+            });
         }
     }
     if all.is_empty() {

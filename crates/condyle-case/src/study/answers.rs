@@ -15,6 +15,8 @@ pub struct Answers {
     pub rank_by: &'static Scalar,
     /// Two outputs to be minimised together.
     pub pareto: Option<[&'static Scalar; 2]>,
+    /// True if the study names these two.
+    pub names_pareto: bool,
     /// The limits of outputs.
     pub bounds: Vec<Bound>,
 }
@@ -28,7 +30,7 @@ pub struct Bound {
     pub least: Option<f64>,
     /// The largest value allowed.
     pub most: Option<f64>,
-    /// The probability under the disturbances with which a robust search keeps it.
+    /// The probability under the disturbances with which a robust search keeps it, and an alternative must to rank first.
     pub probability: f64,
 }
 
@@ -50,6 +52,7 @@ impl Answers {
         let pareto: Option<Option<Vec<_>>> = keys
             .pareto
             .map(|two| two.0.iter().map(|name| output("pareto", name)).collect());
+        let names_pareto = pareto.is_some();
         let mut outputs = outputs?;
         let Some(&first) = outputs.first() else {
             let advice = "name one, such as `mass_loss_mg`, or omit the key";
@@ -67,6 +70,7 @@ impl Answers {
         Some(Self {
             rank_by: rank_by.unwrap_or(Some(first))?,
             pareto: two.first_chunk().copied(),
+            names_pareto,
             bounds,
             outputs,
         })

@@ -93,6 +93,7 @@ impl Study {
                 rank_by: outputs[0],
                 outputs,
                 pareto: None,
+                names_pareto: false,
                 bounds: Vec::new(),
             },
             rows: Vec::new(),
@@ -202,6 +203,43 @@ impl Study {
         files
     }
 
+    /// Returns what is tested, each with its keys as a study file has them: the case, the choice of the tests, the designs and the
+    /// inputs, and the formulas of outputs.
+    pub fn described(&self) -> Vec<(String, String)> {
+        let case = self.case_path.file_name().unwrap_or_default();
+        let rows = [
+            ("case".to_owned(), case.to_string_lossy().into_owned()),
+            ("tests".to_owned(), keys(|out| self.design.write(out))),
+        ];
+        let designs = self.alternatives.iter().map(|design| {
+            let set: Vec<String> = design.set.iter().map(Assignment::to_string).collect();
+            let set = if set.is_empty() {
+                "as the case".to_owned()
+            } else {
+                set.join(", ")
+            };
+            (format!("design {}", design.name), set)
+        });
+        let inputs = self.inputs.iter().map(|input| {
+            let disturbance = if input.is_disturbance {
+                ", disturbance"
+            } else {
+                ""
+            };
+            (
+                input.key.clone(),
+                keys(|out| input.variation.write(out)) + disturbance,
+            )
+        });
+        let formulas = self.outputs.formulas();
+        let formulas = formulas.map(|(key, formula)| (format!("output {key}"), formula.to_owned()));
+        rows.into_iter()
+            .chain(designs)
+            .chain(inputs)
+            .chain(formulas)
+            .collect()
+    }
+
     fn in_words(&self) -> String {
         let mut out = Writer::default();
         for input in &self.inputs {
@@ -254,6 +292,18 @@ impl Study {
         }
         out.into_text()
     }
+}
+
+/// Returns the keys that are written, without their comments.
+fn keys(write: impl FnOnce(&mut Writer)) -> String {
+    let mut out = Writer::default();
+    write(&mut out);
+    let text = out.into_text();
+    let lines = text
+        .lines()
+        .map(|line| line.split(" # ").next().unwrap_or(line).trim());
+    let lines = lines.filter(|line| !line.is_empty() && !line.starts_with('#'));
+    lines.collect::<Vec<_>>().join(", ")
 }
 
 /// The aim of an adaptive study: to know an output, or the probability that it is beyond a limit.

@@ -191,7 +191,7 @@ settings! {
         least: Option<f64> = None;
         /// The largest value allowed.
         most: Option<f64> = None;
-        /// Probability under the disturbances with which a robust search keeps the limit.
+        /// Probability under the disturbances with which a robust search keeps the limit, and an alternative must to rank first.
         probability: f64 = 0.95, in within(0.5, 0.99);
     }
 
@@ -201,7 +201,7 @@ settings! {
         outputs: Names = Names(["mass_loss_mg", "max_depth_mm", "peak_pressure_mpa"].map(str::to_owned).to_vec());
         /// The output that designs are ranked by, smaller is better; the first of `outputs` if not given.
         rank_by: Option<String> = None;
-        /// Two outputs to be minimised together; the first two of `outputs` if not given.
+        /// Two outputs to be minimised together, for a picture of their Pareto front; a search takes the first two of `outputs` if not given.
         pareto: Option<Names> = None;
     }
 }

@@ -245,7 +245,7 @@ fn sheets(runs: &[Run]) -> Vec<Sheet> {
     ] {
         if !panels.is_empty() {
             let svg = sheet(title, caption, &panels, columns, &key);
-            sheets.push((name, caption.to_owned(), svg));
+            sheets.push((name.to_owned(), caption.to_owned(), svg));
         }
     }
     sheets.extend(MAPS.iter().filter_map(|field| {
@@ -254,7 +254,7 @@ fn sheets(runs: &[Run]) -> Vec<Sheet> {
              each from the first, in colours of its own.",
             field.style.title
         );
-        Some((field.style.id, caption, map_rows(runs, field)?))
+        Some((field.style.id.to_owned(), caption, map_rows(runs, field)?))
     }));
     sheets
 }

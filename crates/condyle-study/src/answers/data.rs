@@ -60,6 +60,13 @@ impl<'a> Data<'a> {
         })
     }
 
+    /// Returns the values of an output of the study's answers.
+    pub fn of(&self, output: &Scalar) -> &[f64] {
+        let mut outputs = self.outputs.iter();
+        let own = outputs.find(|(one, _)| one.key == output.key);
+        own.map_or(&[], |(_, values)| values)
+    }
+
     /// Returns the plausibility checks that a test does not pass; none if it is sound.
     pub fn doubts(&self, test: usize) -> Option<&String> {
         let place = self.doubts.values[test];
@@ -202,7 +209,7 @@ impl Beyond {
 pub(crate) fn is_sampled(plan: &Plan, point: usize) -> bool {
     let study = plan.study();
     match &study.design {
-        Design::LatinHypercube(_) | Design::Sobol(_) | Design::Rows(_) => true,
+        Design::LatinHypercube(_) | Design::Sobol(_) => true,
         Design::Saltelli(_) => {
             let (_, test) = Saltelli::of(point as u64, study.inputs.len());
             !matches!(test, Saltelli::Changed(_))
@@ -210,6 +217,7 @@ pub(crate) fn is_sampled(plan: &Plan, point: usize) -> bool {
         Design::Morris(_)
         | Design::FullFactorial(_)
         | Design::OneAtATime(_)
+        | Design::Rows(_)
         | Design::Optimise(_)
         | Design::Adaptive(_) => false,
     }

@@ -1,9 +1,8 @@
 //! The effects of inputs on outputs.
 
-use std::ops::Range;
-
 use condyle_case::study::{Design, Input, Variation};
 use condyle_lab::measured::student;
+use condyle_results::catalogue::Scalar;
 use serde::Serialize;
 
 use crate::{
@@ -24,79 +23,101 @@ const SEED: u64 = 19_540_601;
 /// Points of a scatter plot: more would fill the picture and its file.
 const MAX_POINTS: usize = 400;
 
-/// The effect of an input on an output, in any design.
+/// The effect of an input on an output.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub(crate) struct Effect {
     pub output: &'static str,
+    /// The name of the design, if the study compares designs: their effects may have opposite signs.
+    pub design: Option<String>,
     pub input: String,
     pub name: String,
-    /// Spearman's; none for words.
+    /// Spearman's; none for words, and for tests that were chosen by those before them.
     pub rank_correlation: Option<f64>,
     /// Mean value of the input in each slice or at each level, and mean of the output there.
     pub means: Vec<(f64, f64)>,
     /// The levels, where they are words.
     pub words: Vec<String>,
+    /// Mean of the output over all of them.
+    pub mean: f64,
     /// Largest less smallest mean of the output, in its unit.
     pub span: f64,
-    /// The 95th percentile of the span of an inactive input; none if the tests are not a random sample, or the means are
-    /// those of an emulator.
+    /// The 95th percentile of the span of an inactive input, or the span that may be an error of the emulator; none if the tests are
+    /// not a random sample.
     pub span_by_chance: Option<f64>,
     /// True if the means are those of the predictions of an emulator.
     pub is_emulated: bool,
-    /// Values of the input and the output in a subset of the tests of each design, for a picture.
+    /// Values of the input and the output in a subset of the tests, for a picture.
     #[serde(skip)]
-    pub points: Vec<Vec<(f64, f64)>>,
+    pub points: Vec<(f64, f64)>,
 }
 
-/// Returns the effects of every input on every output: from its emulators, of which the tests in a slice are only a noisy
-/// sample, where answers are computed from these.
+/// Returns the effects of every input on every output of each design: from its emulator, of which the tests in a slice are only a
+/// noisy sample, where answers are computed from it.
 pub(crate) fn effects(data: &Data<'_>, emulated: &[Emulated]) -> Vec<Effect> {
-    let inputs = data.plan.study().inputs.iter().zip(&data.inputs);
+    let count = designs(data.plan.study());
     let mut effects = Vec::new();
-    for (place, (input, column)) in inputs.enumerate() {
-        for (output, values) in &data.outputs {
-            let count = designs(data.plan.study());
-            let points = (0..count).map(|design| {
-                let own = pairs(data, place, values, design..design + 1);
-                let every = own.len().div_ceil((MAX_POINTS / count).max(1)).max(1);
-                own.into_iter().step_by(every).collect()
-            });
-            let points = points.collect();
-            let mut pairs = pairs(data, place, values, 0..count);
-            let correlation = rank_correlation(&pairs);
-            let predicted = predicted_pairs(emulated, output.key, count, place);
-            let is_emulated = predicted.is_some();
-            pairs = predicted.unwrap_or(pairs);
-            // Equal inputs are sorted by the output, so that sums do not depend on the order of the tests.
-            pairs.sort_by(|one, other| one.0.total_cmp(&other.0).then(one.1.total_cmp(&other.1)));
-            let slices = slices(&pairs);
-            let means: Vec<(f64, f64)> = slices.iter().map(|slice| means(slice)).collect();
-            if means.len() < 2 {
-                // All tests that are done have one value of it: the effect is not known, and is not zero.
-                continue;
-            }
-            let is_counted = data.is_sample() && !is_emulated;
-            effects.push(Effect {
-                output: output.key,
-                input: input.key.clone(),
-                name: input.name.clone(),
-                rank_correlation: correlation.filter(|_| column.words.is_empty()),
-                words: column.words.clone(),
-                span: span(means.iter().map(|mean| mean.1)),
-                span_by_chance: is_counted.then(|| span_by_chance(&slices)),
-                is_emulated,
-                points,
-                means,
-            });
+    for place in 0..data.inputs.len() {
+        for output in &data.outputs {
+            let own = (0..count).filter_map(|design| effect(data, emulated, place, output, design));
+            effects.extend(own);
         }
     }
     effects
 }
 
-/// Returns the values of an input and an output in each test that is done: of a Saltelli design in its independent
-/// points, and of several `designs` their mean at each point, since tests that depend on each other have less chance
-/// than as many independent ones. In a one-at-a-time design, tests that change another input do not count.
-fn pairs(data: &Data<'_>, place: usize, output: &[f64], designs: Range<usize>) -> Vec<(f64, f64)> {
+/// Returns the effect of the input at `place`; none if all tests that are done have one value of it: it is not known, and is not
+/// zero.
+fn effect(
+    data: &Data<'_>,
+    emulated: &[Emulated],
+    place: usize,
+    (output, values): &(&'static Scalar, Vec<f64>),
+    design: usize,
+) -> Option<Effect> {
+    let study = data.plan.study();
+    let (input, column) = (&study.inputs[place], &data.inputs[place]);
+    let name = study.alternatives.get(design).map(|one| one.name.clone());
+    let tested = pairs(data, place, values, design);
+    let own = emulated.iter();
+    let mut own = own.filter(|one| one.output == output.key && one.design == name);
+    let predicted = own.next().and_then(|one| one.main_effects.get(place));
+    // Equal inputs are sorted by the output, so that sums do not depend on the order of the tests.
+    let mut pairs = predicted.map_or(&tested, |own| &own.means).clone();
+    pairs.sort_by(|one, other| one.0.total_cmp(&other.0).then(one.1.total_cmp(&other.1)));
+    let slices = slices(&pairs);
+    let means: Vec<(f64, f64)> = slices.iter().map(|slice| means(slice)).collect();
+    if means.len() < 2 {
+        return None;
+    }
+    let span = span(means.iter().map(|mean| mean.1));
+    let span_by_chance = match predicted {
+        Some(own) => Some(own.error * span / deviation(&means)).filter(|one| one.is_finite()),
+        None => data.is_sample().then(|| span_by_chance(&slices)),
+    };
+    let correlation = rank_correlation(&tested);
+    let correlation = correlation.filter(|_| column.words.is_empty() && !data.plan.is_sequential());
+    let most = (MAX_POINTS / designs(study)).max(1);
+    let every = tested.len().div_ceil(most).max(1);
+    Some(Effect {
+        output: output.key,
+        design: name,
+        input: input.key.clone(),
+        name: input.name.clone(),
+        rank_correlation: correlation,
+        words: column.words.clone(),
+        mean: mean(&pairs.iter().map(|pair| pair.1).collect::<Vec<_>>()),
+        span,
+        span_by_chance,
+        is_emulated: predicted.is_some(),
+        means,
+        points: tested.into_iter().step_by(every).collect(),
+    })
+}
+
+/// Returns the values of an input and an output in each test of a design that is done: of a Saltelli design in its independent
+/// points, since tests that depend on each other have less chance than as many independent ones. In a one-at-a-time design,
+/// tests that change another input do not count.
+fn pairs(data: &Data<'_>, place: usize, output: &[f64], design: usize) -> Vec<(f64, f64)> {
     let is_one_at_a_time = matches!(data.plan.study().design, Design::OneAtATime(_));
     let counts = |row: usize| {
         !is_one_at_a_time
@@ -104,35 +125,11 @@ fn pairs(data: &Data<'_>, place: usize, output: &[f64], designs: Range<usize>) -
                 test.values[place].is_some() || test.values.iter().all(Option::is_none)
             })
     };
-    let tests = data.tests_of(0).filter(|test| counts(*test));
-    // One design that cannot be solved leaves no mean of all.
-    let pairs = tests.map(|test| {
-        (
-            data.inputs[place].values[test],
-            mean(&output[test + designs.start..test + designs.end]),
-        )
-    });
+    let tests = data.tests_of(design).filter(|test| counts(*test));
+    let pairs = tests.map(|test| (data.inputs[place].values[test], output[test]));
     pairs
         .filter(|(x, y)| x.is_finite() && y.is_finite())
         .collect()
-}
-
-/// Returns values of an input and the mean of the predictions at each, of several designs their mean; none unless answers are
-/// computed from the emulators of all designs.
-fn predicted_pairs(
-    emulated: &[Emulated],
-    output: &str,
-    designs: usize,
-    place: usize,
-) -> Option<Vec<(f64, f64)>> {
-    let own = emulated.iter().filter(|one| one.output == output);
-    let own: Option<Vec<&Vec<(f64, f64)>>> = own.map(|one| one.main_effects.get(place)).collect();
-    let own = own.filter(|own| own.len() == designs)?;
-    let at = |node: usize| {
-        let effects: Vec<f64> = own.iter().map(|effect| effect[node].1).collect();
-        (own[0][node].0, mean(&effects))
-    };
-    Some((0..own[0].len()).map(at).collect())
 }
 
 /// Returns the pairs at each value if there are few, otherwise in slices; `sorted` by the input.
@@ -148,6 +145,13 @@ fn slices(sorted: &[(f64, f64)]) -> Vec<&[(f64, f64)]> {
 fn means(slice: &[(f64, f64)]) -> (f64, f64) {
     let (x, y): (Vec<f64>, Vec<f64>) = slice.iter().copied().unzip();
     (mean(&x), mean(&y))
+}
+
+/// Returns the standard deviation of the means of slices, which are equally likely.
+fn deviation(means: &[(f64, f64)]) -> f64 {
+    let own: Vec<f64> = means.iter().map(|mean| mean.1).collect();
+    let count = own.len() as f64;
+    standard_deviation(&own) * ((count - 1.0) / count).sqrt()
 }
 
 /// Returns the largest less smallest value; 0 for none.
@@ -413,7 +417,7 @@ mod tests {
     }
 
     #[test]
-    fn designs_that_differ_hide_no_effect_of_an_input() {
+    fn verify_designs_with_opposite_effects_hide_none() {
         let design = "[design]\nsize = 400\n[[alternative]]\nname = \"a\"\nset = [\"insert.edge_mm=2\"]\n\
                       [[alternative]]\nname = \"b\"\nset = [\"insert.edge_mm=3\"]";
         let plan = plan(design);
@@ -421,11 +425,22 @@ mod tests {
             let mut numbers = Random::stream(5, row / 2);
             (0..KEYS.len()).map(|_| numbers.share()).collect()
         };
-        let of = |row, shares: &[f64]| shares[0] + 10.0 * (row % 2) as f64;
+        // The second design has the opposite effect: the mean of both would have none.
+        let of = |row, shares: &[f64]| match row % 2 {
+            0 => shares[0],
+            _ => 10.0 - shares[0],
+        };
         let found = effects(&data(&plan, &shares, &of), &[]);
-        assert!(found[0].span > 2.0 * found[0].span_by_chance.unwrap());
-        assert!(beyond_chance(&found[1..]) <= 2);
-        assert_eq!(found[0].points.iter().map(Vec::len).sum::<usize>(), 400);
+        for (effect, name) in found.iter().zip(["a", "b"]) {
+            assert_eq!(
+                (effect.design.as_deref(), effect.points.len()),
+                (Some(name), 200)
+            );
+            assert!(effect.span > 2.0 * effect.span_by_chance.unwrap());
+        }
+        let correlations = [0, 1].map(|design| found[design].rank_correlation.unwrap());
+        assert!(correlations[0] > 0.999 && correlations[1] < -0.999);
+        assert!(beyond_chance(&found[2..]) <= 2);
     }
 
     /// A tenth of 60 tests differs by chance by more than half of the effect of the second input.
@@ -447,8 +462,12 @@ mod tests {
         let data = data(&plan, &values, &of);
         let found = effects(&data, &emulated(&data).0);
         // Over the means of tenths, of both designs, of which the second has twice the effects.
-        for (effect, exact) in found.iter().zip([4.05, 0.675, 0.0, 0.0]) {
-            assert!(effect.is_emulated && effect.span_by_chance.is_none());
+        for (effect, exact) in found.iter().zip([2.7, 5.4, 0.45, 0.9, 0.0, 0.0]) {
+            let by_chance = effect.span_by_chance.unwrap();
+            assert!(effect.is_emulated && (effect.span > by_chance) == (exact > 0.0));
+            // The line of the picture is within each bar.
+            let [low, high] = extent(effect.means.iter().map(|mean| mean.1));
+            assert!(low <= effect.mean && effect.mean <= high);
             assert!(
                 (effect.span - exact).abs() < 0.05,
                 "{}: {}",

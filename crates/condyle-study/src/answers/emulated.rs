@@ -56,9 +56,19 @@ pub(crate) struct Emulated {
     /// For each input, its values and the mean of the predictions at each over the distributions of all others; none if the
     /// emulator is not used, or the inputs are correlated.
     #[serde(skip)]
-    pub main_effects: Vec<Vec<(f64, f64)>>,
+    pub main_effects: Vec<MainEffect>,
     #[serde(skip)]
     pub exported: Exported,
+}
+
+/// The mean of an emulator's predictions over an input.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct MainEffect {
+    /// Values of the input, each equally likely, and the mean at each.
+    pub means: Vec<(f64, f64)>,
+    /// Largest standard deviation of these means that may be an error of the emulator: that of a first index as large as half of
+    /// its interval.
+    pub error: f64,
 }
 
 /// An emulator as written to a file: coordinates of its points range from 0 at the low end of an
@@ -257,21 +267,31 @@ fn of_output(
     axes: &[Axis<'_>],
     emulator: &Emulator,
     emulated: &Emulated,
-) -> (Vec<Indices>, Vec<Vec<(f64, f64)>>) {
+) -> (Vec<Indices>, Vec<MainEffect>) {
     let share = |node: usize| (node as f64 + 0.5) / NODES as f64;
     let nodes = |axis: &Axis<'_>| (0..NODES).map(|node| axis.at_share(share(node))).collect();
     let nodes: Vec<Vec<f64>> = axes.iter().map(nodes).collect();
     let (all, effects) = emulator.indices(&nodes);
-    let effects = axes.iter().zip(effects).map(|(axis, effect)| {
-        let values = (0..NODES).map(|node| number_at_share(axis.input, share(node)));
-        values.zip(effect).collect()
-    });
     let groups = (0..GROUPS).filter_map(|group| emulator.without(|test| test % GROUPS == group));
     let without: Vec<Vec<[f64; 2]>> = groups.map(|one| one.indices(&nodes).0).collect();
+    let half_interval = |place: usize, kind: usize| {
+        let own: Vec<f64> = without.iter().map(|one| one[place][kind]).collect();
+        NORMAL_95 * jackknife_error(&own) + (1.0 - emulated.q2)
+    };
+    let deviation = emulated.distribution.as_ref();
+    let deviation = deviation.map_or(0.0, |own| own.standard_deviation);
+    let effects = axes.iter().zip(effects).enumerate();
+    let effects = effects.map(|(place, (axis, effect))| {
+        let values = (0..NODES).map(|node| number_at_share(axis.input, share(node)));
+        MainEffect {
+            means: values.zip(effect).collect(),
+            error: half_interval(place, 0).sqrt() * deviation,
+        }
+    });
+    let effects = effects.collect();
     let index = |(place, axis): (usize, &Axis<'_>)| {
         let interval = |kind: usize| {
-            let own: Vec<f64> = without.iter().map(|one| one[place][kind]).collect();
-            let half = NORMAL_95 * jackknife_error(&own) + (1.0 - emulated.q2);
+            let half = half_interval(place, kind);
             [-half, half].map(|by| (all[place][kind] + by).clamp(0.0, 1.0))
         };
         Indices {
@@ -287,7 +307,7 @@ fn of_output(
         }
     };
     let indices = axes.iter().enumerate().map(index).collect();
-    (indices, effects.collect())
+    (indices, effects)
 }
 
 fn jackknife_error(without: &[f64]) -> f64 {

@@ -4,7 +4,10 @@ use condyle_case::study::Design;
 use serde::Serialize;
 
 use crate::{
-    answers::data::Data,
+    answers::{
+        data::{Data, of_design},
+        words::label,
+    },
     random::Random,
     statistics::{central_interval, mean},
 };
@@ -33,6 +36,11 @@ pub(crate) struct Indices {
 }
 
 impl Indices {
+    /// Returns the output in words, with the design if there are several.
+    pub fn title(&self) -> String {
+        of_design(&label(self.output), self.design.as_deref())
+    }
+
     /// Returns the first index in words. It cannot exceed the total one, except by the scatter of both.
     pub fn first_in_words(&self) -> String {
         in_words(self.first, self.first_interval, self.total)
@@ -42,6 +50,21 @@ impl Indices {
     pub fn total_in_words(&self) -> String {
         in_words(self.total, self.total_interval, 1.0)
     }
+}
+
+/// Returns those of the indices whose first index is positive, and the sum of these with the ends of its 95 % interval, from their
+/// intervals as if they were independent.
+pub(crate) fn sum_of_first<'a>(all: &[&'a Indices]) -> (Vec<&'a Indices>, [f64; 3]) {
+    let positive: Vec<&Indices> = all.iter().copied().filter(|one| one.first > 0.0).collect();
+    let sum: f64 = positive.iter().map(|one| one.first).sum();
+    let half = |end: usize| {
+        let halves = positive
+            .iter()
+            .map(|one| one.first_interval[end] - one.first);
+        halves.map(|half| half * half).sum::<f64>().sqrt()
+    };
+    let ends = [sum, sum - half(0), sum + half(1)];
+    (positive, ends)
 }
 
 fn in_words(index: f64, [low, _]: [f64; 2], most: f64) -> String {
@@ -194,6 +217,29 @@ mod tests {
                 "{found:?} {total}"
             );
         }
+    }
+
+    #[test]
+    fn verify_the_sum_of_two_indices_has_an_interval_and_no_negative_part() {
+        let index = |first, first_interval| Indices {
+            output: "mass_loss_mg",
+            design: None,
+            input: "x".to_owned(),
+            first,
+            first_interval,
+            total: first,
+            total_interval: first_interval,
+            bases: 32,
+        };
+        // Bootstrap samples of both together give 0.57 to 1.43.
+        let both = [index(0.833, [0.474, 1.213]), index(0.174, [-0.036, 0.384])];
+        let (_, ends) = sum_of_first(&both.each_ref());
+        for (end, exact) in ends.into_iter().zip([1.007, 0.5911, 1.4412]) {
+            assert!((end - exact).abs() < 1e-4, "{ends:?}");
+        }
+        let negative = [index(0.808, [0.251, 1.523]), index(-0.072, [-0.565, 0.269])];
+        let (named, ends) = sum_of_first(&negative.each_ref());
+        assert_eq!((named.len(), ends[0]), (1, 0.808));
     }
 
     #[test]

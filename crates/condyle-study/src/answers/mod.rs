@@ -22,9 +22,9 @@ use crate::{
         effects::{Effect, Elementary},
         emulated::{Emulated, emulated},
         indices::Indices,
-        ranking::{Best, Front, RankedDesign, Ranking},
+        ranking::{Best, Front, Lead, RankedDesign, Ranking},
         robust::Robust,
-        words::{chance, label, labelled, percent, percents, shown, with_interval},
+        words::{chance_in_words, label, labelled, percent, percents, shown, with_interval},
     },
     error::StudyError,
     plan::Plan,
@@ -137,17 +137,31 @@ impl Answers {
         })
     }
 
-    /// Effects of inputs on an output, the largest first.
-    pub(crate) fn effects_on(&self, output: &str) -> Vec<&Effect> {
-        let own = self.effects.iter().filter(|one| one.output == output);
-        largest_first(own, |one| one.span)
+    /// Returns the names of the designs that are compared, the one that ranks first before the others; a single one without a name
+    /// in other studies.
+    pub(crate) fn designs(&self) -> Vec<Option<&str>> {
+        let designs = self.ranking.iter().flat_map(|ranking| &ranking.designs);
+        let names: Vec<_> = designs.map(|design| Some(design.name.as_str())).collect();
+        if names.is_empty() { vec![None] } else { names }
     }
 
-    /// Effects of inputs on an output that are means over an input, the largest first; none where tests were chosen by those
-    /// before them, unless the means are those of an emulator.
-    pub(crate) fn main_effects_on(&self, output: &str) -> Vec<&Effect> {
+    /// Returns the distribution of the first output of a design.
+    pub(crate) fn first_spread(&self, design: Option<&str>) -> Option<&Spread> {
+        let mut spreads = self.spreads.iter();
+        spreads.find(|one| one.design.as_deref() == design)
+    }
+
+    /// Effects of inputs on an output of a design, the largest first.
+    pub(crate) fn effects_on(&self, output: &str, design: Option<&str>) -> Vec<&Effect> {
+        let is_own = |one: &&Effect| one.output == output && one.design.as_deref() == design;
+        largest_first(self.effects.iter().filter(is_own), |one| one.span)
+    }
+
+    /// Effects of inputs on an output of a design that are means over an input, the largest first; none where tests were chosen by
+    /// those before them, unless the means are those of an emulator.
+    pub(crate) fn main_effects_on(&self, output: &str, design: Option<&str>) -> Vec<&Effect> {
         let is_sequential = ["optimise", "adaptive"].contains(&self.design);
-        let mut own = self.effects_on(output);
+        let mut own = self.effects_on(output, design);
         own.retain(|effect| effect.is_emulated || !is_sequential);
         own
     }
@@ -161,19 +175,33 @@ impl Answers {
         })
     }
 
-    /// Sobol indices of the first output and the first design, the largest total first.
-    pub(crate) fn largest_indices(&self) -> Vec<&Indices> {
-        let kind = |one: &Indices| (one.output, one.design.clone());
-        let first = self.indices.first().map(kind);
+    /// Sobol indices of a design: those of its first output, the largest total first, then those of each output with a limit in
+    /// the same order.
+    pub(crate) fn largest_indices(&self, design: Option<&str>) -> Vec<Vec<&Indices>> {
         let own = self.indices.iter();
-        largest_first(own.filter(|one| Some(kind(one)) == first), |one| one.total)
-    }
-
-    /// Returns the output of [`Self::largest_indices`] in words, with the design if there are several.
-    pub(crate) fn output_of_indices(&self) -> String {
-        self.indices.first().map_or_else(String::new, |one| {
-            of_design(&label(one.output), one.design.as_deref())
-        })
+        let own: Vec<&Indices> = own.filter(|one| one.design.as_deref() == design).collect();
+        let mut outputs = own.chunk_by(|one, other| one.output == other.output);
+        let Some(first) = outputs.next() else {
+            return Vec::new();
+        };
+        let first = largest_first(first.iter().copied(), |one| one.total);
+        let has_limit = |output: &str| {
+            let mut spreads = self.spreads.iter();
+            spreads.any(|one| one.output == output && !one.beyond.is_empty())
+        };
+        let limited = outputs.filter(|indices| has_limit(indices[0].output));
+        let in_order = |indices: &[&'_ Indices]| {
+            let of = |one: &&Indices| indices.iter().position(|other| other.input == one.input);
+            first.iter().filter_map(of).collect::<Vec<_>>()
+        };
+        let limited = limited.map(|indices| {
+            in_order(indices)
+                .into_iter()
+                .map(|place| indices[place])
+                .collect()
+        });
+        let limited: Vec<Vec<&Indices>> = limited.collect();
+        std::iter::once(first).chain(limited).collect()
     }
 
     /// Returns the number of doubtful tests and that of each doubt, the most frequent first, in a sentence; none if all are sound.
@@ -220,10 +248,12 @@ impl Answers {
             let indices = self.sentence_of_indices().unwrap_or_default();
             Some(format!("{aim} {indices}").trim().to_owned())
         };
-        of_aim()
-            .or_else(of_optimum)
-            .or_else(of_designs)
-            .or_else(|| self.sentence_of_indices())
+        let of_tests = || {
+            let both = [of_designs(), self.sentence_of_indices()];
+            let both: Vec<String> = both.into_iter().flatten().collect();
+            (!both.is_empty()).then(|| both.join(" "))
+        };
+        of_aim().or_else(of_optimum).or_else(of_tests)
     }
 
     /// Returns the doubts about the optimum, or about a front and its knee, in sentences; empty if they are sound.
@@ -247,25 +277,29 @@ impl Answers {
     }
 
     fn sentence_of_indices(&self) -> Option<String> {
-        let all = self.largest_indices();
-        let [one, other, ..] = all.as_slice() else {
-            return None;
-        };
-        let (both, output) = (one.first + other.first, self.output_of_indices());
+        let all = self.largest_indices(self.designs()[0]);
+        let two = all.first()?.get(..2)?;
+        let (named, [sum, low, high]) = indices::sum_of_first(two);
+        let (first, output) = (named.first()?, two[0].title());
         // Only an excess that the scatter of both does not explain.
-        if one.first_interval[0] + other.first_interval[0] > 1.0 {
+        if low > 1.0 {
             return Some(format!(
                 "The {} {} are too few for indices of {output}: those of two inputs add up to {}.",
-                one.bases,
+                first.bases,
                 self.kind_of_tests(),
-                percent(both)
+                percent(sum)
             ));
         }
-        let both = percent(both.min(1.0));
-        let [one, other] = [one, other].map(|index| title_of_path(self.name_of(&index.input)).0);
+        let title = |index: &Indices| title_of_path(self.name_of(&index.input)).0;
+        let explain = match named.get(1) {
+            Some(other) => format!("and {} explain", within_sentence(&title(other))),
+            None => "explains".to_owned(),
+        };
+        let [sum, low, high] = [sum, low, high].map(|share| share.clamp(0.0, 1.0));
+        let share = with_interval(sum, [low, high]);
         Some(format!(
-            "{one} and {} explain {both} of the variance of {output}.",
-            within_sentence(&other)
+            "{} {explain} {share} of the variance of {output}.",
+            title(first)
         ))
     }
 
@@ -302,7 +336,8 @@ impl Answers {
 
     /// Tables in Markdown, short enough for a terminal.
     pub fn markdown(&self) -> String {
-        let tables = self.tables();
+        let designs = self.designs();
+        let tables = self.tables(&designs[..1]);
         let mut parts: Vec<String> = tables.iter().map(|(_, rows)| aligned(rows)).collect();
         if let Some(first) = self.failed.first() {
             let (failed, kept, own) = (self.failed_tests(), self.kept, first.tests);
@@ -311,6 +346,9 @@ impl Answers {
                 format!("{failed} of {kept} tests failed, {own} of them because of: {reason}\n");
             parts.insert(1, failed);
         }
+        if designs.len() > 1 {
+            parts.push("Indices and effects of the other designs are on the page.\n".to_owned());
+        }
         parts.extend(self.doubts());
         parts.extend(Some(self.doubts_of_optimum() + "\n").filter(|one| one != "\n"));
         parts.extend(self.end_of_search());
@@ -318,8 +356,15 @@ impl Answers {
         parts.join("\n")
     }
 
-    /// Tables with their headings; the first row of each is its head.
-    pub(crate) fn tables(&self) -> Vec<(String, Vec<Vec<String>>)> {
+    /// Tables with their headings, those of indices and effects for each of `designs`; the first row of each is its head.
+    pub(crate) fn tables(&self, designs: &[Option<&str>]) -> Vec<(String, Vec<Vec<String>>)> {
+        let of_designs = designs.iter().flat_map(|design| {
+            [
+                ("Sobol indices", self.table_of_indices(*design)),
+                ("Effects of inputs", self.table_of_effects(*design)),
+            ]
+            .map(|(name, rows)| (of_design(name, *design), rows))
+        });
         let tables = [
             ("Best", self.table_of_best()),
             (
@@ -329,13 +374,13 @@ impl Answers {
             ("Pareto front", self.table_of_front()),
             ("Outputs", self.table_of_spreads()),
             ("Ranking", self.table_of_designs()),
+            ("Pairs of designs", self.table_of_beats()),
             ("Emulators", self.table_of_emulators()),
-            ("Sobol indices", self.table_of_indices()),
             ("Elementary effects of Morris", self.table_of_elementary()),
-            ("Effects of inputs", self.table_of_effects()),
         ];
-        let filled = tables.into_iter().filter(|(_, rows)| !rows.is_empty());
-        filled.map(|(name, rows)| (name.to_owned(), rows)).collect()
+        let tables = tables.map(|(name, rows)| (name.to_owned(), rows));
+        let all = tables.into_iter().chain(of_designs);
+        all.filter(|(_, rows)| !rows.is_empty()).collect()
     }
 
     fn table_of_spreads(&self) -> Vec<Vec<String>> {
@@ -413,39 +458,59 @@ impl Answers {
         counts.retain(|(_, count)| ranking.designs.iter().any(|design| count(design) > 0));
         let mut head = vec![design.as_str()];
         head.extend(counts.iter().map(|(name, _)| *name));
-        head.extend([&mean, "SD", "within limits", "best"]);
-        let mut rows = table(&head, &ranking.designs, |design| {
+        head.extend([&mean, "SD", "within limits", "best", "beats another"]);
+        table(&head, &ranking.designs, |design| {
             let counts = counts.iter();
             let counts = counts.map(|(_, count)| format!("{} of {}", count(design), design.tests));
             let numbers = [
                 shown(design.mean),
                 shown(design.standard_deviation),
-                with_interval(design.within_limits, design.within_limits_interval),
-                with_interval(design.best, design.best_interval),
+                ranking.share(design.within_limits, design.within_limits_interval),
+                ranking.share(design.best, design.best_interval),
+                percent(design.wins),
             ];
             let name = [design.name.clone()].into_iter();
             name.chain(counts).chain(numbers).collect()
-        });
-        for (place, other) in ranking.designs.iter().enumerate() {
-            rows[0].push(format!("beats {}", other.name));
-            for (own, design) in ranking.designs.iter().enumerate() {
-                let share = (own != place)
-                    .then(|| with_interval(design.beats[place], design.beats_intervals[place]));
-                rows[own + 1].push(share.unwrap_or_else(|| "-".to_owned()));
-            }
-        }
-        rows
+        })
+    }
+
+    /// Returns how often each design beats each other one.
+    fn table_of_beats(&self) -> Vec<Vec<String>> {
+        let Some(ranking) = &self.ranking else {
+            return Vec::new();
+        };
+        let names = ranking.designs.iter().map(|design| design.name.as_str());
+        let head: Vec<&str> = std::iter::once("design, how often it beats")
+            .chain(names)
+            .collect();
+        table(&head, &ranking.designs, |design| {
+            let shares = design.beats.iter().zip(&design.beats_intervals);
+            let shares = shares
+                .zip(&ranking.designs)
+                .map(
+                    |((share, interval), other)| match other.name == design.name {
+                        true => "-".to_owned(),
+                        false => ranking.share(*share, *interval),
+                    },
+                );
+            std::iter::once(design.name.clone()).chain(shares).collect()
+        })
     }
 
     fn table_of_emulators(&self) -> Vec<Vec<String>> {
         if self.emulated.is_empty() {
             return Vec::new();
         }
+        // The indices of a Saltelli design are those of its tests.
+        let used = match self.design {
+            "saltelli" => "used for limits",
+            _ => "used for indices and limits",
+        };
         let head = [
             "emulator of",
             "tests",
             "Q2",
-            "used for indices and limits",
+            used,
             "unit",
             "5 %",
             "median",
@@ -455,10 +520,8 @@ impl Answers {
             "beyond its limit",
         ];
         table(&head, &self.emulated, |one| {
-            let beyond = one.beyond.iter().map(|beyond| {
-                let [low, high] = beyond.interval.map(chance);
-                format!("{} ({low} to {high})", chance(beyond.probability))
-            });
+            let beyond = one.beyond.iter();
+            let beyond = beyond.map(|one| chance_in_words(one.probability, one.interval));
             let why_not = one.why_not_used();
             let used = why_not.map_or_else(|| "yes".to_owned(), |why| format!("no, {why}"));
             let numbers = one.distribution.as_ref().map(|own| {
@@ -487,20 +550,31 @@ impl Answers {
         }
     }
 
-    fn table_of_indices(&self) -> Vec<Vec<String>> {
+    fn table_of_indices(&self, design: Option<&str>) -> Vec<Vec<String>> {
         let range = |[low, high]: [f64; 2]| format!("{low:.3} to {high:.3}");
-        let all = self.largest_indices();
-        let counted = all.first().map_or(0, |one| one.bases);
-        let kind = self.kind_of_tests();
-        let input = format!("input, by {}, {counted} {kind}", self.output_of_indices());
-        table_of_most(&[&input, "first", "95 %", "total", "95 %"], &all, |index| {
-            vec![
+        let all = self.largest_indices(design);
+        let Some((first, limited)) = all.split_first() else {
+            return Vec::new();
+        };
+        let (counted, kind) = (first[0].bases, self.kind_of_tests());
+        let input = format!("input, by {}, {counted} {kind}", first[0].title());
+        let limited_heads = limited
+            .iter()
+            .map(|one| format!("{}: total", label(one[0].output)));
+        let limited_heads: Vec<String> = limited_heads.collect();
+        let mut head = vec![input.as_str(), "first", "95 %", "total", "95 %"];
+        head.extend(limited_heads.iter().flat_map(|one| [one.as_str(), "95 %"]));
+        let places: Vec<usize> = (0..first.len()).collect();
+        table_of_most(&head, &places.iter().collect::<Vec<_>>(), |place| {
+            let index = first[*place];
+            let mut row = vec![
                 self.name_of(&index.input).to_owned(),
                 index.first_in_words(),
                 range(index.first_interval),
-                index.total_in_words(),
-                range(index.total_interval),
-            ]
+            ];
+            let totals = std::iter::once(first).chain(limited).map(|one| one[*place]);
+            row.extend(totals.flat_map(|one| [one.total_in_words(), range(one.total_interval)]));
+            row
         })
     }
 
@@ -523,18 +597,19 @@ impl Answers {
         })
     }
 
-    /// Returns the table of effects, for designs without a specific table.
-    fn table_of_effects(&self) -> Vec<Vec<String>> {
+    /// Returns the table of effects in a design, for studies without a specific table.
+    fn table_of_effects(&self, design: Option<&str>) -> Vec<Vec<String>> {
         let is_counted = self.design == "saltelli";
         if is_counted || !self.elementary.is_empty() {
             return Vec::new();
         }
         let output = self.effects.first().map_or("", |one| one.output);
-        let all = self.main_effects_on(output);
+        let all = self.main_effects_on(output, design);
         let unit = split_unit(output).1.unwrap_or_default();
         let moves = format!("moves {} by, {unit}", label(output));
+        let input = of_design("input", design);
         let dash = || "-".to_owned();
-        let head = ["input", &moves, "by chance up to", "rank correlation"];
+        let head = [&input, &moves, "by chance up to", "rank correlation"];
         table_of_most(&head, &all, |effect| {
             let correlation = effect.rank_correlation.map(|one| format!("{one:+.2}"));
             vec![
@@ -673,13 +748,93 @@ fn sentence_of_designs(ranking: &Ranking) -> Option<String> {
         |one| one.failed,
     );
     let doubtful = listed("Doubtful tests", |one| one.doubtful);
-    let best = with_interval(first.best, first.best_interval);
-    let within = with_interval(first.within_limits, first.within_limits_interval);
-    let (name, title) = (&first.name, ranking.title);
-    Some(format!(
-        "{name} ranks first: it has the least {title} under {best} of the {compared} disturbances, and keeps every limit under \
-         {within}.{failed}{doubtful}"
-    ))
+    let answer = match first.keeps_limits {
+        true => sentence_of_first(ranking, first),
+        false => sentence_of_nearest(ranking, first),
+    };
+    let parts = match ranking.is_sample {
+        true => "",
+        false => " The disturbances are no random sample: the percentages are parts of them.",
+    };
+    Some(format!("{answer}{parts}{failed}{doubtful}"))
+}
+
+fn sentence_of_first(ranking: &Ranking, first: &RankedDesign) -> String {
+    let best = ranking.share(first.best, first.best_interval);
+    let within = ranking.share(first.within_limits, first.within_limits_interval);
+    let (name, title, compared) = (&first.name, ranking.title, ranking.disturbances);
+    let limits = match ranking.limits.len() {
+        1 => String::new(),
+        _ => format!(", and keeps every limit under {within}"),
+    };
+    let next = first.lead.as_ref().zip(ranking.designs.get(1));
+    let lead = next.map_or_else(String::new, |(lead, next)| {
+        in_words_of_lead(ranking, lead, next)
+    });
+    format!(
+        "{name} ranks first{lead}: it has the least {title} under {best} of the {compared} disturbances{limits}."
+    )
+}
+
+/// Returns how much less the output of the first design is than that of the next one.
+fn in_words_of_lead(ranking: &Ranking, lead: &Lead, next: &RankedDesign) -> String {
+    let Lead { mean, range } = lead;
+    let ([low, high], less) = match *mean >= 0.0 {
+        true => (*range, "less"),
+        false => (range.map(|end| -end), "more"),
+    };
+    let [low, high] = [low.min(high), low.max(high)].map(shown);
+    let (unit, title) = (ranking.unit, ranking.title);
+    let own = shown(next.mean - mean);
+    let (part, mean) = (percent(mean.abs() / next.mean.abs()), shown(mean.abs()));
+    let words = format!(
+        " with a {title} of {own} {unit}, {mean} {unit} ({part}) {less} than {} ({low} to {high} {unit} {less} under 95 % of the \
+         disturbances)",
+        next.name
+    );
+    words.replace(" )", ")").replace("  ", " ")
+}
+
+/// Returns that no design keeps the limits, which one comes nearest, and what is wrong with that of the least output.
+fn sentence_of_nearest(ranking: &Ranking, nearest: &RankedDesign) -> String {
+    let limits = &ranking.limits;
+    let probability = limits[0].probability;
+    let enough = match limits[..limits.len() - 1]
+        .iter()
+        .all(|one| one.probability == probability)
+    {
+        true => format!("{} of the disturbances", percent(probability)),
+        false => "the required part of the disturbances".to_owned(),
+    };
+    let keeps = if limits.len() == 1 {
+        "can be solved"
+    } else {
+        "keeps every limit"
+    };
+    let name = &nearest.name;
+    let within = ranking.share(nearest.within_limits, nearest.within_limits_interval);
+    let broken = |design: &RankedDesign| {
+        let kept = design.kept.iter().zip(limits);
+        let broken = kept.filter(|(kept, limit)| **kept < limit.probability);
+        let broken =
+            broken.map(|(kept, limit)| format!("{} under {}", limit.words, percent(*kept)));
+        broken.collect::<Vec<_>>().join(", ")
+    };
+    let nearest_one = match nearest.within_limits > 0.0 {
+        true => format!("{name} comes nearest, under {within}: {}.", broken(nearest)),
+        false => format!("None does under any; {name}: {}.", broken(nearest)),
+    };
+    let mut designs = ranking.designs.iter();
+    let least = designs.find(|one| one.wins > nearest.wins && one.best > 0.5);
+    let least = least.map_or_else(String::new, |least| {
+        let (name, best) = (&least.name, ranking.share(least.best, least.best_interval));
+        format!(
+            " {name} has the least {} under {best}, but breaks a limit: {}.",
+            ranking.title,
+            broken(least)
+        )
+    });
+    format!("No design {keeps} under {enough}. {nearest_one}{least}")
 }
 
 /// Returns a title as it stands within a sentence: "AP force" keeps its capitals.

@@ -5,11 +5,14 @@ use condyle_results::catalogue::Scalar;
 use serde::Serialize;
 
 use crate::{
-    answers::data::Data,
+    answers::{
+        data::Data,
+        words::{percent, sides_in_words, with_interval},
+    },
     error::StudyError,
     plan::designs,
     search::{Standing, standing, starting_test},
-    statistics::{extent, mean, standard_deviation, wilson_interval},
+    statistics::{central_interval, extent, mean, standard_deviation, wilson_interval},
     store::{Column, Store},
 };
 
@@ -23,8 +26,22 @@ pub(crate) struct Ranking {
     pub disturbances: usize,
     /// Those under which the tests of all designs are solved.
     pub solved: usize,
+    /// True if the disturbances are a random sample, so that shares of them are probabilities.
+    pub is_sample: bool,
+    /// The limits, then that of being solved.
+    pub limits: Vec<RankedLimit>,
     pub designs: Vec<RankedDesign>,
 }
+
+/// A side of a limit, and the probability with which a design must keep it to rank before those that do not.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub(crate) struct RankedLimit {
+    pub words: String,
+    pub probability: f64,
+}
+
+/// Probability with which a design must be solved.
+const MIN_SOLVED: f64 = 0.95;
 
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub(crate) struct RankedDesign {
@@ -39,6 +56,12 @@ pub(crate) struct RankedDesign {
     /// Share of the disturbances under which the design is within every limit; one that cannot be solved is not.
     pub within_limits: f64,
     pub within_limits_interval: [f64; 2],
+    /// Share of its tests in which it keeps each limit.
+    pub kept: Vec<f64>,
+    /// True if it keeps each limit with the probability that the limit demands.
+    pub keeps_limits: bool,
+    /// Mean probability of beating another design.
+    pub wins: f64,
     /// Share of the disturbances under which the design is solved and no other one is better.
     pub best: f64,
     pub best_interval: [f64; 2],
@@ -46,6 +69,16 @@ pub(crate) struct RankedDesign {
     /// that are not solved, count half.
     pub beats: Vec<f64>,
     pub beats_intervals: Vec<[f64; 2]>,
+    /// Of all designs but the last.
+    pub lead: Option<Lead>,
+}
+
+/// The output of the next design less that of a design under the same disturbance, where all designs are solved.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub(crate) struct Lead {
+    pub mean: f64,
+    /// The range that holds 95 % of the differences.
+    pub range: [f64; 2],
 }
 
 /// The output of one design under every disturbance.
@@ -56,6 +89,8 @@ struct Outcomes {
     values: Vec<f64>,
     /// Of each test of the design; none where the test could not be solved.
     within_limits: Vec<Option<bool>>,
+    /// Share of the tests that keep each limit.
+    kept: Vec<f64>,
     doubtful: usize,
 }
 
@@ -76,34 +111,70 @@ impl Ranking {
             true => value,
             false => f64::INFINITY,
         };
+        let limits = limits(data, &values);
         let alternatives = study.alternatives.iter().enumerate();
         let outcomes = alternatives.map(|(place, design)| {
             let compared = compared.iter().map(|first| values[first + place]);
             let kept = (place..values.len()).step_by(count);
             let kept: Vec<usize> = kept.filter(|test| data.kept[*test]).collect();
             let within = |test: &usize| values[*test].is_finite().then_some(data.within[*test]);
+            let share = |keeps: &[bool]| {
+                let own = kept.iter().map(|test| f64::from(keeps[*test]));
+                mean(&own.collect::<Vec<_>>())
+            };
             let is_doubtful = |test: &&usize| data.doubts(**test).is_some();
             Outcomes {
                 name: design.name.clone(),
                 values: compared.map(or_infinite).collect(),
                 within_limits: kept.iter().map(within).collect(),
+                kept: limits.iter().map(|(_, keeps)| share(keeps)).collect(),
                 doubtful: kept.iter().filter(is_doubtful).count(),
             }
         });
         let outcomes: Vec<Outcomes> = outcomes.collect();
+        let limits: Vec<RankedLimit> = limits.into_iter().map(|(limit, _)| limit).collect();
         Ok(Some(Self {
             output: output.key,
             title: output.label,
             unit: output.unit(),
             disturbances: compared.len(),
             solved: solved_by_all(&outcomes).len(),
-            designs: ranked(&outcomes),
+            is_sample: data.is_sample(),
+            designs: ranked(&outcomes, &limits),
+            limits,
         }))
+    }
+
+    /// Returns a share of the disturbances in words, with the interval of the probability if they are a sample.
+    pub fn share(&self, share: f64, interval: [f64; 2]) -> String {
+        match self.is_sample {
+            true => with_interval(share, interval),
+            false => percent(share),
+        }
     }
 }
 
-/// Share of the disturbances under which a design must keep every limit to rank before those that do not.
-const MIN_WITHIN: f64 = 0.95;
+/// Returns both sides of every limit, then that of being solved, and whether each test keeps it; `values` are those that rank.
+fn limits(data: &Data<'_>, values: &[f64]) -> Vec<(RankedLimit, Vec<bool>)> {
+    let bounds = data.plan.study().answers.bounds.iter();
+    let sides = bounds.flat_map(|bound| {
+        let words = sides_in_words(bound);
+        bound.sides().zip(words).map(move |((sign, limit), words)| {
+            let keeps = |value: &f64| sign * (value - limit) <= 0.0;
+            let limit = RankedLimit {
+                words,
+                probability: bound.probability,
+            };
+            (limit, data.of(bound.output).iter().map(keeps).collect())
+        })
+    });
+    let solved = RankedLimit {
+        words: "solved".to_owned(),
+        probability: MIN_SOLVED,
+    };
+    let is_solved = values.iter().map(|value| value.is_finite());
+    sides.chain([(solved, is_solved.collect())]).collect()
+}
 
 impl Outcomes {
     /// Returns the share of the tests within every limit and its interval: an unsolved test counts as beyond a limit in the
@@ -119,8 +190,9 @@ impl Outcomes {
         self.within_limits.iter().filter(|one| **one == of).count()
     }
 
-    fn keeps_limits(&self) -> bool {
-        self.within().0 >= MIN_WITHIN
+    fn keeps(&self, limits: &[RankedLimit]) -> bool {
+        let mut kept = self.kept.iter().zip(limits);
+        kept.all(|(kept, limit)| *kept >= limit.probability)
     }
 }
 
@@ -131,61 +203,91 @@ fn solved_by_all(all: &[Outcomes]) -> Vec<usize> {
     (0..count).filter(is_solved).collect()
 }
 
-/// Returns the designs sorted by whether they keep the limits, then by how often no other is better, then by the mean.
-fn ranked(all: &[Outcomes]) -> Vec<RankedDesign> {
-    let best = |design: &Outcomes| {
+/// Returns the designs that keep the limits, then the others by how often they keep all; equal ones by how often they beat
+/// another, then by the mean.
+fn ranked(all: &[Outcomes], limits: &[RankedLimit]) -> Vec<RankedDesign> {
+    let solved = solved_by_all(all);
+    let mut order: Vec<(RankedDesign, &Outcomes)> = all
+        .iter()
+        .map(|own| (own.compared(all, &solved, limits), own))
+        .collect();
+    // How often a design is best depends on the others: the last of three may be best more often than the second.
+    order.sort_by(|(one, _), (other, _)| {
+        let within =
+            |design: &RankedDesign| f64::max(design.within_limits, f64::from(design.keeps_limits));
+        let by_limits = other.keeps_limits.cmp(&one.keeps_limits);
+        by_limits
+            .then(within(other).total_cmp(&within(one)))
+            .then(other.wins.total_cmp(&one.wins))
+            .then(one.mean.total_cmp(&other.mean))
+    });
+    let outcomes: Vec<&Outcomes> = order.iter().map(|(_, own)| *own).collect();
+    let lead = |own: &Outcomes, next: &Outcomes| {
+        let differences = solved
+            .iter()
+            .map(|row| next.values[*row] - own.values[*row]);
+        let differences: Vec<f64> = differences.collect();
+        (!differences.is_empty()).then(|| Lead {
+            mean: mean(&differences),
+            range: central_interval(differences),
+        })
+    };
+    let beats = order
+        .into_iter()
+        .enumerate()
+        .map(|(place, (mut design, own))| {
+            design.lead = outcomes.get(place + 1).and_then(|next| lead(own, next));
+            let tests = own.values.len() as f64;
+            let wins = outcomes
+                .iter()
+                .map(|other| wins(&own.values, &other.values));
+            let shares = wins.map(|wins| (wins / tests.max(1.0), wilson_interval(wins, tests)));
+            (design.beats, design.beats_intervals) = shares.unzip();
+            design
+        });
+    beats.collect()
+}
+
+impl Outcomes {
+    /// Returns the design compared with `all`, without what depends on their order.
+    fn compared(&self, all: &[Outcomes], solved: &[usize], limits: &[RankedLimit]) -> RankedDesign {
+        let tests = self.values.len() as f64;
         let is_best = |row: &usize| {
-            let value = design.values[*row];
+            let value = self.values[*row];
             value.is_finite() && all.iter().all(|other| value <= other.values[*row])
         };
-        let count = design.values.len();
-        (0..count).filter(is_best).count() as f64 / count.max(1) as f64
-    };
-    let solved = solved_by_all(all);
-    let of_solved = |design: &Outcomes, of: fn(&[f64]) -> f64| {
-        let values: Vec<f64> = solved.iter().map(|row| design.values[*row]).collect();
-        if values.is_empty() {
-            f64::NAN
-        } else {
-            of(&values)
-        }
-    };
-    let mut order: Vec<(f64, f64, &Outcomes)> = all
-        .iter()
-        .map(|design| (best(design), of_solved(design, mean), design))
-        .collect();
-    order.sort_by(|one, other| {
-        let by_limits = other.2.keeps_limits().cmp(&one.2.keeps_limits());
-        by_limits
-            .then(other.0.total_cmp(&one.0))
-            .then(one.1.total_cmp(&other.1))
-    });
-    let ranked = order.iter().map(|&(best, mean, own)| {
-        let tests = own.values.len() as f64;
-        let others = order
+        let hits = (0..self.values.len()).filter(is_best).count() as f64;
+        let values: Vec<f64> = solved.iter().map(|row| self.values[*row]).collect();
+        let of_solved = |of: fn(&[f64]) -> f64| match values.is_empty() {
+            true => f64::NAN,
+            false => of(&values),
+        };
+        // A design ties with itself.
+        let won: f64 = all
             .iter()
-            .map(|(_, _, other)| wins(&own.values, &other.values));
-        let wins: Vec<f64> = others.collect();
-        let (within_limits, within_limits_interval) = own.within();
+            .map(|other| wins(&self.values, &other.values))
+            .sum();
+        let others = (all.len() as f64 - 1.0).max(1.0);
+        let (within_limits, within_limits_interval) = self.within();
         RankedDesign {
-            name: own.name.clone(),
-            tests: own.within_limits.len(),
-            failed: own.count(None),
-            doubtful: own.doubtful,
-            mean,
-            standard_deviation: of_solved(own, standard_deviation),
+            name: self.name.clone(),
+            tests: self.within_limits.len(),
+            failed: self.count(None),
+            doubtful: self.doubtful,
+            mean: of_solved(mean),
+            standard_deviation: of_solved(standard_deviation),
             within_limits,
             within_limits_interval,
-            best,
-            best_interval: wilson_interval(best * tests, tests),
-            beats: wins.iter().map(|wins| wins / tests.max(1.0)).collect(),
-            beats_intervals: wins
-                .iter()
-                .map(|wins| wilson_interval(*wins, tests))
-                .collect(),
+            kept: self.kept.clone(),
+            keeps_limits: self.keeps(limits),
+            wins: (won - 0.5 * tests) / (others * tests.max(1.0)),
+            best: hits / tests.max(1.0),
+            best_interval: wilson_interval(hits, tests),
+            beats: Vec::new(),
+            beats_intervals: Vec::new(),
+            lead: None,
         }
-    });
-    ranked.collect()
+    }
 }
 
 /// Returns the number of disturbances for which one value is smaller than the other; a tie counts as half.
@@ -342,11 +444,13 @@ pub(crate) struct InputOfFront {
 const MAX_POINTS: usize = 1000;
 
 impl Front {
-    /// Returns the front; none if the study has a single output.
+    /// Returns the front; none if the study neither searches for it nor names two outputs.
     pub fn read(data: &Data<'_>, store: &Store) -> Result<Option<Self>, StudyError> {
         let study = data.plan.study();
         // Tests under different disturbances say nothing of the designs.
-        let Some(outputs) = study.answers.pareto.filter(|_| !study.is_robust()) else {
+        let is_searched = study.objectives().len() > 1;
+        let is_asked = (is_searched || study.answers.names_pareto) && !study.is_robust();
+        let Some(outputs) = study.answers.pareto.filter(|_| is_asked) else {
             return Ok(None);
         };
         let one = store.column(data.plan, outputs[0].key)?.values;
@@ -364,7 +468,6 @@ impl Front {
             extent(tests.iter().map(|test| test.2))[1],
         ];
         let front = undominated(tests.clone());
-        let is_searched = study.objectives().len() > 1;
         let inputs = study.inputs.iter().zip(&data.inputs);
         let input = |(input, column): (&Input, &Column)| {
             let values = front.iter().map(|test| column.values[test.0 as usize]);
@@ -439,6 +542,69 @@ fn knee(front: &[(u64, f64, f64)]) -> Option<u64> {
 mod tests {
     use super::*;
 
+    /// Ranks designs whose only limit is to be kept with a probability of 95 %.
+    fn ranked_within(all: &[Outcomes]) -> Vec<RankedDesign> {
+        ranked(all, &[limit(0.95)])
+    }
+
+    fn limit(probability: f64) -> RankedLimit {
+        let words = "peak pressure at most 33 MPa".to_owned();
+        RankedLimit { words, probability }
+    }
+
+    /// Returns 100 tests of a design with this output, of which `kept` keep the limit.
+    fn outcomes(name: &str, value: impl Fn(usize) -> f64, kept: usize) -> Outcomes {
+        Outcomes {
+            name: name.to_owned(),
+            values: (0..100).map(value).collect(),
+            within_limits: (0..100).map(|test| Some(test < kept)).collect(),
+            kept: vec![kept as f64 / 100.0],
+            doubtful: 0,
+        }
+    }
+
+    fn names(designs: &[RankedDesign]) -> Vec<&str> {
+        designs.iter().map(|design| &*design.name).collect()
+    }
+
+    #[test]
+    fn a_design_that_is_best_by_luck_ranks_after_one_that_beats_it() {
+        // The worst design is the best in 3 of 100 tests, the second one in none.
+        let all = [
+            outcomes("flat", |test| if test < 3 { 1.0 } else { 58.0 }, 100),
+            outcomes("standard", |_| 46.0, 100),
+            outcomes("conforming", |_| 38.0, 100),
+        ];
+        let ranked = ranked_within(&all);
+        assert_eq!(names(&ranked), ["conforming", "standard", "flat"]);
+        assert_eq!((ranked[1].best, ranked[2].best), (0.0, 0.03));
+        let lead = ranked[0].lead.as_ref().unwrap();
+        assert_eq!(
+            (lead.mean, lead.range, &ranked[2].lead),
+            (8.0, [8.0; 2], &None)
+        );
+        for (design, wins) in ranked.iter().zip([0.985, 0.485, 0.03]) {
+            assert!((design.wins - wins).abs() < 1e-12, "{design:?}");
+        }
+    }
+
+    #[test]
+    fn limits_rank_designs_by_the_probability_that_they_demand() {
+        let all = || {
+            [
+                outcomes("never", |_| 1.0, 0),
+                outcomes("often", |_| 3.0, 65),
+                outcomes("more often", |_| 4.0, 70),
+            ]
+        };
+        // None keeps it under 95 %: that which keeps it most often is first; under 60 %, two do.
+        let [strict, loose] = [0.95, 0.6].map(|probability| ranked(&all(), &[limit(probability)]));
+        assert_eq!(names(&strict), ["more often", "often", "never"]);
+        assert_eq!(names(&loose), ["often", "more often", "never"]);
+        let keep = |designs: &[RankedDesign]| designs.iter().filter(|one| one.keeps_limits).count();
+        assert_eq!((keep(&strict), keep(&loose)), (0, 2));
+    }
+
     #[test]
     fn verify_the_hypervolume_and_the_knee_of_a_front() {
         let front = [(7, 0.0, 4.0), (3, 1.0, 1.0), (5, 4.0, 0.0)];
@@ -461,9 +627,10 @@ mod tests {
             name: name.to_owned(),
             values: base.iter().map(|value| value + add).collect(),
             within_limits: vec![Some(true); 50],
+            kept: vec![1.0],
             doubtful: 0,
         };
-        let ranked = ranked(&[outcomes("worse", 1.0), outcomes("better", 0.0)]);
+        let ranked = ranked_within(&[outcomes("worse", 1.0), outcomes("better", 0.0)]);
         assert_eq!(ranked[0].name, "better");
         assert_eq!(
             (ranked[0].best, ranked[0].beats.as_slice()),
@@ -479,9 +646,10 @@ mod tests {
             name: name.to_owned(),
             values: vec![value; 20],
             within_limits: vec![Some(within); 20],
+            kept: vec![f64::from(within)],
             doubtful: 0,
         };
-        let ranked = ranked(&[outcomes("flat", 1.0, false), outcomes("deep", 2.0, true)]);
+        let ranked = ranked_within(&[outcomes("flat", 1.0, false), outcomes("deep", 2.0, true)]);
         assert_eq!(ranked[0].name, "deep");
         assert!(ranked[0].within_limits_interval[0] > 0.8);
     }
@@ -492,9 +660,10 @@ mod tests {
             name: name.to_owned(),
             values: vec![value; 20],
             within_limits: [vec![Some(true); 20], vec![None; unsolved]].concat(),
+            kept: vec![20.0 / (20 + unsolved) as f64],
             doubtful: 0,
         };
-        let ranked = ranked(&[outcomes("fails", 1.0, 5), outcomes("holds", 2.0, 0)]);
+        let ranked = ranked_within(&[outcomes("fails", 1.0, 5), outcomes("holds", 2.0, 0)]);
         assert_eq!((&*ranked[0].name, ranked[1].within_limits), ("holds", 0.8));
         let interval = [
             wilson_interval(20.0, 25.0)[0],
@@ -511,6 +680,7 @@ mod tests {
             within_limits: values
                 .map(|value| value.is_finite().then_some(true))
                 .to_vec(),
+            kept: vec![1.0],
             values: values.to_vec(),
             doubtful: 0,
         };
@@ -519,7 +689,7 @@ mod tests {
             outcomes("low", [1.0, FAILED, FAILED, FAILED, FAILED]),
             outcomes("firm", [2.0, 2.0, 2.0, 2.0, FAILED]),
         ];
-        let ranked = ranked(&all);
+        let ranked = ranked_within(&all);
         let [firm, low] = &ranked[..] else {
             panic!("two designs")
         };

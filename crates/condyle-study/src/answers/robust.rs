@@ -7,7 +7,7 @@ use crate::{
     answers::{
         data::Data,
         ranking::Valued,
-        words::{label, shown, with_interval},
+        words::{label, shown, sides_in_words, with_interval},
     },
     error::StudyError,
     search::{Comparison, Estimate, Standing, comparison, standing},
@@ -135,15 +135,10 @@ impl Robust {
     }
 }
 
-/// Returns both sides of a limit in words.
+/// Returns both sides of a limit in words, with its probability.
 fn limits(bound: &Bound) -> impl Iterator<Item = String> {
-    let (label, unit) = (bound.output.label, bound.output.unit());
-    bound.sides().map(move |(sign, limit)| {
-        let side = if sign > 0.0 { "at most" } else { "at least" };
-        let words = format!("{label} {side} {limit} {unit}");
-        let required = shown(100.0 * bound.probability);
-        format!("{} ({required} % required)", words.trim_end())
-    })
+    let required = shown(100.0 * bound.probability);
+    sides_in_words(bound).map(move |words| format!("{words} ({required} % required)"))
 }
 
 fn in_words(estimate: &Estimate) -> String {

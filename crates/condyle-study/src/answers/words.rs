@@ -1,5 +1,6 @@
 //! Names and numbers of answers in words.
 
+use condyle_case::study::Bound;
 use condyle_results::{catalogue, split_unit};
 
 /// Returns the label of an output; of an input, its key.
@@ -20,6 +21,16 @@ pub(crate) fn labelled(key: &str) -> String {
     }
 }
 
+/// Returns both sides of a limit in words.
+pub(crate) fn sides_in_words(bound: &Bound) -> impl Iterator<Item = String> {
+    let (label, unit) = (bound.output.label, bound.output.unit());
+    bound.sides().map(move |(sign, limit)| {
+        let side = if sign > 0.0 { "at most" } else { "at least" };
+        let words = format!("{label} {side} {limit} {unit}");
+        words.trim_end().to_owned()
+    })
+}
+
 /// Returns a number with four significant digits; a dash for one that is not known.
 pub(crate) fn shown(value: f64) -> String {
     if value.is_nan() {
@@ -38,13 +49,22 @@ pub(crate) fn with_interval(share: f64, [low, high]: [f64; 2]) -> String {
 }
 
 /// Returns a probability in percent, to a ten thousandth; a smaller one than a thousandth to two digits.
-pub(crate) fn chance(probability: f64) -> String {
+fn chance(probability: f64) -> String {
     let percent = 100.0 * probability;
     if percent <= 0.0 || percent >= 0.1 {
         return format!("{percent:.2} %");
     }
     let decimals = (1 - percent.log10().floor() as i32) as usize;
     format!("{percent:.decimals$} %")
+}
+
+/// Returns a small probability with its 95 % interval in words; of one that its points do not resolve, the upper end.
+pub(crate) fn chance_in_words(probability: f64, [low, high]: [f64; 2]) -> String {
+    if high < 0.01 && low < 0.01 * high {
+        return format!("below {}", chance(high));
+    }
+    let [probability, low, high] = [probability, low, high].map(chance);
+    format!("{probability} ({low} to {high})")
 }
 
 pub(crate) fn percent(share: f64) -> String {
@@ -62,6 +82,19 @@ pub(crate) fn percents([low, high]: [f64; 2]) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_probability_below_the_resolution_of_its_interval_is_its_upper_end() {
+        let words = [
+            (8.8e-7, [5.4e-9, 2.7e-5], "below 0.0027 %"),
+            (5.6e-12, [4.3e-9, 2.5e-5], "below 0.0025 %"),
+            (5.5e-4, [1.7e-4, 1.4e-3], "0.055 % (0.017 % to 0.14 %)"),
+            (0.9992, [0.9975, 1.0], "99.92 % (99.75 % to 100.00 %)"),
+        ];
+        for (probability, interval, words) in words {
+            assert_eq!(chance_in_words(probability, interval), words);
+        }
+    }
 
     #[test]
     fn outputs_have_the_labels_of_the_catalogue_and_inputs_their_keys() {
