@@ -442,7 +442,8 @@ fn front(front: &Front) -> Option<Picture> {
     if let Some(part) = front.hypervolume {
         let percent = 100.0 * part;
         caption += &format!(
-            " The front dominates {percent:.1} % of the rectangle from its best to the worst values (its hypervolume)."
+            " The front dominates {percent:.1} % of the rectangle from its best to the worst values (its hypervolume), \
+             which further tests widen."
         );
     }
     Some(("pareto.svg", caption, svg))

@@ -324,6 +324,14 @@ impl Answers {
             };
             return Some(format!("No tested design {needs}: {advice}.\n"));
         }
+        if let Some(front) = front.filter(|front| front.is_searched) {
+            return Some(match front.is_converged {
+                Some(true) => {
+                    "The search has converged, also after space-filling tests.\n".to_owned()
+                }
+                _ => "The front may be incomplete; allow more tests.\n".to_owned(),
+            });
+        }
         let best = self
             .best
             .as_ref()

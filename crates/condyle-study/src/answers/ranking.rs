@@ -11,7 +11,7 @@ use crate::{
     },
     error::StudyError,
     plan::designs,
-    search::{Standing, standing, starting_test},
+    search::{Standing, is_converged, standing, starting_test},
     statistics::{central_interval, extent, mean, standard_deviation, wilson_interval},
     store::{Column, Store},
 };
@@ -427,6 +427,8 @@ pub(crate) struct Front {
     pub knee: Option<u64>,
     /// True if the study searched for the front.
     pub is_searched: bool,
+    /// Whether the search has converged; none without a search, and before emulators can be fitted.
+    pub is_converged: Option<bool>,
     /// The inputs of its tests; only of a search, whose inputs are numbers.
     pub inputs: Vec<InputOfFront>,
     /// Tests within the limits, for a picture; of many, some.
@@ -483,6 +485,11 @@ impl Front {
             units: outputs.map(Scalar::unit),
             others: shown.map(|(_, one, other)| (*one, *other)).collect(),
             is_searched,
+            is_converged: if is_searched {
+                is_converged(data.plan, &store.known(data.plan, 0)?)
+            } else {
+                None
+            },
             hypervolume: hypervolume(&front, worst),
             knee: knee(&front),
             tests: front,

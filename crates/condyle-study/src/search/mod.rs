@@ -127,9 +127,6 @@ pub(crate) struct Standing {
 
 /// Returns the state of a search for one optimum; none for other studies, and while no test is within the limits.
 pub(crate) fn standing(plan: &Plan, known: &[Known]) -> Option<Standing> {
-    let Design::Optimise(keys) = &plan.study().design else {
-        return None;
-    };
     let observed = observed(plan, known);
     let emulators = Emulators::new(&observed)?;
     let ([outlook], [best]) = (&emulators.minimised[..], &emulators.seen.best()[..]) else {
@@ -137,13 +134,31 @@ pub(crate) fn standing(plan: &Plan, known: &[Known]) -> Option<Standing> {
     };
     // Places count the tests that are done, as those of the emulator do.
     let best = (0..*best).filter(|place| observed.is_done(*place)).count();
-    let (_, worth) = emulators.most_promising(&observed, WIDE, keys.seed)?;
+    let (worth, is_converged) = emulators.end(&observed, plan)?;
     Some(Standing {
         expected_improvement: worth.exp(),
-        is_converged: emulators.seen.is_exhausted(worth) && observed.is_checked(keys.seed),
+        is_converged,
         q2: outlook.emulator.q2(),
         left_out_error: outlook.emulator.left_out().get(best)?.mean,
     })
+}
+
+/// Returns whether a search has converged; none while emulators cannot be fitted to its tests.
+pub(crate) fn is_converged(plan: &Plan, known: &[Known]) -> Option<bool> {
+    let observed = observed(plan, known);
+    Some(Emulators::new(&observed)?.end(&observed, plan)?.1)
+}
+
+impl Emulators {
+    /// Returns the logarithm of the improvement expected from the most promising test, and whether the search has converged.
+    fn end(&self, observed: &Observed, plan: &Plan) -> Option<(f64, bool)> {
+        let Design::Optimise(keys) = &plan.study().design else {
+            return None;
+        };
+        let (_, worth) = self.most_promising(observed, WIDE, keys.seed)?;
+        let is_converged = self.seen.is_exhausted(worth) && observed.is_checked(keys.seed);
+        Some((worth, is_converged))
+    }
 }
 
 /// Returns a test in the unit cube.
