@@ -39,7 +39,7 @@ pub fn add_prediction(prediction: &Prediction, summary: &Summary, lines: &mut Li
     ));
     if summary.wear_laws.len() >= 2 {
         lines.line(
-            "   its middle is the median over laboratories and all constants that fit measurements; the table has one set of constants for each law",
+            "   the middle of the interval is the median over laboratories and all constants that fit measurements; the table has one set of constants for each law",
         );
     }
 }

@@ -32,7 +32,7 @@ pub struct FittedSphere {
 const PROPOSALS: usize = 4000;
 /// Facets that judge a proposal.
 const JUDGES: usize = 2000;
-/// Judges on a proposal that is not the largest, 5 %: the rounded corners of a block are no balls.
+/// Smallest number of judges on a proposal that is examined, 5 %: the rounded corners of a block are no balls.
 const MIN_JUDGES: usize = JUDGES / 20;
 /// Distances to the sphere, as shares of its radius, within which a vertex is part of it, from the proposal to the last
 /// of three fits. The last is 0.07 mm of a hip: above the noise of a scan, and below a chamfer.

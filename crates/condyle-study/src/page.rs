@@ -73,7 +73,11 @@ pub fn write_answers(plan: &Plan, folder: &Path) -> Result<Answers, StudyError> 
 fn tested(plan: &Plan) -> Vec<Vec<String>> {
     let study = plan.study();
     let limits = study.answers.bounds.iter().flat_map(|bound| {
-        let probability = format!("probability {}", bound.probability);
+        let is_used = study.is_robust() || !study.alternatives.is_empty();
+        let probability = match is_used {
+            true => format!("probability {}", bound.probability),
+            false => String::new(),
+        };
         sides_in_words(bound).map(move |words| (format!("limit: {words}"), probability.clone()))
     });
     let version = concat!("condyle ", env!("CARGO_PKG_VERSION"));
@@ -264,13 +268,13 @@ fn tornado(answers: &Answers, design: Option<&str>) -> Option<Picture> {
     }
     let title = format!("Effects on {}", spread.name());
     let mut caption = "The range of the means over a tenth of each input's values, or at each of its levels; the line is \
-                       the mean of the bars."
+                       the mean output."
         .to_owned();
     let by_chance = effects.iter().filter_map(|effect| effect.span_by_chance);
     if let Some(most) = by_chance.reduce(f64::max) {
         let (most, unit) = (shown(most), superscript(spread.unit));
         caption += &format!(
-            " An inactive input would span up to {most} {unit} by chance; bars within their chance are grey."
+            " An inactive input would span up to {most} {unit} by chance or by the error of the emulator; bars within that are grey."
         );
     }
     let means: Vec<f64> = effects.iter().map(|effect| effect.mean).collect();

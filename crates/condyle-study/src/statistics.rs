@@ -1,5 +1,7 @@
 //! Statistics of samples.
 
+pub(crate) use condyle::machine::extremes as extent;
+
 /// Returns the mean, or 0 for an empty sample.
 pub(crate) fn mean(values: &[f64]) -> f64 {
     values.iter().sum::<f64>() / (values.len() as f64).max(1.0)
@@ -26,13 +28,6 @@ pub(crate) fn quantile(sorted: &[f64], share: f64) -> f64 {
 pub(crate) fn central_interval(mut values: Vec<f64>) -> [f64; 2] {
     values.sort_by(f64::total_cmp);
     [0.025, 0.975].map(|share| quantile(&values, share))
-}
-
-/// Returns the smallest and the largest value; infinite and reversed if there are no values.
-pub(crate) fn extent(values: impl Iterator<Item = f64>) -> [f64; 2] {
-    values.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], value| {
-        [low.min(value), high.max(value)]
-    })
 }
 
 /// The two-sided 95 % quantile of the standard normal distribution.

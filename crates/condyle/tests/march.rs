@@ -488,7 +488,7 @@ fn values_that_no_test_can_have_are_refused() {
     assert!(all_shares.contains("add up to 2"), "{all_shares}");
     assert!(message(&|test| test.activities.clear()).contains("add up to 0"));
     assert!(message(&|test| test.activities[0].share = f64::NAN).contains("shares"));
-    assert!(message(&|test| test.schedule.cycles = 0.0).contains("0 cycles"));
+    assert!(message(&|test| test.schedule.cycles = 0.0).contains("cycles is 0"));
     assert!(message(&|test| test.schedule = Schedule::fixed(1.0, 0)).contains("Fixed(0)"));
     let never = Updates::Auto { tolerance: 0.0 };
     assert!(message(&|test| test.schedule.updates = never).contains("tolerance"));
@@ -496,7 +496,7 @@ fn values_that_no_test_can_have_are_refused() {
         let insert = Insert::clone(&test.insert).with_one_region("plate");
         test.insert = Arc::new(insert);
     };
-    assert!(message(&one_region).contains("1 regions"));
+    assert!(message(&one_region).contains("insert: 1"));
 
     let of_joint = |change: fn(&mut JointDescription)| {
         let mut mechanism = KNEE.clone();

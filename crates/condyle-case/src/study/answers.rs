@@ -30,7 +30,7 @@ pub struct Bound {
     pub least: Option<f64>,
     /// The largest value allowed.
     pub most: Option<f64>,
-    /// The probability under the disturbances with which a robust search keeps it, and an alternative must to rank first.
+    /// The probability with which a robust search keeps it, and which an alternative must reach to rank first.
     pub probability: f64,
 }
 

@@ -191,7 +191,7 @@ settings! {
         least: Option<f64> = None;
         /// The largest value allowed.
         most: Option<f64> = None;
-        /// Probability under the disturbances with which a robust search keeps the limit, and an alternative must to rank first.
+        /// Probability with which a robust search keeps the limit, and which an alternative must reach to rank first.
         probability: f64 = 0.95, in within(0.5, 0.99);
     }
 

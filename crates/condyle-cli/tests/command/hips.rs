@@ -375,7 +375,10 @@ fn check_and_run_state_where_the_axes_pass() {
     let bench = Bench::with_case(&case);
     let flat = "no ball or socket was found: axes pass through the file's origin";
     for (cap_deg, words) in [
-        (36.0, "axes pass through the centre of a ball of 14.00 mm"),
+        (
+            36.0,
+            "axes pass through the centre of a ball of radius 14.00 mm",
+        ),
         (24.0, flat),
     ] {
         // A cap on a cylinder, with its centre at the origin.

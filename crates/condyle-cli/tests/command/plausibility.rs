@@ -399,7 +399,7 @@ fn yield_is_noted_with_area_and_time_and_is_no_doubt() {
     let note = note.expect("30 MPa are beyond 22.4 MPa");
     assert_eq!(note.value, summary[&catalogue::PEAK_PRESSURE_MPA]);
     for words in [
-        "mm2 exceed this pressure at some instant, not all at once; the peak exceeds it for",
+        "mm2 exceeds this pressure at some instant; the peak exceeds it for",
         "in the first cycle",
         "in the last cycle",
     ] {

@@ -290,7 +290,7 @@ fn designs_are_ranked_under_the_same_disturbances() {
     // A page that a reviewer can sign.
     let page = fs::read_to_string(bench.path("out").join("study.html")).unwrap();
     for words in [
-        "deep ranks first with a peak pressure of",
+        "deep ranks first with peak pressure ",
         "less than shallow (",
         "<td>design deep</td><td>insert.sagittal_radius_mm=45</td>",
         "<td>Friction of contact</td>",
@@ -802,4 +802,30 @@ fn folders_of_something_else_are_refused() {
         .assert_refused(2, &["holds no study"]);
     one.say(&["study", "study.toml", "--shard", "4/3"])
         .assert_refused(2, &["2/4"]);
+}
+
+#[test]
+fn a_limit_that_no_design_keeps_is_stated_in_place_of_a_winner() {
+    let study = |probability: f64| {
+        format!(
+            "case = \"case.toml\"\n[design]\nkind = \"sobol\"\nsize = 4\n\
+             [[vary]]\nkey = \"contact.friction\"\nlow = 0.05\nhigh = 0.09\n\
+             [[alternative]]\nname = \"flat\"\nset = [\"insert.sagittal_radius_mm=80\"]\n\
+             [[alternative]]\nname = \"round\"\nset = [\"insert.sagittal_radius_mm=45\"]\n\
+             [[limit]]\noutput = \"peak_pressure_mpa\"\nmost = 1\nprobability = {probability}\n"
+        )
+    };
+    for (probability, under) in [
+        (0.95, "under 95.0 % of the disturbances"),
+        (0.6, "under the required part of the disturbances"),
+    ] {
+        let bench = bench(&study(probability));
+        let said = bench.say(&["study", "study.toml", "--out", "out"]);
+        assert_eq!(said.code, Some(0), "{}", said.err);
+        let page = fs::read_to_string(bench.path("out").join("study.html")).unwrap();
+        let answer =
+            format!("No design keeps every limit {under}. None does under any disturbance; ");
+        assert!(page.contains(&answer), "{answer}");
+        assert!(!page.contains("ranks first"));
+    }
 }

@@ -1,5 +1,6 @@
 //! Comparison of predicted with measured kinematics.
 
+use condyle::machine::extremes;
 use condyle_case::measured::{AlignWord, CycleWord, Kinematics, MeasuredCurve, Sample};
 use condyle_report::Table;
 use serde::Serialize;
@@ -218,8 +219,9 @@ fn column(
     })
 }
 
-fn range(values: impl Iterator<Item = f64> + Clone) -> f64 {
-    values.clone().fold(f64::NEG_INFINITY, f64::max) - values.fold(f64::INFINITY, f64::min)
+fn range(values: impl Iterator<Item = f64>) -> f64 {
+    let [low, high] = extremes(values);
+    high - low
 }
 
 fn errors(points: &[[f64; 3]]) -> Option<Errors> {

@@ -213,7 +213,7 @@ fn extent(
         // The mean over a node's share is below the peak.
         0.0 => "no node exceeds this pressure".to_owned(),
         _ => format!(
-            "places of together {} mm2 exceed this pressure at some instant, not all at once",
+            "an area of {} mm2 exceeds this pressure at some instant",
             with_digits(area_mm2, 0)
         ),
     };

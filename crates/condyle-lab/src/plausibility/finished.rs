@@ -37,7 +37,7 @@ pub(crate) struct Finished<'a> {
     pub of_build: &'a [BuildWarning],
     /// The surface of the last cycle.
     pub surface: ArticulatingSurface,
-    /// That of the first one.
+    /// The surface of the first cycle, which is unworn.
     pub unworn: ArticulatingSurface,
     /// Ends of the edges at which the articulating surface ends.
     rim: Vec<[u32; 2]>,

@@ -354,7 +354,7 @@ impl Answers {
                 format!("{failed} of {kept} tests failed, {own} of them because of: {reason}\n");
             parts.insert(1, failed);
         }
-        if designs.len() > 1 {
+        if designs.len() > 1 && !self.effects.is_empty() {
             parts.push("Indices and effects of the other designs are on the page.\n".to_owned());
         }
         parts.extend(self.doubts());
@@ -386,7 +386,7 @@ impl Answers {
             ("Emulators", self.table_of_emulators()),
             ("Elementary effects of Morris", self.table_of_elementary()),
         ];
-        let tables = tables.map(|(name, rows)| (name.to_owned(), rows));
+        let tables = tables.map(|(name, rows)| (name.to_owned(), without_empty_columns(&rows)));
         let all = tables.into_iter().chain(of_designs);
         all.filter(|(_, rows)| !rows.is_empty()).collect()
     }
@@ -484,7 +484,8 @@ impl Answers {
 
     /// Returns how often each design beats each other one.
     fn table_of_beats(&self) -> Vec<Vec<String>> {
-        let Some(ranking) = &self.ranking else {
+        let ranking = self.ranking.as_ref();
+        let Some(ranking) = ranking.filter(|ranking| ranking.designs.len() > 1) else {
             return Vec::new();
         };
         let names = ranking.designs.iter().map(|design| design.name.as_str());
@@ -617,7 +618,12 @@ impl Answers {
         let moves = format!("moves {} by, {unit}", label(output));
         let input = of_design("input", design);
         let dash = || "-".to_owned();
-        let head = [&input, &moves, "by chance up to", "rank correlation"];
+        let head = [
+            &input,
+            &moves,
+            "by chance or error up to",
+            "rank correlation",
+        ];
         table_of_most(&head, &all, |effect| {
             let correlation = effect.rank_correlation.map(|one| format!("{one:+.2}"));
             vec![
@@ -794,23 +800,26 @@ fn in_words_of_lead(ranking: &Ranking, lead: &Lead, next: &RankedDesign) -> Stri
     let [low, high] = [low.min(high), low.max(high)].map(shown);
     let (unit, title) = (ranking.unit, ranking.title);
     let own = shown(next.mean - mean);
-    let (part, mean) = (percent(mean.abs() / next.mean.abs()), shown(mean.abs()));
+    let part = match next.mean {
+        0.0 => String::new(),
+        all => format!(" ({})", percent(mean.abs() / all.abs())),
+    };
+    let mean = shown(mean.abs());
+    let broken = ["", ", which breaks a limit"][usize::from(!next.keeps_limits)];
     let words = format!(
-        " with a {title} of {own} {unit}, {mean} {unit} ({part}) {less} than {} ({low} to {high} {unit} {less} under 95 % of the \
-         disturbances)",
+        " with {title} {own} {unit}, {mean} {unit}{part} {less} than {} ({low} to {high} {unit} {less} under 95 % of the \
+         disturbances){broken}",
         next.name
     );
-    words.replace(" )", ")").replace("  ", " ")
+    // Shares have no unit.
+    words.replace(" ,", ",").replace("  ", " ")
 }
 
 /// Returns that no design keeps the limits, which one comes nearest, and what is wrong with that of the least output.
 fn sentence_of_nearest(ranking: &Ranking, nearest: &RankedDesign) -> String {
     let limits = &ranking.limits;
     let probability = limits[0].probability;
-    let enough = match limits[..limits.len() - 1]
-        .iter()
-        .all(|one| one.probability == probability)
-    {
+    let enough = match limits.iter().all(|one| one.probability == probability) {
         true => format!("{} of the disturbances", percent(probability)),
         false => "the required part of the disturbances".to_owned(),
     };
@@ -830,15 +839,19 @@ fn sentence_of_nearest(ranking: &Ranking, nearest: &RankedDesign) -> String {
     };
     let nearest_one = match nearest.within_limits > 0.0 {
         true => format!("{name} comes nearest, under {within}: {}.", broken(nearest)),
-        false => format!("None does under any; {name}: {}.", broken(nearest)),
+        false => format!(
+            "None does under any disturbance; {name} keeps {}.",
+            broken(nearest)
+        ),
     };
     let mut designs = ranking.designs.iter();
     let least = designs.find(|one| one.wins > nearest.wins && one.best > 0.5);
     let least = least.map_or_else(String::new, |least| {
         let (name, best) = (&least.name, ranking.share(least.best, least.best_interval));
         format!(
-            " {name} has the least {} under {best}, but breaks a limit: {}.",
+            " {name} has the least {} under {best}, but {}: {}.",
             ranking.title,
+            ["breaks a limit", "not in enough solved tests"][usize::from(limits.len() == 1)],
             broken(least)
         )
     });
@@ -883,6 +896,23 @@ fn largest_first<'a, T>(own: impl Iterator<Item = &'a T>, size: impl Fn(&T) -> f
     let mut own: Vec<&T> = own.collect();
     own.sort_by(|one, other| size(other).total_cmp(&size(one)));
     own
+}
+
+/// Returns a table without the columns that are empty below their head, such as that of a limit where no output has one.
+fn without_empty_columns(rows: &[Vec<String>]) -> Vec<Vec<String>> {
+    let is_filled = |column: usize| {
+        rows.iter()
+            .skip(1)
+            .any(|row| row.get(column).is_some_and(|cell| !cell.is_empty()))
+    };
+    let filled = |row: &Vec<String>| {
+        row.iter()
+            .enumerate()
+            .filter(|(column, _)| is_filled(*column))
+            .map(|(_, cell)| cell.clone())
+            .collect()
+    };
+    rows.iter().map(filled).collect()
 }
 
 /// Returns the head and a row for each of `all`.

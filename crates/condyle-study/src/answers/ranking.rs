@@ -215,9 +215,8 @@ fn ranked(all: &[Outcomes], limits: &[RankedLimit]) -> Vec<RankedDesign> {
     order.sort_by(|(one, _), (other, _)| {
         let within =
             |design: &RankedDesign| f64::max(design.within_limits, f64::from(design.keeps_limits));
-        let by_limits = other.keeps_limits.cmp(&one.keeps_limits);
-        by_limits
-            .then(within(other).total_cmp(&within(one)))
+        within(other)
+            .total_cmp(&within(one))
             .then(other.wins.total_cmp(&one.wins))
             .then(one.mean.total_cmp(&other.mean))
     });

@@ -123,7 +123,7 @@ impl MarchError {
 #[non_exhaustive]
 pub enum PlacementError {
     /// A value of the test that its type permits, and the march does not.
-    #[error("no wear test: {0}")]
+    #[error("the wear test is invalid: {0}")]
     InvalidTest(String),
     /// Nothing of the insert lies below the counterface.
     #[error(

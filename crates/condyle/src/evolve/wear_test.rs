@@ -114,11 +114,14 @@ impl WearTest {
                 add_up,
                 format!("the shares of its activities are not from 0 to 1, or add up to {total}"),
             ),
-            (cycles > 0.0, format!("{cycles} cycles")),
-            (has_updates, format!("{:?}", self.schedule.updates)),
+            (cycles > 0.0, format!("its number of cycles is {cycles}")),
+            (
+                has_updates,
+                format!("it has no updates: {:?}", self.schedule.updates),
+            ),
             (
                 has_regions,
-                format!("the insert has {sides} regions, the mechanism another number"),
+                format!("regions of the insert: {sides}; its mechanism has another number"),
             ),
         ];
         let mut failed = checks.into_iter().filter(|(is_met, _)| !is_met);

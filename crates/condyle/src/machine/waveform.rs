@@ -210,7 +210,7 @@ impl Waveform {
         (value, slope * 100.0 / span)
     }
 
-    /// Returns the lowest and the highest value, from those at the knots, which a spline can leave, and at a thousand instants.
+    /// Returns the lowest and the highest of the values at the knots and at a thousand instants; a spline can leave the range of its knots.
     pub fn range(&self) -> [f64; 2] {
         let between = (0..1000).map(|place| self.at(f64::from(place) / 1000.0).0);
         extremes(self.knots.iter().map(|knot| knot.value).chain(between))

@@ -167,7 +167,7 @@ impl MeshFemur {
         };
         let radius_mm = ball.radius_mm;
         Some(format!(
-            "axes pass through the centre of a {name} of {radius_mm:.2} mm"
+            "axes pass through the centre of a {name} of radius {radius_mm:.2} mm"
         ))
     }
 

@@ -31,9 +31,9 @@ pub enum InsertError {
     /// A surface that cannot be meshed in columns.
     #[error(transparent)]
     Columns(#[from] ColumnError),
-    /// A quad of a surface that is inside the mesh, faces in, or stands twice.
+    /// A quad of a surface that is inside the mesh, faces in, or is listed twice.
     #[error(
-        "quad {quad} of the articulating surface is not on the boundary of the mesh, faces into it, or stands twice"
+        "quad {quad} of the articulating surface is not on the boundary of the mesh, faces into it, or is listed twice"
     )]
     NotOnBoundary { quad: usize },
     /// A hexahedron that is inverted or flat.
@@ -101,7 +101,7 @@ impl UnwornInsert {
             return Err(InsertError::BadElement { hex, quality });
         }
         let boundary = mesh.boundary_quads();
-        // Each is removed when it is found, so that one that stands twice is not.
+        // Each is removed when it is found, so that one that is listed twice is not.
         let mut left: HashSet<_> = boundary.iter().copied().map(from_lowest).collect();
         let mut quads = articulating.iter().copied().map(from_lowest);
         if let Some(quad) = quads.position(|quad| !left.remove(&quad)) {

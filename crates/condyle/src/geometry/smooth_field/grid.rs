@@ -85,9 +85,10 @@ impl NodeGrid {
 /// Marker of nodes beyond the band until their bound is computed, mm: no gap is as large.
 pub const BEYOND_BAND_MM: f64 = 1e3;
 
-/// Returns the gap at every node of a grid within the band, [`BEYOND_BAND_MM`] elsewhere.
+/// Returns the gap at every node of a grid within the band, [`BEYOND_BAND_MM`] elsewhere, and the gap to the other side of a wall at the
+/// nodes inside and behind it, 0 elsewhere.
 ///
-/// Inside a thin wall and behind it, the gap is that to the articulating surface, though the other side of the wall is nearer: the spline
+/// Inside a thin wall and behind it, the gap to the articulating surface counts, though the other side of the wall is nearer: the spline
 /// near the surface reads nodes up to 3 mm below it, and a bend of the gaps in the middle of the wall would make the surface wavy.
 ///
 /// Each of `threads` fills its own layers, and no number depends on the thread that computed it. With one thread, the
@@ -97,33 +98,35 @@ pub fn gaps_at_nodes(
     curved: &DividedMesh,
     seen: &Visibility,
     threads: usize,
-) -> Vec<f64> {
+) -> [Vec<f64>; 2] {
     let triangles = 0..curved.mesh.triangles.len();
     let sees = |triangle| seen.sees(&curved.mesh.corners(triangle));
     let is_seen: Vec<bool> = triangles.map(sees).collect();
-    let mut gaps = vec![BEYOND_BAND_MM; grid.node_count()];
+    let count = grid.node_count();
+    let [mut gaps, mut across] = [vec![BEYOND_BAND_MM; count], vec![0.0; count]];
     if threads <= 1 {
-        fill_layers(grid, curved, &is_seen, 0, &mut gaps);
-        return gaps;
+        fill_layers(grid, curved, &is_seen, 0, [&mut gaps, &mut across]);
+        return [gaps, across];
     }
     let [_, _, layer] = grid.strides();
     let layers = grid.counts[2].div_ceil(threads);
     std::thread::scope(|scope| {
-        for (index, part) in gaps.chunks_mut(layer * layers).enumerate() {
-            let is_seen = &is_seen;
-            scope.spawn(move || fill_layers(grid, curved, is_seen, index * layers, part));
+        let [gaps, across] = [&mut gaps, &mut across].map(|all| all.chunks_mut(layer * layers));
+        for (index, (gaps, across)) in gaps.zip(across).enumerate() {
+            let (is_seen, first) = (&is_seen, index * layers);
+            scope.spawn(move || fill_layers(grid, curved, is_seen, first, [gaps, across]));
         }
     });
-    gaps
+    [gaps, across]
 }
 
-/// Fills the layers of nodes from `first_layer` with their gaps to the nearest triangle, or to the seen side of a wall.
+/// Fills the layers of nodes from `first_layer` with their gaps to the nearest triangle, and to the seen side of a wall.
 fn fill_layers(
     grid: &NodeGrid,
     curved: &DividedMesh,
     is_seen: &[bool],
     first_layer: usize,
-    gaps: &mut [f64],
+    [gaps, across_mm]: [&mut [f64]; 2],
 ) {
     let [_, row, layer] = grid.strides();
     // Only for the nearest facet: the gap to the curved surface is far more expensive than the distance to a facet.
@@ -154,9 +157,10 @@ fn fill_layers(
             let far = foot(here, across[here]).1;
             let (normal, wall) = (curved.normal(across[here] as usize), far.point - near.point);
             let is_straight = |way: Vec3| way.dot(&normal) > MIN_COSINE_OF_WALL * way.norm();
-            // Beside the edge of a wall, the nearest side counts.
-            if is_straight(far.point - node) && is_straight(wall) {
-                *gap = (node - far.point).dot(&far.normal);
+            // Beside the edge of a wall and behind a thick one, the nearest side counts.
+            let is_reached = *gap < 0.0 || wall.norm() < MAX_WALL_MM;
+            if is_reached && is_straight(far.point - node) && is_straight(wall) {
+                across_mm[here] = (node - far.point).dot(&far.normal);
             }
         }
     }
@@ -165,6 +169,8 @@ fn fill_layers(
 /// Distance behind the articulating surface up to which the gap is that to it, though the other side of a wall is nearer, mm: the
 /// spline at the surface reads nodes 2.5 spacings away along each axis.
 const WALL_MM: f64 = 5.5;
+/// Largest thickness of a wall through which the spline at the surface reads nodes behind it, mm: 2.5 spacings.
+const MAX_WALL_MM: f64 = 3.125;
 /// Smallest cosine between the normal of the articulating surface and the way to it through the wall.
 const MIN_COSINE_OF_WALL: f64 = 0.9;
 /// Largest cosine between the normals of the sides of a wall, which may be a wedge.

@@ -2,9 +2,9 @@
 
 use std::f64::consts::TAU;
 
-use condyle_mesh::TriangleMesh;
+use condyle_mesh::{TriangleMesh, bounds};
 
-use crate::Vec3;
+use crate::{Mat3, Vec3};
 
 /// Angles from straight down of the directions of view, degrees, and the number of directions at each: those in which the bearing lies
 /// as the counterface flexes.
@@ -23,9 +23,9 @@ pub struct Visibility(Vec<View>);
 
 /// The frontmost surface in cells across a direction.
 struct View {
-    /// Two directions across, and the direction from the body to the viewer.
-    frame: [Vec3; 3],
-    low: [f64; 2],
+    /// Rows: two directions across, and the direction from the body to the viewer.
+    frame: Mat3,
+    low: Vec3,
     columns: usize,
     front_mm: Vec<f64>,
 }
@@ -59,46 +59,38 @@ impl Visibility {
 impl View {
     fn new(samples: &[Vec3], to_viewer: Vec3) -> Self {
         let across = to_viewer.cross(&Vec3::z()).normalize();
-        let frame = [across, to_viewer.cross(&across), to_viewer];
-        let seen = |place: &Vec3| frame.map(|axis| axis.dot(place));
-        let (mut low, mut high) = ([f64::INFINITY; 2], [f64::NEG_INFINITY; 2]);
-        for place in samples.iter().map(seen) {
-            for axis in 0..2 {
-                low[axis] = low[axis].min(place[axis]);
-                high[axis] = high[axis].max(place[axis]);
-            }
-        }
-        let count = |axis: usize| ((high[axis] - low[axis]) / CELL_MM).max(0.0) as usize + 1;
+        let frame = [across, to_viewer.cross(&across), to_viewer].map(|axis| axis.transpose());
+        let frame = Mat3::from_rows(&frame);
+        let seen: Vec<Vec3> = samples.iter().map(|place| frame * place).collect();
+        let (low, high) = bounds(&seen);
+        let [columns, rows] = [0, 1].map(|axis| ((high - low)[axis] / CELL_MM) as usize + 1);
         let mut view = Self {
             frame,
             low,
-            columns: count(0),
-            front_mm: vec![f64::NEG_INFINITY; count(0) * count(1)],
+            columns,
+            front_mm: vec![f64::NEG_INFINITY; columns * rows],
         };
-        for place in samples {
-            let (cell, depth_mm) = view.cell(place);
-            view.front_mm[cell] = view.front_mm[cell].max(depth_mm);
+        for place in seen {
+            let cell = view.cell(&place);
+            view.front_mm[cell] = view.front_mm[cell].max(place.z);
         }
         view
     }
 
-    /// Returns the cell of a place, and how near to the viewer it is, mm.
-    fn cell(&self, place: &Vec3) -> (usize, f64) {
-        let [x, y, depth_mm] = self.frame.map(|axis| axis.dot(place));
-        let number = |value: f64, low: f64| ((value - low) / CELL_MM).max(0.0) as usize;
-        let cell = number(x, self.low[0]) + self.columns * number(y, self.low[1]);
-        (cell.min(self.front_mm.len() - 1), depth_mm)
+    /// Returns the cell of a place in the frame of the view.
+    fn cell(&self, place: &Vec3) -> usize {
+        let [x, y] = [0, 1].map(|axis| ((place - self.low)[axis] / CELL_MM) as usize);
+        (x + self.columns * y).min(self.front_mm.len() - 1)
     }
 
     fn sees(&self, place: &Vec3, normal: &Vec3) -> bool {
-        let cosine = normal.dot(&self.frame[2]);
+        let (place, cosine) = (self.frame * place, (self.frame * normal).z);
         if cosine < MIN_COSINE {
             return false;
         }
         // Within a cell, an oblique surface is nearer at one side than at the other.
         let within_cell_mm = CELL_MM * (1.0 / (cosine * cosine) - 1.0).max(0.0).sqrt();
-        let (cell, depth_mm) = self.cell(place);
-        depth_mm > self.front_mm[cell] - within_cell_mm - SLACK_MM
+        place.z > self.front_mm[self.cell(&place)] - within_cell_mm - SLACK_MM
     }
 }
 
