@@ -1,7 +1,5 @@
 //! The state of an insert as it was made, which wear does not change.
 
-use std::collections::HashSet;
-
 use condyle_fem::{HEX_EDGES, HexMesh, numbered};
 use condyle_mesh::{
     bounds,
@@ -101,10 +99,21 @@ impl UnwornInsert {
             return Err(InsertError::BadElement { hex, quality });
         }
         let boundary = mesh.boundary_quads();
+        let mut left: Vec<Vec<[u32; 4]>> = vec![Vec::new(); mesh.nodes.len()];
+        for quad in boundary.iter().copied().map(from_lowest) {
+            left[quad[0] as usize].push(quad);
+        }
         // Each is removed when it is found, so that one that is listed twice is not.
-        let mut left: HashSet<_> = boundary.iter().copied().map(from_lowest).collect();
+        let is_missing = |quad: [u32; 4]| {
+            let left = left.get_mut(quad[0] as usize);
+            let found = left.and_then(|left| {
+                let place = left.iter().position(|other| *other == quad)?;
+                Some(left.swap_remove(place))
+            });
+            found.is_none()
+        };
         let mut quads = articulating.iter().copied().map(from_lowest);
-        if let Some(quad) = quads.position(|quad| !left.remove(&quad)) {
+        if let Some(quad) = quads.position(is_missing) {
             return Err(InsertError::NotOnBoundary { quad });
         }
         let (surface_nodes, faces) = numbered(articulating);

@@ -137,7 +137,7 @@ fn fill_layers(
     };
     let mut clusters = curved.clusters();
     let band_mm = vec![BAND_MM; gaps.len()];
-    let nearest = nearest_triangles(grid, curved, &clusters, first_layer, &band_mm, |_, _| true);
+    let nearest = nearest_triangles(grid, curved, &clusters, first_layer, &band_mm, &|_, _| true);
     let is_hidden = |triangle: u32| triangle != NONE && !is_seen[triangle as usize];
     let reach_mm = |&triangle: &u32| if is_hidden(triangle) { WALL_MM } else { 0.0 };
     let reach_mm: Vec<f64> = nearest.iter().map(reach_mm).collect();
@@ -146,7 +146,7 @@ fn fill_layers(
         is_seen[triangle] && cosine(nearest[here]) < MAX_COSINE_ACROSS
     };
     clusters.retain(|cluster| is_seen[cluster.triangles.clone()].contains(&true));
-    let across = nearest_triangles(grid, curved, &clusters, first_layer, &reach_mm, is_across);
+    let across = nearest_triangles(grid, curved, &clusters, first_layer, &reach_mm, &is_across);
     for (here, gap) in gaps.iter_mut().enumerate() {
         if nearest[here] == NONE {
             continue;
@@ -186,7 +186,7 @@ fn nearest_triangles(
     clusters: &[Cluster],
     first_layer: usize,
     reach_mm: &[f64],
-    counts: impl Fn(usize, usize) -> bool,
+    counts: &dyn Fn(usize, usize) -> bool,
 ) -> Vec<u32> {
     /// Parts by which rounding may place a point nearer than it is: every bound is wider, so that it changes no result.
     const ROUNDING: f64 = 1e-9;
