@@ -10,15 +10,12 @@ import { licences } from "./licences.mjs";
 
 const [wasm, folder, book] = process.argv.slice(2);
 
-// Of the schema, completion needs tables, keys and words with the first sentences of their meanings, as a line of a list has room for:
+// Of the schema, completion needs tables, keys and words with the first sentence of their meanings, as a line of a list has room for:
 // without the rest, the first load is smaller.
 function forCompletion({ properties, items, anyOf, enum: words, description, type }) {
   const named = properties && Object.fromEntries(Object.entries(properties).map(([name, key]) => [name, forCompletion(key)]));
   const isTable = type === "object" ? type : undefined;
-  const meaning = description
-    ?.split(/(?<=\.) /)
-    .slice(0, 2)
-    .join(" ");
+  const meaning = description?.split(/(?<=\.) /)[0];
   return { properties: named, items: items && forCompletion(items), anyOf: anyOf?.map(forCompletion), enum: words, description: meaning, type: isTable };
 }
 
