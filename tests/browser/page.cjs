@@ -331,6 +331,13 @@ async function dropped(page) {
   assert.strictEqual(new URL(page.url()).hash, "", "the address has another case than that of the meshes");
   await picture(page);
   await keep(page, "dropped");
+  const waveform = { name: "gait.csv", text: "Gait cycle (%), force [N]\n0,300\n25,1500\n50,800\n" };
+  const driven = `${QUICK}\n[machine.axial_force]\nfile = "gait.csv"\ninterpolation = "half-cosine"\n`;
+  await ran(page, () => drop(page, [{ name: "walk.toml", text: driven }, waveform]));
+  assert.strictEqual(await page.locator("#case-text").inputValue(), driven);
+  assert.strictEqual(new URL(page.url()).hash, "", "the address has a case whose waveform it lacks");
+  await drop(page, [waveform]);
+  await page.waitForFunction(() => /gait\.csv is read/.test(document.getElementById("remarks").textContent));
 }
 
 // Files dropped on the page.

@@ -165,7 +165,7 @@ fn add(heading: &str, rows: impl Iterator<Item = String>, lines: &mut Lines) {
 }
 
 fn setting_row(one: &SettingDifference) -> String {
-    let [first, second] = [&one.first, &one.second].map(|value| value.as_deref().unwrap_or("-"));
+    let [first, second] = one.shown().map(|value| value.unwrap_or("-".to_owned()));
     format!("  {:<38}  {first}  {second}", one.key)
 }
 

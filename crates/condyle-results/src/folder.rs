@@ -21,7 +21,7 @@ use super::{
     },
     insert_fields::{insert_file_name, insert_pvd, insert_vtu},
     parts::kinematics_file,
-    settings::{SettingDifference, setting_differences},
+    settings::setting_differences,
     slip_paths::slip_paths_csv,
     summary::{Summary, json_text},
     tables::{femur_pose_csv, kinematics_csv, wear_csv},
@@ -229,10 +229,12 @@ impl ResultsFolder {
     /// Describes the difference of a case from that of the run in the folder.
     fn other_inputs(&self, case_toml: &str) -> String {
         let own = fs::read_to_string(self.file("case.toml")).unwrap_or_default();
-        let value = |value: Option<String>| value.unwrap_or_else(|| "absent".to_owned());
         let differ = setting_differences(&own, case_toml).into_iter();
-        let differ = differ.map(|SettingDifference { key, first, second }| {
-            format!("{key} was {} and is {}", value(first), value(second))
+        let differ = differ.map(|one| {
+            let [was, is] = one
+                .shown()
+                .map(|value| value.unwrap_or("absent".to_owned()));
+            format!("{} was {was} and is {is}", one.key)
         });
         let differ: Vec<String> = differ.take(MAX_KEYS_NAMED).collect();
         let differ = match differ.is_empty() {

@@ -16,6 +16,23 @@ pub struct SettingDifference {
     pub second: Option<String>,
 }
 
+/// Number of points of a curve up to which they are shown.
+const MAX_POINTS_SHOWN: usize = 4;
+
+impl SettingDifference {
+    /// Returns both values for a reader, a curve of many points by their number.
+    pub fn shown(&self) -> [Option<String>; 2] {
+        [&self.first, &self.second].map(|value| {
+            let value = value.as_ref()?;
+            let points = value.matches("], [").count() + 1;
+            Some(match points > MAX_POINTS_SHOWN {
+                true => format!("{points} points"),
+                false => value.clone(),
+            })
+        })
+    }
+}
+
 /// Returns the keys with different values, in alphabetical order; cases are written with every default.
 pub fn setting_differences(first: &str, second: &str) -> Vec<SettingDifference> {
     let [first, second] = [first, second].map(|case| {

@@ -376,7 +376,10 @@ impl Uncertainty {
             );
         }
         if !self.left_out.is_empty() {
-            text += &format!("Inputs without a key: {}.\n", self.left_out.join(", "));
+            text += &format!(
+                "Not varied, since no key of the case sets them: {}.\n",
+                self.left_out.join(", ")
+            );
         }
         text
     }

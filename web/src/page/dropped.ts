@@ -1,4 +1,4 @@
-// Files that are dropped on the page or chosen: two meshes, or a case.
+// Files that are dropped on the page or chosen: two meshes, a case with the files that it names, or such files alone.
 
 import { button, element } from "../dom";
 import type { Files } from "./wasi";
@@ -10,7 +10,12 @@ export interface Bodies {
 }
 
 const MESH = /\.(stl|obj|ply|vtp)$/i;
+const TABLE = /\.csv$/i;
 const CASE = /\.toml$/i;
+// A machine file has joints.
+const MACHINE = /^\s*\[\[joint\]\]/m;
+const WANTED =
+  "error: give two meshes (STL, OBJ, PLY or VTP), one of the femoral component and one of the insert, or one case (.toml) with the files that it names, or waveforms (.csv)";
 const NAMED: [body: "femur" | "insert", words: RegExp][] = [
   ["femur", /fem/i],
   ["insert", /insert|inlay|tib|poly|pe\b/i],
@@ -18,7 +23,8 @@ const NAMED: [body: "femur" | "insert", words: RegExp][] = [
 
 export interface Listener {
   bodies(bodies: Bodies): void;
-  caseText(text: string): void;
+  // Files that a case can name, and the case among them.
+  named(files: Files, caseText?: string): void;
   refused(why: string): void;
 }
 
@@ -37,18 +43,27 @@ export function takeDropped(listener: Listener): void {
 }
 
 export async function take(files: File[], listener: Listener): Promise<void> {
-  const text = files.find(({ name }) => CASE.test(name));
-  if (text && files.length === 1) return listener.caseText(await text.text());
-  const [one, other] = files.filter(({ name }) => MESH.test(name));
-  if (!one || !other || files.length !== 2) {
-    return listener.refused("error: give two meshes (STL, OBJ, PLY or VTP), one of the femoral component and one of the insert, or one case (.toml)");
-  }
+  const meshes = files.filter(({ name }) => MESH.test(name));
+  const [one, other] = meshes;
+  if (!one || !other || files.length !== 2 || meshes.length !== 2) return takeNamed(files, meshes, listener);
   const femur = femurByName(one, other) ?? (await askFemur(one, other));
   if (!femur) return;
   const insert = femur === one ? other : one;
   if (femur.name === insert.name) return listener.refused("error: both files have the same name; rename one");
-  const bytes = async (file: File) => new Uint8Array(await file.arrayBuffer());
-  listener.bodies({ femur: femur.name, insert: insert.name, files: { [femur.name]: await bytes(femur), [insert.name]: await bytes(insert) } });
+  listener.bodies({ femur: femur.name, insert: insert.name, files: await read(files) });
+}
+
+async function takeNamed(files: File[], meshes: File[], listener: Listener): Promise<void> {
+  const texts = await Promise.all(files.filter(({ name }) => CASE.test(name)).map(async (file) => ({ file, text: await file.text() })));
+  const [found, ...more] = texts.filter(({ text }) => !MACHINE.test(text));
+  const isKnown = files.length === meshes.length + texts.length + files.filter(({ name }) => TABLE.test(name)).length;
+  if (!isKnown || files.length === 0 || more.length > 0 || (!found && meshes.length > 0)) return listener.refused(WANTED);
+  listener.named(await read(files.filter((file) => file !== found?.file)), found?.text);
+}
+
+async function read(files: File[]): Promise<Files> {
+  const entry = async (file: File) => [file.name, new Uint8Array(await file.arrayBuffer())] as const;
+  return Object.fromEntries(await Promise.all(files.map(entry)));
 }
 
 // The femur among two files, if exactly one assignment fits their names.

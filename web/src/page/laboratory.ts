@@ -30,7 +30,8 @@ export interface Listener {
 
 export class Laboratory {
   text: string;
-  private bodies: Files = {};
+  // Meshes, waveforms and machines that a case can name.
+  private named: Files = {};
   private readonly solver: Solver;
   private timer = 0;
   // The results folder of the last run, without its report until that is asked for.
@@ -86,12 +87,16 @@ export class Laboratory {
     return answer.failure ? undefined : answer.files;
   }
 
+  add(files: Files): void {
+    this.named = { ...this.named, ...files };
+  }
+
   // A case of two meshes, with unit and axes as condyle detects them.
   async draft({ femur, insert, files }: Bodies): Promise<string | undefined> {
     this.cancel();
     const drafted = (await this.call(["draft", CASE, femur, insert], files, [CASE]))?.[CASE];
     if (!drafted) return undefined;
-    this.bodies = files;
+    this.add(files);
     return decode(drafted);
   }
 
@@ -110,7 +115,7 @@ export class Laboratory {
   // The files of the case; a worker gets copies of them.
   private files(): Files {
     const text = new TextEncoder().encode(this.text);
-    return { ...this.bodies, [CASE]: text };
+    return { ...this.named, [CASE]: text };
   }
 }
 

@@ -10,6 +10,7 @@ import { valuesOf } from "./case_text";
 import { Compared } from "./compared";
 import { gripsOf } from "./dimensions";
 import { take, takeDropped, type Bodies } from "./dropped";
+import type { Files } from "./wasi";
 import { Editor } from "./editor";
 import { EXAMPLES } from "./examples";
 import { Laboratory, REPORT } from "./laboratory";
@@ -30,10 +31,9 @@ function byId(id: string): HTMLElement {
   return document.getElementById(id)!;
 }
 
-// Meshes are in no address: a case that names them would not run elsewhere.
-function namesMeshes(text: string): boolean {
-  const values = valuesOf(text);
-  return ["femur.file", "insert.file"].some((path) => values.has(path));
+// Files are in no address: a case that names them would not run elsewhere.
+function namesFiles(text: string): boolean {
+  return [...valuesOf(text).keys()].some((path) => /(^|\.)file$/.test(path));
 }
 
 // Waits until the page is painted; the time after it is that of another task.
@@ -112,12 +112,19 @@ class Page {
   private takeFiles(): void {
     const listener = {
       bodies: (bodies: Bodies) => void this.draft(bodies),
-      caseText: (text: string) => this.open(text),
+      named: (files: Files, text?: string) => this.add(files, text),
       refused: (why: string) => this.refuse(why),
     };
     takeDropped(listener);
     const input = byId("files") as HTMLInputElement;
     input.addEventListener("change", () => void take([...(input.files ?? [])], listener).then(() => (input.value = "")));
+  }
+
+  private add(files: Files, text?: string): void {
+    this.laboratory.add(files);
+    const example = (name: string) => element("li", {}, `${name} is read: name it in the case, as in file = "${name}"`);
+    byId("remarks").replaceChildren(...(text === undefined ? Object.keys(files).map(example) : []));
+    if (text !== undefined) this.open(text);
   }
 
   private async draft(bodies: Bodies): Promise<void> {
@@ -194,7 +201,8 @@ class Page {
     await painted();
     this.compared.show(found, this.shown.viewer);
     // Browsers refuse addresses that are too long or change too often.
-    await this.memory.remember(this.laboratory.text, !namesMeshes(found.text)).catch(() => undefined);
+    const { text } = this.laboratory;
+    await this.memory.remember(text, !namesFiles(text)).catch(() => undefined);
     document.documentElement.dataset["ready"] = "yes";
     document.documentElement.dataset["runs"] = String(++this.runs);
   }

@@ -85,6 +85,11 @@ impl Case {
         self.errors_at(&[(location, message)])
     }
 
+    /// Returns a problem of a table of the case.
+    pub fn problem_at(&self, table: &'static str, message: String) -> Problems {
+        self.errors_at(&[((table, &[]), message)])
+    }
+
     fn errors_at(&self, errors: &[(KeyLocation, String)]) -> Problems {
         let source = &self.origin.source;
         let problem = |(location, message): &(KeyLocation, String)| {

@@ -353,7 +353,8 @@ fn from_file(
         return log.reject(section.value_span(key), fault);
     };
     let mut problems = Vec::new();
-    let first = names[0].to_lowercase();
+    // The whole name, as in "Gait cycle (%)".
+    let first = source.inner()[columns.name_span(0)].to_lowercase();
     let mut words = ["percent", "pct", "%"].iter();
     if !words.any(|word| first.contains(word)) {
         let name = names[0];

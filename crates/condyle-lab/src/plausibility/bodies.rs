@@ -67,7 +67,7 @@ pub(crate) fn wear_at_rim(finished: &Finished<'_>) -> Option<PlausibilityWarning
     }
     let percent = percent_of(at_rim, whole);
     let message = format!(
-        "{percent:.1} % of the worn volume lies within {NEAR_RIM_MM} mm of the rim of the articulating surface; up to \
+        "{percent:.2} % of the worn volume lies within {NEAR_RIM_MM} mm of the rim of the articulating surface; up to \
              {MAX_AT_RIM_PERCENT:.0} % is acceptable"
     );
     let advice = "The counterface bears on an edge, where the pressure of an elastic model is unreliable: check the placement \
@@ -164,12 +164,12 @@ pub(crate) fn pressure_beyond_flow(finished: &Finished<'_>) -> Option<Plausibili
 /// (`docs/src/three-models.md`).
 const IN_KNEES: [&str; 2] = [
     "which occurs in ordinary knees and changes the mass of three of them by less than 0.1 % and their depth by at most 2 %",
-    " A linear foundation also overestimates it, by 18 to 40 % in three unworn knees; --set contact.model=deformable avoids this.",
+    " By the linear law, a foundation overestimates the pressure, by 18 to 40 % in three unworn knees; --set contact.model=deformable avoids this.",
 ];
 /// The same where neither was computed.
 const NOT_KNOWN: [&str; 2] = [
     "whose effect on the wear is not known here",
-    " A foundation also neglects the support by the polyethylene around the contact; --set contact.model=deformable includes it.",
+    " A foundation neglects the support by the polyethylene around the contact; --set contact.model=deformable includes it.",
 ];
 
 /// Warns of pressure at which polyethylene would yield below the surface, for an insert that is modelled without
@@ -192,10 +192,13 @@ pub(crate) fn pressure_beyond_yield(finished: &Finished<'_>) -> Option<Plausibil
         TestedJoint::Knee if peak <= FULL_FLOW * YIELD_MPA => IN_KNEES,
         _ => NOT_KNOWN,
     };
-    let foundation = if is_solid { "" } else { of_foundation };
-    let advice = format!(
-        "The model does not include local yield, {effect}. The pressure is an upper bound.{foundation}"
-    );
+    // Yield lowers the peak of a solid; the error of a foundation has either sign.
+    let of_model = if is_solid {
+        " The pressure is an upper bound."
+    } else {
+        of_foundation
+    };
+    let advice = format!("The model does not include local yield, {effect}.{of_model}");
     let value = (peak, limit, "MPa");
     (peak > limit && !yields).then(|| warning("pressure_beyond_yield", value, message, &advice))
 }

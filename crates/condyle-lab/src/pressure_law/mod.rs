@@ -11,10 +11,7 @@ use condyle::{
     },
     evolve::March,
     geometry::Insert,
-    machine::{
-        CycleRow, JointIndex,
-        knee::{AP, IE, KNEE},
-    },
+    machine::{CycleRow, Drive, JointIndex},
 };
 use condyle_case::{
     cache::Cache,
@@ -84,13 +81,13 @@ struct HeldOut {
 }
 
 /// Fits a pressure table with which the foundation of the changed case at `case_path` presses as its deformable insert does,
-/// under the forces of the first cycle of its first activity; then runs both.
+/// under the forces of the first cycle; then runs both.
 ///
 /// The table is tested on the cases `held_out` too, to which it is not fitted. `on_step` receives the name of each step as
 /// it begins.
 ///
 /// # Errors
-/// The case does not run with one of the two models.
+/// A case with several activities, or one that does not run with one of the two models.
 pub fn calibrate(
     case_path: &Path,
     changes: &[Assignment],
@@ -98,6 +95,7 @@ pub fn calibrate(
     on_step: &mut dyn FnMut(&str),
 ) -> Result<CalibratedLaw, RunError> {
     let case = Case::read_changed(case_path, changes)?;
+    check_activities(&case)?;
     on_step("the deformable insert");
     // The insert before it wears, and its first cycle: the table is fitted to the unworn bodies.
     let (mut insert, mut targets) = (None, Vec::new());
@@ -120,6 +118,7 @@ pub fn calibrate(
     for path in held_out {
         on_step(&path.display().to_string());
         let case = Case::read_changed(path, &[])?;
+        check_activities(&case)?;
         let deformable = run(&with_deformable(&case), &mut |_| ())?;
         let (left, left_before) = errors(&case, &table, &deformable)?;
         tested.push(HeldOut {
@@ -137,6 +136,18 @@ pub fn calibrate(
         table: table.points().to_vec(),
         case: with_table(&case, table, Some(peak_error_percent)),
     })
+}
+
+/// Rejects several activities: fit and errors are those of the cycles of one.
+fn check_activities(case: &Case) -> Result<(), RunError> {
+    let count = case.activities.len();
+    if count < 2 {
+        return Ok(());
+    }
+    let message = format!(
+        "the table is fitted to one activity, and the case has {count}; give a case of the activity with the highest pressure"
+    );
+    Err(RunError::Case(case.problem_at("activity", message)))
 }
 
 /// Errors of the foundation with a table, and with the law of the case.
@@ -276,9 +287,6 @@ struct StanceErrors {
 struct CycleErrors {
     peak_pressure: StanceErrors,
     contact_area: StanceErrors,
-    /// Root mean square over the whole cycle.
-    ap_mm: f64,
-    ie_deg: f64,
 }
 
 /// Errors of a run of the foundation, relative to the deformable insert.
@@ -286,6 +294,8 @@ struct CycleErrors {
 struct RunErrors {
     first_cycle: CycleErrors,
     last_cycle: CycleErrors,
+    /// Root mean square over the first cycle of the difference of each freedom, by its column.
+    first_cycle_motions: Vec<(&'static str, f64)>,
     deformable_mass_loss_mg: f64,
     mass_loss_mg: f64,
     mass_loss_percent: f64,
@@ -304,6 +314,7 @@ impl RunErrors {
         Self {
             first_cycle: CycleErrors::between(first, wanted_first),
             last_cycle: CycleErrors::between(last, wanted_last),
+            first_cycle_motions: motions(&foundation.march, first, wanted_first),
             deformable_mass_loss_mg: wanted[&MASS_LOSS_MG],
             mass_loss_mg: found[&MASS_LOSS_MG],
             mass_loss_percent: error_percent(found[&MASS_LOSS_MG], wanted[&MASS_LOSS_MG]),
@@ -318,20 +329,31 @@ impl RunErrors {
 
 impl CycleErrors {
     fn between(found: &[CycleRow], wanted: &[CycleRow]) -> Self {
-        let distance = |joint: JointIndex| {
-            let pairs = found.iter().zip(wanted);
-            let squares = pairs
-                .map(|(one, other)| joint.of(&one.positions) - joint.of(&other.positions))
-                .map(|off| KNEE.joint(joint).kind().in_files(off).powi(2));
-            (squares.sum::<f64>() / wanted.len() as f64).sqrt()
-        };
         Self {
             peak_pressure: stance_errors(found, wanted, |row| row.peak_pressure_mpa),
             contact_area: stance_errors(found, wanted, |row| row.contact_area_mm2),
-            ap_mm: distance(AP),
-            ie_deg: distance(IE),
         }
     }
+}
+
+/// Returns the root mean square of the difference of two cycles along each freedom of the machine, by its column.
+fn motions(march: &March, found: &[CycleRow], wanted: &[CycleRow]) -> Vec<(&'static str, f64)> {
+    let machine = march.test().machine();
+    let is_free = |joint: &JointIndex| matches!(machine.joint(*joint).drive, Drive::Loaded(_));
+    let difference = |joint: JointIndex| {
+        let description = machine.mechanism.joint(joint);
+        let pairs = found.iter().zip(wanted);
+        let squares = pairs
+            .map(|(one, other)| joint.of(&one.positions) - joint.of(&other.positions))
+            .map(|off| description.kind().in_files(off).powi(2));
+        let mean = squares.sum::<f64>() / wanted.len() as f64;
+        (description.column, mean.sqrt())
+    };
+    JointIndex::ALL
+        .into_iter()
+        .filter(is_free)
+        .map(difference)
+        .collect()
 }
 
 fn first_and_last(march: &March) -> [&[CycleRow]; 2] {
@@ -426,12 +448,12 @@ impl CalibratedLaw {
 fn table_of_errors(before: &RunErrors, after: &RunErrors) -> String {
     let mut rows = vec![["", "law before", "table"].map(str::to_owned).to_vec()];
     for ((name, before), (_, after)) in in_words(before).into_iter().zip(in_words(after)) {
-        rows.push(vec![name.to_owned(), before, after]);
+        rows.push(vec![name, before, after]);
     }
     aligned(&rows)
 }
 
-fn in_words(errors: &RunErrors) -> [(&'static str, String); 9] {
+fn in_words(errors: &RunErrors) -> Vec<(String, String)> {
     let in_stance = |off: StanceErrors| {
         let (mean, most, highest) = (off.mean_percent, off.most_percent, off.of_highest_percent);
         format!("{mean:.1} % (largest {most:.1} %, at the peak {highest:+.1} %)")
@@ -454,15 +476,20 @@ fn in_words(errors: &RunErrors) -> [(&'static str, String); 9] {
     );
     let (wall_s, deformable_s) = (errors.wall_s, errors.deformable_wall_s);
     let time = format!("{wall_s:.2} s ({deformable_s:.2} s on the deformable insert)");
-    [
+    let named = |(name, words): (&str, String)| (name.to_owned(), words);
+    let contact = [
         ("peak pressure in stance, first cycle", pressure),
         ("the same, last cycle", last_pressure),
         ("contact area in stance, first cycle", area),
         ("the same, last cycle", last_area),
-        ("AP, first cycle", format!("{:.3} mm", first.ap_mm)),
-        ("IE, first cycle", format!("{:.3} degrees", first.ie_deg)),
-        ("mass lost", mass),
-        ("deepest wear", depth),
-        ("time", time),
-    ]
+    ];
+    let motions = errors.first_cycle_motions.iter();
+    let motions =
+        motions.map(|(column, rms)| (format!("{column}, first cycle"), format!("{rms:.3}")));
+    let wear = [("mass lost", mass), ("deepest wear", depth), ("time", time)];
+    let contact = contact.into_iter().map(named);
+    contact
+        .chain(motions)
+        .chain(wear.into_iter().map(named))
+        .collect()
 }

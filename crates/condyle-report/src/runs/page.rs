@@ -146,7 +146,8 @@ impl<'a> Compared<'a> {
         // The titles are the names of the runs.
         let settings = difference.settings.iter().filter(|one| one.key != "title");
         let setting = |one: &SettingDifference| {
-            vec![Some(one.key.clone()), one.first.clone(), one.second.clone()]
+            let [first, second] = one.shown();
+            vec![Some(one.key.clone()), first, second]
         };
         Self {
             first,

@@ -63,12 +63,10 @@ impl SmoothField {
         // Only a closed surface has an inside far from its triangles.
         let is_far = bound_far_gaps(&grid, &mut gaps, edge_report(mesh).is_closed());
         // Not before: the space behind a wall is no inside.
-        for (gap, across_mm) in gaps
-            .iter_mut()
-            .zip(across)
-            .filter(|(_, across)| *across < 0.0)
-        {
-            *gap = across_mm;
+        for (gap, across_mm) in gaps.iter_mut().zip(across) {
+            if across_mm < 0.0 {
+                *gap = across_mm;
+            }
         }
         let gap = GapSpline::new(grid, spline_coefficients(&grid, &is_far, gaps));
         Self {
@@ -206,6 +204,21 @@ mod tests {
             let error = sample.curvature.times(&across) - across / 23.8;
             let along_surface = error - direction * direction.dot(&error);
             assert!(along_surface.norm() < 4e-3, "{along_surface}");
+        }
+    }
+
+    #[test]
+    fn verify_a_small_ball_is_as_smooth_as_a_large_one() {
+        let mut small = ball(1.0);
+        for vertex in &mut small.vertices {
+            *vertex *= 3.6 / 24.0;
+        }
+        let field = SmoothField::new(&small, 1);
+        for i in 0..400 {
+            let (along, across) = (0.01 * f64::from(i % 20), 0.013 * f64::from(i / 20));
+            let direction = Vec3::new(along, -1.0, across).normalize();
+            let gap_mm = field.gap_mm(&(direction * 3.55));
+            assert!((gap_mm + 0.05).abs() < 2e-4, "{gap_mm}");
         }
     }
 

@@ -71,38 +71,39 @@ impl Case {
         let as_linked = |law| self.material.cross_linking.under(law);
         let comparison_laws = self.wear.comparison_laws().into_iter().map(as_linked);
         let is_round = self.insert.shape.is_round();
-        Ok(Built {
-            test: WearTest {
-                contact: self.contact_law(&insert, keep, bodies)?,
-                counterface: Arc::clone(&femur.surface),
-                flexion_axis_mm: femur.flexion_axis_mm,
-                // Wherever the file has it, the axis of a mesh starts in the centre of a round bearing.
-                start_mm: match &self.femur.shape {
-                    FemurShape::Mesh(mesh) if is_round && mesh.start_mm.is_none() => (0.0, 0.0),
-                    _ => femur.start_mm,
-                },
-                start_height_mm: is_round.then_some(0.0),
-                insert: match joint {
-                    TestedJoint::Knee => insert,
-                    _ => Arc::new(Insert::clone(&insert).with_one_region(joint.bodies()[1])),
-                },
-                activities,
-                wear: as_linked(self.wear.law()).law,
-                comparison_laws: comparison_laws.collect(),
-                law_family: true,
-                creep: self.creep.law(),
-                density_mg_per_mm3: self.material.density_mg_per_mm3,
-                time: self.time_settings(),
-                schedule: Schedule {
-                    cycles: self.march.cycles as f64,
-                    updates: match &self.march.update {
-                        Update::Fixed(fixed) => Updates::Fixed(fixed.updates as usize),
-                        Update::Auto(auto) => Updates::Auto {
-                            tolerance: auto.depth_tolerance_fraction,
-                        },
+        let test = WearTest {
+            contact: self.contact_law(&insert, keep, bodies)?,
+            counterface: Arc::clone(&femur.surface),
+            flexion_axis_mm: femur.flexion_axis_mm,
+            // Wherever the file has it, the axis of a mesh starts in the centre of a round bearing.
+            start_mm: match &self.femur.shape {
+                FemurShape::Mesh(mesh) if is_round && mesh.start_mm.is_none() => (0.0, 0.0),
+                _ => femur.start_mm,
+            },
+            start_height_mm: is_round.then_some(0.0),
+            insert: match joint {
+                TestedJoint::Knee => insert,
+                _ => Arc::new(Insert::clone(&insert).with_one_region(joint.bodies()[1])),
+            },
+            activities,
+            wear: as_linked(self.wear.law()).law,
+            comparison_laws: comparison_laws.collect(),
+            law_family: true,
+            creep: self.creep.law(),
+            density_mg_per_mm3: self.material.density_mg_per_mm3,
+            time: self.time_settings(),
+            schedule: Schedule {
+                cycles: self.march.cycles as f64,
+                updates: match &self.march.update {
+                    Update::Fixed(fixed) => Updates::Fixed(fixed.updates as usize),
+                    Update::Auto(auto) => Updates::Auto {
+                        tolerance: auto.depth_tolerance_fraction,
                     },
                 },
             },
+        };
+        Ok(Built {
+            test,
             warnings,
             axes: femur.axes.clone(),
         })

@@ -124,7 +124,7 @@ fn csv_in_another_unit_is_refused_at_its_header() {
 fn units_in_brackets_have_many_spellings() {
     for unit in ["Nm", "N m", "N\u{b7}m", "N*m"] {
         let folder = tempfile::tempdir().unwrap();
-        let csv = format!("percent,torque [{unit}]\n{}", samples(|_| 0.0));
+        let csv = format!("Gait cycle (%), torque [{unit}]\n{}", samples(|_| 0.0));
         std::fs::write(folder.path().join("wave.csv"), csv).unwrap();
         let text = "[machine.ie_torque]\nfile = \"wave.csv\"\n";
         let read = Case::parse(text, "case.toml", folder.path());

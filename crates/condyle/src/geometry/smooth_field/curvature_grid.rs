@@ -4,7 +4,7 @@ use std::{ops::Range, sync::Arc};
 
 use serde::{Deserialize, Serialize};
 
-use super::{grid::SPACING_MM, spline::GapSpline};
+use super::spline::GapSpline;
 use crate::{
     Vec3, Vector,
     geometry::surface_sample::CurvatureBounds,
@@ -90,7 +90,7 @@ fn rounded_up(value: f64) -> f32 {
 
 impl CurvatureGrid {
     pub fn new(gap: &GapSpline) -> Self {
-        let margin_mm = HALF_DIAGONAL * SPACING_MM;
+        let margin_mm = HALF_DIAGONAL * gap.grid.spacing_mm;
         let near = NEAR_MM.start - margin_mm..NEAR_MM.end + margin_mm;
         let mut cells = vec![CellBounds::UNKNOWN; gap.grid.node_count()];
         let mut known = Vec::new();
@@ -106,7 +106,7 @@ impl CurvatureGrid {
         }
         Self {
             cells: cells.into(),
-            radius_mm: CELLS_AROUND as f64 * SPACING_MM,
+            radius_mm: CELLS_AROUND as f64 * gap.grid.spacing_mm,
         }
     }
 
@@ -149,9 +149,9 @@ fn with_neighbours(
 
 /// Returns the bounds at eight points of a cell, without those away from contact.
 fn in_cell(gap: &GapSpline, middle: &Vec3) -> CellBounds {
-    const OFFSET_MM: f64 = SPACING_MM / 4.0;
     let mut all = CellBounds::NONE;
-    let offset = |is_up: bool| if is_up { OFFSET_MM } else { -OFFSET_MM };
+    let offset_mm = gap.grid.spacing_mm / 4.0;
+    let offset = |is_up: bool| if is_up { offset_mm } else { -offset_mm };
     for is_up in [false, true] {
         let points = Vector::new(
             F64x4::from_lanes(|lane| middle.x + offset(lane & 1 == 0)),

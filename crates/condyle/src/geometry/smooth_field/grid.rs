@@ -6,34 +6,42 @@ use serde::{Deserialize, Serialize};
 use super::visibility::Visibility;
 use crate::Vec3;
 
-/// Distance between grid nodes, mm: the spline's error on a ball of radius 20 mm is then below
-/// 0.1 micrometre.
-pub const SPACING_MM: f64 = 1.25;
+/// Largest and smallest distance between grid nodes, mm: with the largest, the spline's error on a ball of radius 20 mm is below
+/// 0.1 micrometre. The number of nodes grows with its inverse cube.
+const MAX_SPACING_MM: f64 = 1.25;
+const MIN_SPACING_MM: f64 = 0.4;
+/// Spacings along the smallest extent of a small surface: on a ball, the error is below 0.2 micrometres.
+const SPACINGS_ACROSS: f64 = 20.0;
 
 /// Distance from the surface within which grid nodes have a true gap, mm: the deepest overclosure
 /// of a run, and the spline's support around it.
 pub const BAND_MM: f64 = 3.5;
 
-/// A regular grid of nodes around a surface, [`SPACING_MM`] apart.
+/// A regular grid of nodes around a surface.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct NodeGrid {
     /// Position of node (0, 0, 0), mm.
     pub origin: Vec3,
     /// Nodes along x, y, z; x runs fastest.
     pub counts: [usize; 3],
+    /// Distance between neighbours along each axis, mm.
+    pub spacing_mm: f64,
 }
 
 impl NodeGrid {
     /// Creates the grid around a surface from `low` to `high`: two nodes beyond the band.
     pub fn around((low, high): (Vec3, Vec3)) -> Self {
+        let spacing_mm =
+            ((high - low).min() / SPACINGS_ACROSS).clamp(MIN_SPACING_MM, MAX_SPACING_MM);
         // The spline reads a node on either side, and a point at the band has one more beyond it.
-        let margin = Vec3::repeat(BAND_MM + 2.0 * SPACING_MM);
+        let margin = Vec3::repeat(BAND_MM + 2.0 * spacing_mm);
         let origin = low - margin;
         let size = high + margin - origin;
-        let count = |axis: usize| ((size[axis] / SPACING_MM).ceil() as usize).saturating_add(1);
+        let count = |axis: usize| ((size[axis] / spacing_mm).ceil() as usize).saturating_add(1);
         Self {
             origin,
             counts: [0, 1, 2].map(count),
+            spacing_mm,
         }
     }
 
@@ -52,7 +60,7 @@ impl NodeGrid {
     /// Returns the position of node (i, j, k), mm.
     #[inline]
     pub fn position(&self, i: usize, j: usize, k: usize) -> Vec3 {
-        self.origin + Vec3::new(i as f64, j as f64, k as f64) * SPACING_MM
+        self.origin + Vec3::new(i as f64, j as f64, k as f64) * self.spacing_mm
     }
 
     /// Returns the numbers and positions of the nodes with neighbours on all sides.
@@ -67,7 +75,10 @@ impl NodeGrid {
 
     /// Returns the first node and one past the last node along each axis within `reach_mm` of a place along that axis.
     pub fn nodes_around(&self, place: &Vec3, reach_mm: f64) -> [[usize; 2]; 3] {
-        let (middle, reach) = ((place - self.origin) / SPACING_MM, reach_mm / SPACING_MM);
+        let (middle, reach) = (
+            (place - self.origin) / self.spacing_mm,
+            reach_mm / self.spacing_mm,
+        );
         [0, 1, 2].map(|axis| {
             let first = (middle[axis] - reach).ceil().max(0.0) as usize;
             let end = (middle[axis] + reach).floor().max(-1.0) + 1.0;
@@ -77,7 +88,7 @@ impl NodeGrid {
 
     /// Returns the largest distance of the grid from the frame's origin, mm.
     pub fn reach_mm(&self) -> f64 {
-        let size = Vec3::from(self.counts.map(|count| count as f64)) * SPACING_MM;
+        let size = Vec3::from(self.counts.map(|count| count as f64)) * self.spacing_mm;
         self.origin.abs().sup(&(self.origin + size).abs()).norm()
     }
 }
@@ -158,7 +169,7 @@ fn fill_layers(
             let (normal, wall) = (curved.normal(across[here] as usize), far.point - near.point);
             let is_straight = |way: Vec3| way.dot(&normal) > MIN_COSINE_OF_WALL * way.norm();
             // Beside the edge of a wall and behind a thick one, the nearest side counts.
-            let is_reached = *gap < 0.0 || wall.norm() < MAX_WALL_MM;
+            let is_reached = *gap < 0.0 || wall.norm() < MAX_WALL * grid.spacing_mm;
             if is_reached && is_straight(far.point - node) && is_straight(wall) {
                 across_mm[here] = (node - far.point).dot(&far.normal);
             }
@@ -169,8 +180,8 @@ fn fill_layers(
 /// Distance behind the articulating surface up to which the gap is that to it, though the other side of a wall is nearer, mm: the
 /// spline at the surface reads nodes 2.5 spacings away along each axis.
 const WALL_MM: f64 = 5.5;
-/// Largest thickness of a wall through which the spline at the surface reads nodes behind it, mm: 2.5 spacings.
-const MAX_WALL_MM: f64 = 3.125;
+/// Largest thickness of a wall through which the spline at the surface reads nodes behind it, in spacings.
+const MAX_WALL: f64 = 2.5;
 /// Smallest cosine between the normal of the articulating surface and the way to it through the wall.
 const MIN_COSINE_OF_WALL: f64 = 0.9;
 /// Largest cosine between the normals of the sides of a wall, which may be a wedge.
@@ -253,7 +264,7 @@ pub fn bound_far_gaps(grid: &NodeGrid, gaps: &mut [f64], is_closed: bool) -> Vec
     let strides = grid.strides();
     let count = gaps.len();
     let mut pass_on = |there: usize, here: usize| {
-        let from_there = gaps[there].abs() + SPACING_MM * STRAIGHT_PER_PATH;
+        let from_there = gaps[there].abs() + grid.spacing_mm * STRAIGHT_PER_PATH;
         if is_far[here] && from_there < gaps[here].abs() {
             let sign = if is_closed { gaps[there].signum() } else { 1.0 };
             gaps[here] = sign * from_there;
@@ -293,7 +304,7 @@ pub fn add_laplacian(
     from: &[f64],
     spread_mm2: f64,
 ) {
-    let factor = spread_mm2 / (SPACING_MM * SPACING_MM);
+    let factor = spread_mm2 / (grid.spacing_mm * grid.spacing_mm);
     for stride in grid.strides() {
         add_second_differences(to, from, is_far, stride, factor);
     }

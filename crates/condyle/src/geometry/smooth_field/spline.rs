@@ -4,16 +4,12 @@ use std::sync::Arc;
 
 use serde::{Deserialize, Serialize};
 
-use super::grid::{BAND_MM, NodeGrid, SPACING_MM};
+use super::grid::{BAND_MM, NodeGrid};
 use crate::{
     Vector,
     geometry::surface_sample::{Curvature, SurfaceSample},
     number::{F64x4, LANES, Number},
 };
-
-/// Gap of points outside the grid, mm: a lower bound, since the grid extends farther
-/// beyond the surface.
-const OUTSIDE_MM: f64 = BAND_MM + SPACING_MM;
 
 /// A quadratic B-spline over a grid: a gap with its derivatives anywhere.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -21,6 +17,8 @@ pub(super) struct GapSpline {
     pub grid: NodeGrid,
     /// One per node, mm, and one more number: a row is read as four, of which three are used.
     coefficients: Arc<[f64]>,
+    /// Inverse of the spacing and of its square, 1/mm and 1/mm2: a division in every evaluation would be slow.
+    per_spacing: [f64; 2],
 }
 
 /// The 27 coefficients that reach a point, lane by lane.
@@ -37,7 +35,9 @@ impl GapSpline {
     pub fn new(grid: NodeGrid, mut coefficients: Vec<f64>) -> Self {
         // The last row is read as four numbers, too.
         coefficients.push(0.0);
+        let spacing_mm = grid.spacing_mm;
         Self {
+            per_spacing: [1.0 / spacing_mm, 1.0 / (spacing_mm * spacing_mm)],
             grid,
             coefficients: coefficients.into(),
         }
@@ -65,7 +65,8 @@ impl GapSpline {
 
     #[inline(always)]
     pub fn sample<T: Number>(&self, point: &Vector<T>) -> SurfaceSample<T> {
-        sample_from(&self.derivatives(point))
+        let [per_spacing, per_spacing2] = self.per_spacing.map(T::splat);
+        sample_from(&self.derivatives(point), per_spacing, per_spacing2)
     }
 
     /// Returns the spline and its derivatives at a point; outside the grid its value is a bound.
@@ -73,8 +74,10 @@ impl GapSpline {
     fn derivatives<T: Number>(&self, point: &Vector<T>) -> Derivatives<T> {
         let here = self.locate(point);
         let spline = here.bases.spline(|lane| self.rows(here.corner[lane]));
+        // A lower bound: the grid extends farther beyond the surface.
+        let outside_mm = BAND_MM + self.grid.spacing_mm;
         Derivatives {
-            value: here.inside.below_zero(T::splat(OUTSIDE_MM), spline.value),
+            value: here.inside.below_zero(T::splat(outside_mm), spline.value),
             ..spline
         }
     }
@@ -83,11 +86,11 @@ impl GapSpline {
     #[inline(always)]
     fn locate<T: Number>(&self, point: &Vector<T>) -> Neighbourhood<T> {
         let (one, half) = (T::one(), T::splat(0.5));
-        let NodeGrid { origin, counts } = &self.grid;
+        let NodeGrid { origin, counts, .. } = &self.grid;
         let strides = self.grid.strides();
         let (mut corner, mut inside) = (T::zero(), one);
         let mut away = |axis: usize| {
-            let place = (point[axis] - T::splat(origin[axis])) * T::splat(1.0 / SPACING_MM);
+            let place = (point[axis] - T::splat(origin[axis])) * T::splat(self.per_spacing[0]);
             let last = T::splat((counts[axis] - 2) as f64);
             let node = Number::max(Number::min((place + half).floor(), last), one);
             inside = Number::min(inside, Number::min(place - half, last + half - place));
@@ -125,8 +128,11 @@ impl GapSpline {
 }
 
 #[inline(always)]
-fn sample_from<T: Number>(spline: &Derivatives<T>) -> SurfaceSample<T> {
-    let per_spacing = T::splat(1.0 / SPACING_MM);
+fn sample_from<T: Number>(
+    spline: &Derivatives<T>,
+    per_spacing: T,
+    per_spacing2: T,
+) -> SurfaceSample<T> {
     let [x, y, z] = spline.gradient;
     let gap_gradient = Vector::new(x * per_spacing, y * per_spacing, z * per_spacing);
     // Far from the surface the gap is constant; the normal is then zero and not NaN.
@@ -135,7 +141,7 @@ fn sample_from<T: Number>(spline: &Derivatives<T>) -> SurfaceSample<T> {
         T::splat(f64::MIN_POSITIVE),
     );
     let per_length = T::one() / length;
-    let scale = per_length * T::splat(1.0 / (SPACING_MM * SPACING_MM));
+    let scale = per_length * per_spacing2;
     // Written out: the compiler does not inline a map over an array here.
     let [xx, yy, zz, xy, xz, yz] = spline.hessian;
     SurfaceSample {

@@ -33,10 +33,6 @@ struct View {
 impl Visibility {
     /// Looks at a mesh of a counterface, which lies above its bearing.
     pub fn from_mesh(mesh: &TriangleMesh) -> Self {
-        let triangles = 0..mesh.triangles.len();
-        let samples: Vec<Vec3> = triangles
-            .flat_map(|triangle| places_on(&mesh.corners(triangle)))
-            .collect();
         let ring = |(tilt_deg, count): (f64, u32)| {
             let (sine, cosine) = f64::to_radians(tilt_deg).sin_cos();
             (0..count).map(move |i| {
@@ -45,7 +41,7 @@ impl Visibility {
             })
         };
         let directions = RINGS.into_iter().flat_map(ring);
-        Self(directions.map(|to| View::new(&samples, to)).collect())
+        Self(directions.map(|to| View::new(mesh, to)).collect())
     }
 
     /// Returns whether a triangle of the surface is seen, by its middle.
@@ -57,12 +53,12 @@ impl Visibility {
 }
 
 impl View {
-    fn new(samples: &[Vec3], to_viewer: Vec3) -> Self {
+    fn new(mesh: &TriangleMesh, to_viewer: Vec3) -> Self {
         let across = to_viewer.cross(&Vec3::z()).normalize();
         let frame = [across, to_viewer.cross(&across), to_viewer].map(|axis| axis.transpose());
         let frame = Mat3::from_rows(&frame);
-        let seen: Vec<Vec3> = samples.iter().map(|place| frame * place).collect();
-        let (low, high) = bounds(&seen);
+        let vertices: Vec<Vec3> = mesh.vertices.iter().map(|vertex| frame * vertex).collect();
+        let (low, high) = bounds(&vertices);
         let [columns, rows] = [0, 1].map(|axis| ((high - low)[axis] / CELL_MM) as usize + 1);
         let mut view = Self {
             frame,
@@ -70,9 +66,12 @@ impl View {
             columns,
             front_mm: vec![f64::NEG_INFINITY; columns * rows],
         };
-        for place in seen {
-            let cell = view.cell(&place);
-            view.front_mm[cell] = view.front_mm[cell].max(place.z);
+        for triangle in 0..mesh.triangles.len() {
+            for place in places_on(&mesh.corners(triangle)) {
+                let place = frame * place;
+                let cell = view.cell(&place);
+                view.front_mm[cell] = view.front_mm[cell].max(place.z);
+            }
         }
         view
     }
