@@ -51,7 +51,7 @@ pub(crate) fn printed_unit(key: &str) -> String {
 }
 
 /// Returns a text with the powers of its units as they are printed: mm2 is mm\u{b2}.
-pub(crate) fn with_powers(text: &str) -> String {
+pub fn with_powers(text: &str) -> String {
     text.replace("mm2", "mm\u{b2}").replace("mm3", "mm\u{b3}")
 }
 

@@ -4,8 +4,8 @@ use std::path::{Path, PathBuf};
 
 use crate::error::ReportError;
 use crate::figure::{Axis, Curve, MEASURED, Panel, escape, finite_range, sheet, svg_file, titled};
-pub use crate::number::title_of_path;
-use crate::number::{path_in_words, significant, with_powers};
+use crate::number::{path_in_words, significant};
+pub use crate::number::{title_of_path, with_powers};
 use crate::sheets::{Sheets, filled, write_text};
 
 const MAX_INTERVALS: usize = 6;

@@ -12,7 +12,7 @@ use condyle_case::{
     study::{Design, FactorialKeys, Input, LevelKeys, Study, Variation},
 };
 use condyle_lab::{Outcome, RunError, RunEvent, RunOptions, aligned, run_case};
-use condyle_report::{Plot, plots_svg};
+use condyle_report::{Plot, plots_svg, study::with_powers};
 use condyle_results::{
     Summary,
     catalogue::{self, Scalar},
@@ -21,11 +21,9 @@ use condyle_results::{
 use serde_json::json;
 
 use crate::{
-    answers::table,
     engine::{Listener, Reporter, StudyEvent, run_all},
     error::StudyError,
     observed_order::{Extrapolation, extrapolate},
-    page::superscript,
     plan::{Plan, Test},
     store::holds_anything,
 };
@@ -342,7 +340,7 @@ impl Convergence {
         let values = self.points.iter().map(|point| point.value.to_string());
         Plot {
             title: output.label[..1].to_uppercase() + &output.label[1..],
-            unit: superscript(output.unit()),
+            unit: with_powers(output.unit()),
             x_marks: places.iter().copied().zip(values).collect(),
             // A result of 0 has no share; the axis still needs a length.
             min_span: MIN_SHOWN_SHARE * finest.abs().max(f64::MIN_POSITIVE),
@@ -388,14 +386,12 @@ impl Convergence {
             let cells = differences.iter().map(|values| percent(values[row]));
             off.push(first.iter().cloned().chain(cells).collect());
         }
+        let mut tendency = vec![head("as the steps go to zero", None)];
         let names = ["order", "extrapolated", "finest from it, %"];
-        let rows: Vec<(usize, &str)> = names.into_iter().enumerate().collect();
-        let first = ["as the steps go to zero"];
-        let mut tendency = table(&first, &rows, |(row, name)| {
-            let cells = limits.iter().map(|limit| limit[*row].clone());
-            [(*name).to_owned()].into_iter().chain(cells).collect()
-        });
-        tendency[0] = head(first[0], None);
+        for (row, name) in names.map(str::to_owned).into_iter().enumerate() {
+            let cells = limits.iter().map(|limit| limit[row].clone());
+            tendency.push([name].into_iter().chain(cells).collect());
+        }
         let mut text = [runs, off, tendency].map(|rows| aligned(&rows)).join("\n");
         for point in &self.points {
             let doubts = point.summary.doubts();

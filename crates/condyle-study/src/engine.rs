@@ -104,13 +104,8 @@ pub fn run_study(
                 return Ok(());
             };
             // Of an interrupted batch, some tests are stored.
-            let mut left = Vec::new();
-            for test in tests {
-                if store.outputs(test.row, plan)?.is_none() {
-                    left.push(test);
-                }
-            }
-            run(&mut left.into_iter())?;
+            let kept = store.kept(plan)?;
+            run(&mut tests.into_iter().filter(|test| !kept[test.row as usize]))?;
         }
     }
     let rows = store.missing(plan)?.into_iter();

@@ -5,14 +5,14 @@ use std::{iter::once, path::Path};
 use condyle_case::study::Design;
 use condyle_report::{
     Plot, plots_svg,
-    study::{Bar, Distribution, bars_svg, distributions_svg, write_study_page},
+    study::{Bar, Distribution, bars_svg, distributions_svg, with_powers, write_study_page},
 };
-use condyle_results::{json_text, replace_file, split_unit};
+use condyle_results::{json_text, replace_file};
 use serde::Serialize;
 
 use crate::{
     answers::{
-        Answers,
+        Answers, TestsByReason,
         data::{Spread, of_design},
         effects::Effect,
         emulated::Emulated,
@@ -45,13 +45,13 @@ pub fn write_answers(plan: &Plan, folder: &Path) -> Result<Answers, StudyError> 
         write_json(&folder.join("emulators.json"), &emulators)?;
     }
     let (kept, design) = (answers.kept, answers.design);
-    let end = match answers.failed_tests() {
+    let end = match TestsByReason::count(&answers.failed) {
         0 => "none of them failed".to_owned(),
         some => format!("{some} of them failed"),
     };
     let title = Some(answers.title.as_str()).filter(|title| !title.is_empty());
     let doubts = answers.doubts().unwrap_or_default();
-    let answer = answers.sentence().unwrap_or_default();
+    let answer = answers.sentence();
     let (all, study) = (plan.tests(), plan.study());
     // An adaptive study may know its output before its last test.
     let may_end = matches!(study.design, Design::Adaptive(_));
@@ -97,25 +97,34 @@ fn write_json(path: &Path, content: &impl Serialize) -> Result<(), StudyError> {
 }
 
 /// The file, its caption, and its text.
-type Picture = (&'static str, String, String);
+type Picture = (String, String, String);
 
-/// Returns the pictures of each design, the one that ranks first before the others; their files are numbered from the second design
-/// on.
-fn of_designs(answers: &Answers) -> impl Iterator<Item = (String, String, String)> {
-    let designs = answers.designs().into_iter().enumerate();
-    designs.flat_map(move |(place, design)| {
-        let all = [indices, tornado, main_effects].map(|draw| draw(answers, design));
-        all.into_iter().flatten().map(move |(file, caption, svg)| {
-            let file = match place {
-                0 => file.to_owned(),
-                _ => file.replace(".svg", &format!("_{}.svg", place + 1)),
-            };
-            (file, caption, svg)
-        })
-    })
+/// Returns a picture of bars; none without a bar.
+fn of_bars(
+    file: &str,
+    [title, unit]: [&str; 2],
+    middle: Option<f64>,
+    bars: &[Bar],
+    caption: &str,
+) -> Option<Picture> {
+    let svg = || bars_svg(title, &with_powers(unit), middle, bars);
+    (!bars.is_empty()).then(|| (file.to_owned(), caption.to_owned(), svg()))
 }
 
-fn pictures(answers: &Answers) -> Vec<(String, String, String)> {
+/// Returns a picture of plots in `columns`; none without a plot.
+fn of_plots(
+    file: &str,
+    title: &str,
+    plots: &[Plot],
+    columns: usize,
+    keys: &[&str],
+    caption: &str,
+) -> Option<Picture> {
+    let svg = || plots_svg(title, plots, columns, keys);
+    (!plots.is_empty()).then(|| (file.to_owned(), caption.to_owned(), svg()))
+}
+
+fn pictures(answers: &Answers) -> Vec<Picture> {
     // The front is the answer of a search for it, and one more picture of other studies.
     let of_front = |is_searched| {
         let own = answers.front.as_ref();
@@ -123,13 +132,9 @@ fn pictures(answers: &Answers) -> Vec<(String, String, String)> {
             .and_then(front)
     };
     let first = [
-        answers
-            .ranking
-            .as_ref()
-            .filter(|ranking| ranking.solved > 0)
-            .map(ranking),
+        answers.ranking.as_ref().and_then(ranking),
         answers.best.as_ref().and_then(progress),
-        answers.robust.as_ref().map(robust),
+        answers.robust.as_ref().and_then(robust),
         of_front(true),
         elementary(answers),
     ];
@@ -139,59 +144,65 @@ fn pictures(answers: &Answers) -> Vec<(String, String, String)> {
         emulators(answers),
         of_front(false),
     ];
-    let [first, last] = [first.to_vec(), last.to_vec()].map(|some| {
-        let some = some.into_iter().flatten();
-        some.map(|(file, caption, svg)| (file.to_owned(), caption, svg))
-    });
-    first.chain(of_designs(answers)).chain(last).collect()
+    let first = first.into_iter().flatten().chain(of_designs(answers));
+    first.chain(last.into_iter().flatten()).collect()
 }
 
-/// Powers in units as they are printed.
-pub(crate) fn superscript(unit: &str) -> String {
-    unit.replace('2', "\u{b2}").replace('3', "\u{b3}")
+/// Returns the pictures of each design, the one that ranks first before the others; their files are numbered from the second design
+/// on.
+fn of_designs(answers: &Answers) -> impl Iterator<Item = Picture> {
+    let designs = (1..).zip(answers.designs());
+    designs.flat_map(move |(number, design)| {
+        let all = [indices, tornado, main_effects].map(|draw| draw(answers, design));
+        all.into_iter().flatten().map(move |(file, caption, svg)| {
+            let file = match number {
+                1 => file,
+                _ => file.replace(".svg", &format!("_{number}.svg")),
+            };
+            (file, caption, svg)
+        })
+    })
 }
 
-fn ranking(ranking: &Ranking) -> Picture {
-    let designs = ranking.designs.iter().map(|design| Bar {
+fn ranking(ranking: &Ranking) -> Option<Picture> {
+    let (solved, compared) = (ranking.solved, ranking.disturbances);
+    let designs = ranking.designs.iter().filter(|_| solved > 0);
+    let designs = designs.map(|design| Bar {
         name: format!("{} (best in {:.0} %)", design.name, 100.0 * design.best),
         span: [0.0, design.mean],
         interval: Some([-1.96, 1.96].map(|by| design.mean + by * design.standard_deviation)),
         is_grey: false,
     });
     let title = format!("Designs by {}", ranking.title);
-    let (solved, compared) = (ranking.solved, ranking.disturbances);
     let over = match solved == compared {
         true => "the disturbances".to_owned(),
         false => format!(
             "the {solved} of {compared} disturbances under which every design could be solved"
         ),
     };
-    let caption = format!(
-        "Mean over {over}, with 1.96 standard deviations to either side. Every design met the same disturbances: the table \
-         states how often one beats another, which these intervals cannot."
-    );
+    let mut caption = format!("Mean over {over}, with 1.96 standard deviations to either side.");
+    if ranking.designs.len() > 1 {
+        caption += " Every design met the same disturbances: the table states how often one beats another, which these intervals cannot.";
+    }
     let bars: Vec<Bar> = designs.collect();
-    let svg = bars_svg(&title, &superscript(ranking.unit), None, &bars);
-    ("ranking.svg", caption, svg)
+    of_bars("ranking.svg", [&title, ranking.unit], None, &bars, &caption)
 }
 
 fn progress(best: &Best) -> Option<Picture> {
-    if best.progress.is_empty() {
-        return None;
-    }
+    best.progress.first()?;
     let label = label(best.minimised);
     let plot = Plot {
         title: format!("Best {label} so far within all limits"),
-        unit: superscript(split_unit(best.minimised).1.unwrap_or_default()),
+        unit: with_powers(best.unit),
         x_title: "test".to_owned(),
         line: best.progress.clone(),
         ..Plot::default()
     };
-    let svg = plots_svg("Search", &[plot], 1, &["", "", "best so far"]);
-    Some(("search.svg", "The progress of the search.".to_owned(), svg))
+    let (keys, caption) = (["", "", "best so far"], "The progress of the search.");
+    of_plots("search.svg", "Search", &[plot], 1, &keys, caption)
 }
 
-fn robust(robust: &Robust) -> Picture {
+fn robust(robust: &Robust) -> Option<Picture> {
     let both = [
         ("robust optimum", &robust.comparison.optimum),
         ("first design", &robust.comparison.first),
@@ -202,20 +213,23 @@ fn robust(robust: &Robust) -> Picture {
         interval: Some([0.05, 0.95].map(|share| quantile(&design.outputs, share))),
         is_grey: false,
     });
+    let statistic = &robust.statistic;
     let caption = format!(
-        "The {} under the disturbances; the lines go from the 5th to the 95th percentile of the predicted output.",
-        robust.statistic
+        "The {statistic} under the disturbances; the lines go from the 5th to the 95th percentile of the predicted output."
     );
-    let svg = bars_svg(&robust.statistic, &superscript(robust.unit), None, &bars);
-    ("robust.svg", caption, svg)
+    of_bars(
+        "robust.svg",
+        [statistic, robust.unit],
+        None,
+        &bars,
+        &caption,
+    )
 }
 
 fn indices(answers: &Answers, design: Option<&str>) -> Option<Picture> {
-    let all = answers.largest_indices(design).into_iter().next()?;
-    let title = format!(
-        "Total Sobol index: part of the variance of {}",
-        all.first()?.title()
-    );
+    let all = answers.largest_indices(design);
+    let output = all.first()?.title();
+    let title = format!("Total Sobol index: part of the variance of {output}");
     let most = all.into_iter().take(MAX_INPUTS).map(|index| Bar {
         name: answers.name_of(&index.input).to_owned(),
         span: [0.0, index.total],
@@ -224,27 +238,26 @@ fn indices(answers: &Answers, design: Option<&str>) -> Option<Picture> {
     });
     let caption = "The part of the variance that would remain if all other inputs were known, with 95 % intervals; bars whose interval \
                    contains 0 are grey.";
-    let svg = bars_svg(&title, "", None, &most.collect::<Vec<_>>());
-    Some(("indices.svg", caption.to_owned(), svg))
+    let bars: Vec<Bar> = most.collect();
+    of_bars("indices.svg", [&title, ""], None, &bars, caption)
 }
 
 fn elementary(answers: &Answers) -> Option<Picture> {
     let all = answers.largest_elementary();
-    let title = format!(
-        "Elementary effects of Morris on {}: mu*",
-        label(all.first()?.output)
-    );
-    let most = all.into_iter().take(MAX_INPUTS).map(|one| Bar {
-        name: answers.name_of(&one.input).to_owned(),
-        span: [0.0, one.mu_star],
-        interval: one
-            .mu_star_half_interval
-            .map(|half| [one.mu_star - half, one.mu_star + half]),
-        is_grey: false,
+    let output = label(all.first()?.output);
+    let title = format!("Elementary effects of Morris on {output}: mu*");
+    let most = all.into_iter().take(MAX_INPUTS).map(|one| {
+        let half = one.mu_star_half_interval;
+        Bar {
+            name: answers.name_of(&one.input).to_owned(),
+            span: [0.0, one.mu_star],
+            interval: half.map(|half| [one.mu_star - half, one.mu_star + half]),
+            is_grey: false,
+        }
     });
     let caption = "The change of the output as an input goes from its low end to its high end, with 95 % intervals.";
-    let svg = bars_svg(&title, "", None, &most.collect::<Vec<_>>());
-    Some(("morris.svg", caption.to_owned(), svg))
+    let bars: Vec<Bar> = most.collect();
+    of_bars("morris.svg", [&title, ""], None, &bars, caption)
 }
 
 fn tornado(answers: &Answers, design: Option<&str>) -> Option<Picture> {
@@ -253,33 +266,28 @@ fn tornado(answers: &Answers, design: Option<&str>) -> Option<Picture> {
     effects.truncate(MAX_INPUTS);
     let all = effects.iter().map(|effect| {
         let [low, _] = extent(effect.means.iter().map(|mean| mean.1));
+        let by_chance = effect.span_by_chance;
         Bar {
             name: effect.name.clone(),
             span: [low, low + effect.span],
             interval: None,
-            is_grey: effect
-                .span_by_chance
-                .is_some_and(|most| effect.span <= most),
+            is_grey: by_chance.is_some_and(|most| effect.span <= most),
         }
     });
-    let all: Vec<Bar> = all.collect();
-    if all.is_empty() || all.iter().any(|bar| !bar.span[0].is_finite()) {
-        return None;
-    }
-    let title = format!("Effects on {}", spread.name());
     let mut caption = "The range of the means over a tenth of each input's values, or at each of its levels; the line is \
                        the mean output."
         .to_owned();
     let by_chance = effects.iter().filter_map(|effect| effect.span_by_chance);
     if let Some(most) = by_chance.reduce(f64::max) {
-        let (most, unit) = (shown(most), superscript(spread.unit));
+        let (most, unit) = (shown(most), with_powers(spread.unit));
         caption += &format!(
             " An inactive input would span up to {most} {unit} by chance or by the error of the emulator; bars within that are grey."
         );
     }
+    let title = format!("Effects on {}", spread.in_words());
     let means: Vec<f64> = effects.iter().map(|effect| effect.mean).collect();
-    let svg = bars_svg(&title, &superscript(spread.unit), Some(mean(&means)), &all);
-    Some(("tornado.svg", caption, svg))
+    let (middle, all) = (Some(mean(&means)), all.collect::<Vec<Bar>>());
+    of_bars("tornado.svg", [&title, spread.unit], middle, &all, &caption)
 }
 
 fn distributions(answers: &Answers) -> Option<Picture> {
@@ -287,7 +295,7 @@ fn distributions(answers: &Answers) -> Option<Picture> {
     let all = several.map(|spread| Distribution {
         output: spread.output,
         title: spread.name(),
-        unit: superscript(spread.unit),
+        unit: with_powers(spread.unit),
         sorted: spread.sorted.clone(),
         marks: [1, 3, 5].map(|place| spread.percentiles[place]).to_vec(),
         limits: spread
@@ -302,40 +310,28 @@ fn distributions(answers: &Answers) -> Option<Picture> {
     } else {
         "Percent of the tests. They are not a random sample, so fractions of them are not probabilities."
     };
-    if all.is_empty() {
-        return None;
-    }
-    let svg = distributions_svg(&all);
-    Some(("distributions.svg", caption.to_owned(), svg))
+    let file = "distributions.svg".to_owned();
+    (!all.is_empty()).then(|| (file, caption.to_owned(), distributions_svg(&all)))
 }
 
 fn main_effects(answers: &Answers, design: Option<&str>) -> Option<Picture> {
     let spread = answers.first_spread(design)?;
     let effects = answers.main_effects_on(spread.output, design);
-    let is_emulated = effects.iter().any(|effect| effect.is_emulated);
-    let all: Vec<Plot> = effects
-        .into_iter()
-        .take(MAX_INPUTS)
-        .map(|effect| Plot {
-            line: effect.means.clone(),
-            ..plot(spread, effect)
-        })
-        .collect();
-    let of = if is_emulated {
-        "the emulator's predictions of "
-    } else {
-        ""
+    let of = match effects.iter().any(|effect| effect.is_emulated) {
+        true => "the emulator's predictions of ",
+        false => "",
     };
+    let all = effects.into_iter().take(MAX_INPUTS).map(|effect| Plot {
+        line: effect.means.clone(),
+        ..plot(spread, effect)
+    });
     let caption = format!(
         "Mean of {of}{} over each input, in slices of a tenth of its values or at each level.",
-        spread.name()
+        spread.in_words()
     );
-    if all.is_empty() {
-        return None;
-    }
     let title = of_design("Main effects", design);
-    let svg = plots_svg(&title, &all, 4, &["", "", "mean"]);
-    Some(("main_effects.svg", caption, svg))
+    let (all, keys) = (all.collect::<Vec<_>>(), ["", "", "mean"]);
+    of_plots("main_effects.svg", &title, &all, 4, &keys, &caption)
 }
 
 fn scatter(answers: &Answers) -> Option<Picture> {
@@ -346,14 +342,14 @@ fn scatter(answers: &Answers) -> Option<Picture> {
     let outputs = answers
         .spreads
         .chunk_by(|one, next| one.output == next.output);
-    for designs in outputs {
+    for designs in outputs.clone() {
         for column in columns {
             let points = designs.iter().map(|spread| {
-                let mut own = answers
-                    .effects
-                    .iter()
-                    .filter(|one| one.output == spread.output);
-                let own = own.find(|one| one.input == column.input && one.design == spread.design);
+                let mut effects = answers.effects.iter();
+                let own = effects.find(|one| {
+                    (one.output, &one.design) == (spread.output, &spread.design)
+                        && one.input == column.input
+                });
                 own.map(|effect| effect.points.clone()).unwrap_or_default()
             });
             all.push(Plot {
@@ -362,19 +358,15 @@ fn scatter(answers: &Answers) -> Option<Picture> {
             });
         }
     }
-    if all.is_empty() {
-        return None;
-    }
     let caption = "Outputs over the inputs that affect the first of them most; of many tests, some are shown.";
     // The spreads of an output are those of its designs.
-    let designs = answers
-        .spreads
-        .iter()
-        .filter(|one| one.output == first.output);
+    let designs = outputs
+        .flatten()
+        .take_while(|one| one.output == first.output);
     let names = designs.map(|one| one.design.as_deref().unwrap_or("tests"));
     let keys: Vec<&str> = once("").chain(names).chain([""]).collect();
-    let svg = plots_svg("Scatter matrix", &all, columns.len().max(3), &keys);
-    Some(("scatter.svg", caption.to_owned(), svg))
+    let most = columns.len().max(3);
+    of_plots("scatter.svg", "Scatter matrix", &all, most, &keys, caption)
 }
 
 fn emulators(answers: &Answers) -> Option<Picture> {
@@ -382,7 +374,7 @@ fn emulators(answers: &Answers) -> Option<Picture> {
         let [low, high] = extent(one.tested_and_predicted.iter().map(|both| both.0));
         Plot {
             title: of_design(one.title, one.design.as_deref()),
-            unit: superscript(one.unit),
+            unit: with_powers(one.unit),
             x_title: format!("tested (Q2 {:.4})", one.q2),
             clouds: vec![one.tested_and_predicted.clone()],
             reference: vec![(low, low), (high, high)],
@@ -390,56 +382,44 @@ fn emulators(answers: &Answers) -> Option<Picture> {
         }
     };
     let all: Vec<Plot> = answers.emulated.iter().map(plot).collect();
-    if all.is_empty() {
-        return None;
-    }
     let keys = ["equal", "predicted from all other tests", ""];
-    let svg = plots_svg("Emulators", &all, 2, &keys);
     let caption =
         "Each test as the emulator predicts it from all others: on the line, both are equal.";
-    Some(("emulators.svg", caption.to_owned(), svg))
+    of_plots("emulators.svg", "Emulators", &all, 2, &keys, caption)
 }
 
 /// Returns the axes of an output over an input.
 fn plot(spread: &Spread, effect: &Effect) -> Plot {
-    let marks = effect.words.iter().enumerate();
+    let marks = (0..).map(f64::from).zip(effect.words.iter().cloned());
     Plot {
         title: spread.title.to_owned(),
-        unit: superscript(spread.unit),
+        unit: with_powers(spread.unit),
         x_title: effect.name.clone(),
-        x_marks: marks
-            .map(|(place, word)| (place as f64, word.clone()))
-            .collect(),
+        x_marks: marks.collect(),
         ..Plot::default()
     }
 }
 
 fn front(front: &Front) -> Option<Picture> {
-    if front.tests.is_empty() {
-        return None;
-    }
-    let [unit, up_unit] = front.units.map(superscript);
-    let tests = front.tests.iter();
+    let [unit, up_unit] = front.units.map(with_powers);
+    let both = |(_, one, other): &(u64, f64, f64)| (*one, *other);
+    let (first, last) = (front.tests.first()?, front.tests.last()?);
+    let knee = front.place_of_knee().map(|place| &front.tests[place]);
+    let to_knee = knee.map_or_else(Vec::new, |knee| [first, knee, last].map(both).to_vec());
     let plot = Plot {
         title: front.titles[1].to_owned(),
         unit: up_unit,
         x_title: format!("{}, {unit}", front.titles[0]),
         clouds: vec![front.others.clone()],
-        line: tests.map(|(_, one, other)| (*one, *other)).collect(),
-        reference: lines_to_knee(front).unwrap_or_default(),
+        line: front.tests.iter().map(both).collect(),
+        reference: to_knee,
         ..Plot::default()
     };
-    let key = if front.knee.is_some() {
-        "ends and knee"
-    } else {
-        ""
+    let key = match knee {
+        Some(_) => "ends and knee",
+        None => "",
     };
-    let svg = plots_svg(
-        "Pareto front",
-        &[plot],
-        1,
-        &[key, "within limits", "the front"],
-    );
+    let keys = [key, "within limits", "the front"];
     let mut caption =
         "Tests within all limits; no test is better in both outputs than one on the front."
             .to_owned();
@@ -450,13 +430,5 @@ fn front(front: &Front) -> Option<Picture> {
              which further tests widen."
         );
     }
-    Some(("pareto.svg", caption, svg))
-}
-
-/// Returns lines from the ends of a front to its knee.
-fn lines_to_knee(front: &Front) -> Option<Vec<(f64, f64)>> {
-    let knee = front.tests.get(front.place_of_knee()?);
-    let corners = [front.tests.first(), knee, front.tests.last()];
-    let corners = corners.into_iter().flatten();
-    Some(corners.map(|(_, one, other)| (*one, *other)).collect())
+    of_plots("pareto.svg", "Pareto front", &[plot], 1, &keys, &caption)
 }

@@ -23,7 +23,7 @@ const MAX_TESTS: f64 = 1e9;
 /// A checked study, ready to run.
 pub struct Plan {
     study: Study,
-    copula: Option<Copula>,
+    copula: Copula,
     /// Tests of one of the designs that are compared.
     tests: u64,
     inputs_blake3: String,
@@ -88,17 +88,12 @@ impl Plan {
                  kind = \"latin-hypercube\""
             )));
         }
-        let mut copula = None;
-        if !study.correlations.is_empty() {
-            let correlated = Copula::new(inputs, &study.correlations);
-            copula = Some(correlated.ok_or_else(|| {
-                let problem =
-                    "the correlations contradict each other; make them weaker, or omit one";
-                StudyError::Plan(problem.to_owned())
-            })?);
-        }
+        let copula = Copula::new(inputs, &study.correlations).ok_or_else(|| {
+            let problem = "the correlations contradict each other; make them weaker, or omit one";
+            StudyError::Plan(problem.to_owned())
+        });
         Ok(Self {
-            copula,
+            copula: copula?,
             tests: tests as u64,
             inputs_blake3,
             study,
@@ -175,9 +170,7 @@ impl Plan {
 
     /// Returns places with the correlations of the study.
     pub(crate) fn correlated(&self, mut places: Vec<Place>) -> Vec<Place> {
-        if let Some(copula) = &self.copula {
-            copula.apply(&mut places);
-        }
+        self.copula.apply(&mut places);
         places
     }
 

@@ -12,7 +12,7 @@ use condyle_results::catalogue::Scalar;
 use serde::Serialize;
 
 use crate::{
-    answers::table,
+    answers::tables::table,
     engine::{Listener, TestBench, run_in_memory},
     error::StudyError,
     plan::{Plan, TestResult},

@@ -20,7 +20,7 @@ use condyle_results::{
 use serde::Serialize;
 
 use crate::{
-    answers::table,
+    answers::tables::table,
     engine::{Listener, TestBench, run_in_memory},
     error::StudyError,
     plan::{Plan, TestResult},

@@ -5,6 +5,7 @@ use condyle_results::catalogue::Scalar;
 use serde::Serialize;
 
 use crate::{
+    answers::words::within_design,
     design::Saltelli,
     error::StudyError,
     plan::{Plan, designs},
@@ -99,16 +100,30 @@ impl<'a> Data<'a> {
         is_sampled(self.plan, 0)
     }
 
-    /// Returns the distribution of every output, of each design by itself.
-    pub fn spreads(&self) -> Vec<Spread> {
+    /// Returns every output with its values, for one design after another.
+    pub fn outputs_of_designs(&self) -> impl Iterator<Item = OutputOfDesign<'_>> {
         let count = designs(self.plan.study());
         let outputs = self.outputs.iter();
-        let of_designs = outputs.flat_map(|output| (0..count).map(move |design| (output, design)));
-        of_designs
-            .map(|((output, values), design)| Spread::new(self, output, values, design))
-            .collect()
+        outputs.flat_map(move |(output, values)| {
+            (0..count).map(move |design| (*output, values.as_slice(), design))
+        })
+    }
+
+    /// Returns the name of a design; none if the study compares no designs.
+    pub fn name_of(&self, design: usize) -> Option<String> {
+        let alternatives = &self.plan.study().alternatives;
+        alternatives.get(design).map(|one| one.name.clone())
+    }
+
+    /// Returns the values of an output in the tests of a design that are done or could not be solved.
+    pub fn kept_values(&self, (_, values, design): OutputOfDesign<'_>) -> Vec<f64> {
+        let kept = self.tests_of(design).filter(|test| self.kept[*test]);
+        kept.map(|test| values[test]).collect()
     }
 }
+
+/// An output with its value in each test, and the number of a design.
+pub(crate) type OutputOfDesign<'a> = (&'static Scalar, &'a [f64], usize);
 
 pub(crate) const PERCENTILES: [f64; 7] = [2.5, 5.0, 25.0, 50.0, 75.0, 95.0, 97.5];
 
@@ -148,20 +163,19 @@ pub(crate) struct Beyond {
 }
 
 impl Spread {
-    fn new(data: &Data<'_>, output: &'static Scalar, values: &[f64], design: usize) -> Self {
-        let study = data.plan.study();
-        let kept = data.tests_of(design).filter(|test| data.kept[*test]);
-        let kept: Vec<f64> = kept.map(|test| values[test]).collect();
-        let solved = kept.iter().copied().filter(|value| value.is_finite());
-        let mut sorted: Vec<f64> = solved.collect();
+    pub fn new(data: &Data<'_>, own: OutputOfDesign<'_>) -> Self {
+        let (output, _, design) = own;
+        let mut sorted = data.kept_values(own);
+        let kept = sorted.len();
+        sorted.retain(|value| value.is_finite());
         sorted.sort_by(f64::total_cmp);
-        let unsolved = kept.len() - sorted.len();
-        let own = study.answers.bounds_of(output);
+        let unsolved = kept - sorted.len();
+        let own = data.plan.study().answers.bounds_of(output);
         Self {
             output: output.key,
             title: output.label,
             unit: output.unit(),
-            design: study.alternatives.get(design).map(|one| one.name.clone()),
+            design: data.name_of(design),
             tests: sorted.len(),
             unsolved,
             is_sample: data.is_sample(),
@@ -180,6 +194,11 @@ impl Spread {
     /// Returns the title of the output, with the design if there are several.
     pub fn name(&self) -> String {
         of_design(self.title, self.design.as_deref())
+    }
+
+    /// Returns the same as it stands within a sentence.
+    pub fn in_words(&self) -> String {
+        within_design(self.title, self.design.as_deref())
     }
 }
 

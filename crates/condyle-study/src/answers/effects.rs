@@ -2,11 +2,13 @@
 
 use condyle_case::study::{Design, Input, Variation};
 use condyle_lab::measured::student;
-use condyle_results::catalogue::Scalar;
 use serde::Serialize;
 
 use crate::{
-    answers::{data::Data, emulated::Emulated},
+    answers::{
+        data::{Data, OutputOfDesign},
+        emulated::Emulated,
+    },
     design::Walk,
     plan::designs,
     random::Random,
@@ -54,15 +56,11 @@ pub(crate) struct Effect {
 /// Returns the effects of every input on every output of each design: from its emulator, of which the tests in a slice are only a
 /// noisy sample, where answers are computed from it.
 pub(crate) fn effects(data: &Data<'_>, emulated: &[Emulated]) -> Vec<Effect> {
-    let count = designs(data.plan.study());
-    let mut effects = Vec::new();
-    for place in 0..data.inputs.len() {
-        for output in &data.outputs {
-            let own = (0..count).filter_map(|design| effect(data, emulated, place, output, design));
-            effects.extend(own);
-        }
-    }
-    effects
+    let of_input = |place| {
+        let outputs = data.outputs_of_designs();
+        outputs.filter_map(move |own| effect(data, emulated, place, own))
+    };
+    (0..data.inputs.len()).flat_map(of_input).collect()
 }
 
 /// Returns the effect of the input at `place`; none if all tests that are done have one value of it: it is not known, and is not
@@ -71,16 +69,15 @@ fn effect(
     data: &Data<'_>,
     emulated: &[Emulated],
     place: usize,
-    (output, values): &(&'static Scalar, Vec<f64>),
-    design: usize,
+    (output, values, design): OutputOfDesign<'_>,
 ) -> Option<Effect> {
     let study = data.plan.study();
     let (input, column) = (&study.inputs[place], &data.inputs[place]);
-    let name = study.alternatives.get(design).map(|one| one.name.clone());
+    let name = data.name_of(design);
     let tested = pairs(data, place, values, design);
-    let own = emulated.iter();
-    let mut own = own.filter(|one| one.output == output.key && one.design == name);
-    let predicted = own.next().and_then(|one| one.main_effects.get(place));
+    let mut emulated = emulated.iter();
+    let own = emulated.find(|one| one.output == output.key && one.design == name);
+    let predicted = own.and_then(|own| own.main_effects.get(place));
     // Equal inputs are sorted by the output, so that sums do not depend on the order of the tests.
     let mut pairs = predicted.map_or(&tested, |own| &own.means).clone();
     pairs.sort_by(|one, other| one.0.total_cmp(&other.0).then(one.1.total_cmp(&other.1)));
@@ -91,7 +88,7 @@ fn effect(
     }
     let span = span(means.iter().map(|mean| mean.1));
     let span_by_chance = match predicted {
-        Some(own) => Some(own.error * span / deviation(&means)).filter(|one| one.is_finite()),
+        Some(own) => Some(own.error * span),
         None => data.is_sample().then(|| span_by_chance(&slices)),
     };
     let correlation = rank_correlation(&tested);
@@ -145,13 +142,6 @@ fn slices(sorted: &[(f64, f64)]) -> Vec<&[(f64, f64)]> {
 fn means(slice: &[(f64, f64)]) -> (f64, f64) {
     let (x, y): (Vec<f64>, Vec<f64>) = slice.iter().copied().unzip();
     (mean(&x), mean(&y))
-}
-
-/// Returns the standard deviation of the means of slices, which are equally likely.
-fn deviation(means: &[(f64, f64)]) -> f64 {
-    let own: Vec<f64> = means.iter().map(|mean| mean.1).collect();
-    let count = own.len() as f64;
-    standard_deviation(&own) * ((count - 1.0) / count).sqrt()
 }
 
 /// Returns the largest less smallest value; 0 for none.

@@ -8,12 +8,11 @@ use serde::Serialize;
 
 use crate::{
     answers::{
-        data::{Data, PERCENTILES},
+        data::{Data, OutputOfDesign, PERCENTILES},
         indices::Indices,
     },
     distribution::number_at_share,
     emulator::{Emulator, Model},
-    plan::designs,
     population::{Axis, Population},
     search::Estimate,
     statistics::{NORMAL_95, extent, mean, quantile, standard_deviation},
@@ -66,8 +65,8 @@ pub(crate) struct Emulated {
 pub(crate) struct MainEffect {
     /// Values of the input, each equally likely, and the mean at each.
     pub means: Vec<(f64, f64)>,
-    /// Largest standard deviation of these means that may be an error of the emulator: that of a first index as large as half of
-    /// its interval.
+    /// Largest standard deviation of these means that may be an error of the emulator, that of a first index as large as half of its
+    /// interval, relative to theirs; finite for equal means.
     pub error: f64,
 }
 
@@ -125,13 +124,8 @@ pub(crate) fn emulated(data: &Data<'_>) -> (Vec<Emulated>, Vec<Indices>) {
         Axis::new(input, ends)
     });
     let axes: Vec<Axis<'_>> = axes.collect();
-    let outputs = data.outputs.iter();
-    let all = outputs.flat_map(|(output, values)| {
-        (0..designs(study)).map(move |design| (*output, values.as_slice(), design))
-    });
-    let all: Vec<_> = all.collect();
     // The points of an output take seconds, and the outputs' times differ. Their order does not depend on the threads.
-    let left = Mutex::new(all.into_iter().enumerate());
+    let left = Mutex::new(data.outputs_of_designs().enumerate());
     let work = || {
         let mut found = Vec::new();
         loop {
@@ -159,17 +153,15 @@ pub(crate) fn emulated(data: &Data<'_>) -> (Vec<Emulated>, Vec<Indices>) {
 fn emulated_output(
     data: &Data<'_>,
     axes: &[Axis<'_>],
-    (output, values, design): (&'static Scalar, &[f64], usize),
+    own: OutputOfDesign<'_>,
 ) -> Option<(Emulated, Vec<Indices>)> {
-    let study = data.plan.study();
-    let emulator = emulator(data, axes, values, design)?;
-    let name = study.alternatives.get(design).map(|one| one.name.clone());
-    let mut emulated = Emulated::new(output, name, axes, &emulator);
-    emulated.failed = failed(data, values, design);
-    emulated.is_sample = matches!(
-        study.design,
-        Design::LatinHypercube(_) | Design::Sobol(_) | Design::Saltelli(_) | Design::Adaptive(_)
-    );
+    let ((output, _, design), study) = (own, data.plan.study());
+    let emulator = emulator(data, axes, own)?;
+    let mut emulated = Emulated::new(output, data.name_of(design), axes, &emulator);
+    let failed = data.kept_values(own).into_iter();
+    let failed = failed.map(|value| f64::from(!value.is_finite()));
+    emulated.failed = mean(&failed.collect::<Vec<f64>>());
+    emulated.is_sample = data.is_sample() || matches!(study.design, Design::Adaptive(_));
     let mut indices = Vec::new();
     if emulated.why_not_used().is_none() {
         let population = Population::new(data.plan, &emulator, axes);
@@ -184,15 +176,12 @@ fn emulated_output(
     Some((emulated, indices))
 }
 
-/// Returns the share of the tests of a design that failed.
-fn failed(data: &Data<'_>, values: &[f64], design: usize) -> f64 {
-    let used = data.tests_of(design).filter(|row| data.kept[*row]);
-    let failed = used.map(|row| f64::from(!values[row].is_finite()));
-    mean(&failed.collect::<Vec<f64>>())
-}
-
 /// Returns an emulator of an output of a design from its first tests that are done.
-fn emulator(data: &Data<'_>, axes: &[Axis<'_>], values: &[f64], design: usize) -> Option<Emulator> {
+fn emulator(
+    data: &Data<'_>,
+    axes: &[Axis<'_>],
+    (_, values, design): OutputOfDesign<'_>,
+) -> Option<Emulator> {
     let done = data.tests_of(design).filter(|row| values[*row].is_finite());
     let places = done.take(MAX_TESTS).map(|row| {
         let columns = axes.iter().zip(&data.inputs);
@@ -200,12 +189,9 @@ fn emulator(data: &Data<'_>, axes: &[Axis<'_>], values: &[f64], design: usize) -
         (point.collect::<Vec<f64>>(), values[row])
     });
     let (points, values): (Vec<_>, Vec<_>) = places.unzip();
+    let [low, high] = extent(values.iter().copied());
     // With fewer tests than lengths, the likeliest lengths mean little.
-    if points.len() <= axes.len() + 2
-        || extent(values.iter().copied())
-            .windows(2)
-            .any(|ends| ends[0] == ends[1])
-    {
+    if points.len() <= axes.len() + 2 || low == high {
         return None;
     }
     Emulator::fit(&points, &values).map(Emulator::calibrated)
@@ -283,9 +269,10 @@ fn of_output(
     let effects = axes.iter().zip(effects).enumerate();
     let effects = effects.map(|(place, (axis, effect))| {
         let values = (0..NODES).map(|node| number_at_share(axis.input, share(node)));
+        let error = half_interval(place, 0).sqrt() * deviation;
         MainEffect {
+            error: (error / standard_deviation(&effect)).min(f64::MAX),
             means: values.zip(effect).collect(),
-            error: half_interval(place, 0).sqrt() * deviation,
         }
     });
     let effects = effects.collect();

@@ -5,8 +5,8 @@ use serde::Serialize;
 
 use crate::{
     answers::{
-        data::{Data, of_design},
-        words::label,
+        data::Data,
+        words::{label, within_design},
     },
     random::Random,
     statistics::{central_interval, mean},
@@ -38,7 +38,7 @@ pub(crate) struct Indices {
 impl Indices {
     /// Returns the output in words, with the design if there are several.
     pub fn title(&self) -> String {
-        of_design(&label(self.output), self.design.as_deref())
+        within_design(&label(self.output), self.design.as_deref())
     }
 
     /// Returns the first index in words. It cannot exceed the total one, except by the scatter of both.
@@ -93,21 +93,23 @@ pub(crate) fn indices(data: &Data<'_>) -> Vec<Indices> {
 }
 
 fn of_output(output: &'static str, inputs: &[&str], values: &[f64]) -> Vec<Indices> {
-    let bases = Bases::new(inputs.len(), values);
+    let bases = bases(inputs.len(), values);
+    let count = bases.len();
     // A single base has no scatter, and none has no index.
-    if bases.0.len() < 2 {
+    if count < 2 {
         return Vec::new();
     }
-    let all: Vec<usize> = (0..bases.0.len()).collect();
-    let resamples: Vec<Vec<usize>> = (0..RESAMPLES)
-        .map(|number| bases.resample(number))
-        .collect();
+    // A bootstrap sample: as many bases, with replacement.
+    let resample = |number| {
+        let mut numbers = Random::stream(SEED, number);
+        (0..count).map(|_| &bases[numbers.index(count)]).collect()
+    };
+    let all: Vec<&Vec<f64>> = bases.iter().collect();
+    let resamples: Vec<Vec<&Vec<f64>>> = (0..RESAMPLES).map(resample).collect();
     let index = |(place, input): (usize, &&str)| {
-        let (first, total) = bases.indices(place, &all);
-        let (firsts, totals) = resamples
-            .iter()
-            .map(|resample| bases.indices(place, resample))
-            .unzip();
+        let (first, total) = index_of(place, &all);
+        let samples = resamples.iter().map(|sample| index_of(place, sample));
+        let (firsts, totals) = samples.unzip();
         Indices {
             output,
             design: None,
@@ -116,60 +118,42 @@ fn of_output(output: &'static str, inputs: &[&str], values: &[f64]) -> Vec<Indic
             first_interval: central_interval(firsts),
             total,
             total_interval: central_interval(totals),
-            bases: bases.0.len(),
+            bases: count,
         }
     };
     inputs.iter().enumerate().map(index).collect()
 }
 
-/// The outputs of every base (A, A with each input from B, B) minus the mean of all.
-struct Bases(Vec<Vec<f64>>);
+/// Returns the outputs of every base (A, A with each input from B, B) with all tests done, minus the mean of all, which reduces the
+/// scatter of the estimate of the first index.
+fn bases(inputs: usize, values: &[f64]) -> Vec<Vec<f64>> {
+    let whole = values.chunks_exact(inputs + 2);
+    let whole = whole.filter(|base| base.iter().all(|value| value.is_finite()));
+    let mut whole: Vec<Vec<f64>> = whole.map(<[f64]>::to_vec).collect();
+    let both = whole.iter().flat_map(|base| [base[0], base[inputs + 1]]);
+    let mean = mean(&both.collect::<Vec<f64>>());
+    whole.iter_mut().flatten().for_each(|value| *value -= mean);
+    whole
+}
 
-impl Bases {
-    /// Creates the bases with all tests done. Subtracting the mean reduces the scatter of the estimate of the first
-    /// index.
-    fn new(inputs: usize, values: &[f64]) -> Self {
-        let whole = values.chunks_exact(inputs + 2);
-        let mut whole: Vec<Vec<f64>> = whole
-            .filter(|base| base.iter().all(|value| value.is_finite()))
-            .map(<[f64]>::to_vec)
-            .collect();
-        let both: Vec<f64> = whole
-            .iter()
-            .flat_map(|base| [base[0], base[inputs + 1]])
-            .collect();
-        let mean = mean(&both);
-        whole.iter_mut().flatten().for_each(|value| *value -= mean);
-        Self(whole)
+/// Returns the first and total index of an input from some bases: S = mean(b (c - a)) / V (Saltelli et al. 2010),
+/// T = mean((a - c)^2) / 2 V (Jansen 1999).
+fn index_of(input: usize, bases: &[&Vec<f64>]) -> (f64, f64) {
+    let count = bases.len() as f64;
+    let [mut sum, mut squares, mut first, mut total] = [0.0; 4];
+    for base in bases {
+        let (a, c, b) = (base[0], base[input + 1], base[base.len() - 1]);
+        sum += a + b;
+        squares += a * a + b * b;
+        first += b * (c - a);
+        total += (a - c).powi(2);
     }
-
-    /// Draws a bootstrap sample: as many bases, with replacement.
-    fn resample(&self, number: u64) -> Vec<usize> {
-        let mut numbers = Random::stream(SEED, number);
-        let count = self.0.len();
-        (0..count).map(|_| numbers.index(count)).collect()
+    let variance = squares / (2.0 * count) - (sum / (2.0 * count)).powi(2);
+    // A constant output has no variance to divide by; no input explains any of it.
+    if variance <= 0.0 {
+        return (0.0, 0.0);
     }
-
-    /// Returns the first and total index of an input from some bases: S = mean(b (c - a)) / V (Saltelli et al. 2010),
-    /// T = mean((a - c)^2) / 2 V (Jansen 1999).
-    fn indices(&self, input: usize, bases: &[usize]) -> (f64, f64) {
-        let count = bases.len() as f64;
-        let [mut sum, mut squares, mut first, mut total] = [0.0; 4];
-        for &base in bases {
-            let base = &self.0[base];
-            let (a, c, b) = (base[0], base[input + 1], base[base.len() - 1]);
-            sum += a + b;
-            squares += a * a + b * b;
-            first += b * (c - a);
-            total += (a - c).powi(2);
-        }
-        let variance = squares / (2.0 * count) - (sum / (2.0 * count)).powi(2);
-        // A constant output has no variance to divide by; no input explains any of it.
-        if variance <= 0.0 || count == 0.0 {
-            return (0.0, 0.0);
-        }
-        (first / count / variance, total / (2.0 * count) / variance)
-    }
+    (first / count / variance, total / (2.0 * count) / variance)
 }
 
 #[cfg(test)]

@@ -1,5 +1,7 @@
 //! Comparison of designs, the optimum of a search, and the Pareto front.
 
+use std::cmp::Ordering;
+
 use condyle_case::study::{Bound, Input};
 use condyle_results::catalogue::Scalar;
 use serde::Serialize;
@@ -69,16 +71,9 @@ pub(crate) struct RankedDesign {
     /// that are not solved, count half.
     pub beats: Vec<f64>,
     pub beats_intervals: Vec<[f64; 2]>,
-    /// Of all designs but the last.
-    pub lead: Option<Lead>,
-}
-
-/// The output of the next design less that of a design under the same disturbance, where all designs are solved.
-#[derive(Clone, Debug, PartialEq, Serialize)]
-pub(crate) struct Lead {
-    pub mean: f64,
-    /// The range that holds 95 % of the differences.
-    pub range: [f64; 2],
+    /// The range that holds 95 % of the differences of the next design's output from that of this one under the same disturbance,
+    /// where all designs are solved; none for the last design.
+    pub lead: Option<[f64; 2]>,
 }
 
 /// The output of one design under every disturbance.
@@ -190,9 +185,65 @@ impl Outcomes {
         self.within_limits.iter().filter(|one| **one == of).count()
     }
 
-    fn keeps(&self, limits: &[RankedLimit]) -> bool {
+    /// Returns the number of disturbances under which the output is smaller than that of another design; a tie counts as half.
+    fn wins(&self, other: &Self) -> f64 {
+        let win = |(one, other): (&f64, &f64)| match one.total_cmp(other) {
+            Ordering::Less => 1.0,
+            Ordering::Equal => 0.5,
+            Ordering::Greater => 0.0,
+        };
+        self.values.iter().zip(&other.values).map(win).sum()
+    }
+
+    /// Returns a number of disturbances as a share of all, and the interval of the probability.
+    fn share(&self, hits: f64) -> (f64, [f64; 2]) {
+        let tests = self.values.len() as f64;
+        (hits / tests.max(1.0), wilson_interval(hits, tests))
+    }
+
+    /// Returns the range of 95 % of the differences of the output of the next design under the `solved` disturbances; none without
+    /// one.
+    fn lead(&self, next: &Self, solved: &[usize]) -> Option<[f64; 2]> {
+        let difference = |row: &usize| next.values[*row] - self.values[*row];
+        (!solved.is_empty()).then(|| central_interval(solved.iter().map(difference).collect()))
+    }
+
+    /// Returns the design compared with `all`, without what depends on their order.
+    fn compared(&self, all: &[Outcomes], solved: &[usize], limits: &[RankedLimit]) -> RankedDesign {
+        let is_best = |row: &usize| {
+            let value = self.values[*row];
+            value.is_finite() && all.iter().all(|other| value <= other.values[*row])
+        };
+        let hits = (0..self.values.len()).filter(is_best).count() as f64;
+        let (best, best_interval) = self.share(hits);
+        let values: Vec<f64> = solved.iter().map(|row| self.values[*row]).collect();
+        let of_solved = |of: fn(&[f64]) -> f64| match values.is_empty() {
+            true => f64::NAN,
+            false => of(&values),
+        };
+        // A design ties with itself.
+        let won: f64 = all.iter().map(|other| self.wins(other)).sum();
+        let (tests, others) = (self.values.len() as f64, all.len() as f64 - 1.0);
+        let (within_limits, within_limits_interval) = self.within();
         let mut kept = self.kept.iter().zip(limits);
-        kept.all(|(kept, limit)| *kept >= limit.probability)
+        RankedDesign {
+            name: self.name.clone(),
+            tests: self.within_limits.len(),
+            failed: self.count(None),
+            doubtful: self.doubtful,
+            mean: of_solved(mean),
+            standard_deviation: of_solved(standard_deviation),
+            within_limits,
+            within_limits_interval,
+            kept: self.kept.clone(),
+            keeps_limits: kept.all(|(kept, limit)| *kept >= limit.probability),
+            wins: (won - 0.5 * tests) / (others.max(1.0) * tests.max(1.0)),
+            best,
+            best_interval,
+            beats: Vec::new(),
+            beats_intervals: Vec::new(),
+            lead: None,
+        }
     }
 }
 
@@ -207,10 +258,8 @@ fn solved_by_all(all: &[Outcomes]) -> Vec<usize> {
 /// another, then by the mean.
 fn ranked(all: &[Outcomes], limits: &[RankedLimit]) -> Vec<RankedDesign> {
     let solved = solved_by_all(all);
-    let mut order: Vec<(RankedDesign, &Outcomes)> = all
-        .iter()
-        .map(|own| (own.compared(all, &solved, limits), own))
-        .collect();
+    let compared = |own| (Outcomes::compared(own, all, &solved, limits), own);
+    let mut order: Vec<(RankedDesign, &Outcomes)> = all.iter().map(compared).collect();
     // How often a design is best depends on the others: the last of three may be best more often than the second.
     order.sort_by(|(one, _), (other, _)| {
         let within =
@@ -220,83 +269,15 @@ fn ranked(all: &[Outcomes], limits: &[RankedLimit]) -> Vec<RankedDesign> {
             .then(other.wins.total_cmp(&one.wins))
             .then(one.mean.total_cmp(&other.mean))
     });
-    let outcomes: Vec<&Outcomes> = order.iter().map(|(_, own)| *own).collect();
-    let lead = |own: &Outcomes, next: &Outcomes| {
-        let differences = solved
-            .iter()
-            .map(|row| next.values[*row] - own.values[*row]);
-        let differences: Vec<f64> = differences.collect();
-        (!differences.is_empty()).then(|| Lead {
-            mean: mean(&differences),
-            range: central_interval(differences),
-        })
-    };
-    let beats = order
-        .into_iter()
-        .enumerate()
-        .map(|(place, (mut design, own))| {
-            design.lead = outcomes.get(place + 1).and_then(|next| lead(own, next));
-            let tests = own.values.len() as f64;
-            let wins = outcomes
-                .iter()
-                .map(|other| wins(&own.values, &other.values));
-            let shares = wins.map(|wins| (wins / tests.max(1.0), wilson_interval(wins, tests)));
-            (design.beats, design.beats_intervals) = shares.unzip();
-            design
-        });
-    beats.collect()
-}
-
-impl Outcomes {
-    /// Returns the design compared with `all`, without what depends on their order.
-    fn compared(&self, all: &[Outcomes], solved: &[usize], limits: &[RankedLimit]) -> RankedDesign {
-        let tests = self.values.len() as f64;
-        let is_best = |row: &usize| {
-            let value = self.values[*row];
-            value.is_finite() && all.iter().all(|other| value <= other.values[*row])
-        };
-        let hits = (0..self.values.len()).filter(is_best).count() as f64;
-        let values: Vec<f64> = solved.iter().map(|row| self.values[*row]).collect();
-        let of_solved = |of: fn(&[f64]) -> f64| match values.is_empty() {
-            true => f64::NAN,
-            false => of(&values),
-        };
-        // A design ties with itself.
-        let won: f64 = all
-            .iter()
-            .map(|other| wins(&self.values, &other.values))
-            .sum();
-        let others = (all.len() as f64 - 1.0).max(1.0);
-        let (within_limits, within_limits_interval) = self.within();
-        RankedDesign {
-            name: self.name.clone(),
-            tests: self.within_limits.len(),
-            failed: self.count(None),
-            doubtful: self.doubtful,
-            mean: of_solved(mean),
-            standard_deviation: of_solved(standard_deviation),
-            within_limits,
-            within_limits_interval,
-            kept: self.kept.clone(),
-            keeps_limits: self.keeps(limits),
-            wins: (won - 0.5 * tests) / (others * tests.max(1.0)),
-            best: hits / tests.max(1.0),
-            best_interval: wilson_interval(hits, tests),
-            beats: Vec::new(),
-            beats_intervals: Vec::new(),
-            lead: None,
-        }
+    let (mut designs, outcomes): (Vec<_>, Vec<_>) = order.into_iter().unzip();
+    for (place, (design, own)) in designs.iter_mut().zip(&outcomes).enumerate() {
+        let beats = outcomes.iter().map(|other| own.share(own.wins(other)));
+        (design.beats, design.beats_intervals) = beats.unzip();
+        design.lead = outcomes
+            .get(place + 1)
+            .and_then(|next| own.lead(next, &solved));
     }
-}
-
-/// Returns the number of disturbances for which one value is smaller than the other; a tie counts as half.
-fn wins(one: &[f64], other: &[f64]) -> f64 {
-    let win = |(one, other): (&f64, &f64)| match one.total_cmp(other) {
-        std::cmp::Ordering::Less => 1.0,
-        std::cmp::Ordering::Equal => 0.5,
-        std::cmp::Ordering::Greater => 0.0,
-    };
-    one.iter().zip(other).map(win).sum()
+    designs
 }
 
 /// The optimum that a search found.
@@ -342,30 +323,13 @@ pub(crate) struct Margin {
     pub margin: f64,
 }
 
-/// Returns the distances of a value from the ends of a bound.
-fn margins(bound: &Bound, value: f64) -> impl Iterator<Item = Margin> {
-    let least = bound.least.map(|limit| (limit, value - limit));
-    let most = bound.most.map(|limit| (limit, limit - value));
-    let output = bound.output.key;
-    let margin = move |(limit, margin)| Margin {
-        output,
-        limit,
-        margin,
-    };
-    [least, most].into_iter().flatten().map(margin)
-}
-
 impl Best {
     /// Returns the optimum; none for a study that is not a search for one, and for a robust search.
     pub fn read(data: &Data<'_>, store: &Store) -> Result<Option<Self>, StudyError> {
-        let plan = data.plan;
-        let objectives = plan.study().objectives();
-        let [minimised] = objectives[..] else {
+        let (plan, study) = (data.plan, data.plan.study());
+        let ([minimised], false) = (&study.objectives()[..], study.is_robust()) else {
             return Ok(None);
         };
-        if plan.study().is_robust() {
-            return Ok(None);
-        }
         let values = store.column(plan, minimised.key)?.values;
         let (row, progress) = least(&values, &data.within);
         let known = store.known(plan, 0)?;
@@ -380,18 +344,22 @@ impl Best {
             standing: standing(plan, &known),
             progress,
         };
-        if let Some(row) = row {
-            let valued = |name: &str, values: &[f64]| Valued::new(name, values, [row, start]);
-            let inputs = plan.study().inputs.iter().zip(&data.inputs);
-            let inputs = inputs.map(|(input, column)| valued(&input.key, &column.values));
-            best.inputs = inputs.collect();
-            for output in plan.study().outputs.all() {
-                let values = store.column(plan, output.key)?.values;
-                let own = plan.study().answers.bounds_of(output);
-                best.margins
-                    .extend(own.flat_map(|bound| margins(bound, values[row])));
-                best.outputs.push(valued(output.key, &values));
-            }
+        let Some(row) = row else {
+            return Ok(Some(best));
+        };
+        let valued = |name: &str, values: &[f64]| Valued::new(name, values, [row, start]);
+        let inputs = study.inputs.iter().zip(&data.inputs);
+        let inputs = inputs.map(|(input, column)| valued(&input.key, &column.values));
+        best.inputs = inputs.collect();
+        for output in study.outputs.all() {
+            let values = store.column(plan, output.key)?.values;
+            let sides = study.answers.bounds_of(output).flat_map(Bound::sides);
+            best.margins.extend(sides.map(|(sign, limit)| Margin {
+                output: output.key,
+                limit,
+                margin: sign * (limit - values[row]),
+            }));
+            best.outputs.push(valued(output.key, &values));
         }
         Ok(Some(best))
     }
@@ -584,11 +552,8 @@ mod tests {
         let ranked = ranked_within(&all);
         assert_eq!(names(&ranked), ["conforming", "standard", "flat"]);
         assert_eq!((ranked[1].best, ranked[2].best), (0.0, 0.03));
-        let lead = ranked[0].lead.as_ref().unwrap();
-        assert_eq!(
-            (lead.mean, lead.range, &ranked[2].lead),
-            (8.0, [8.0; 2], &None)
-        );
+        assert_eq!((ranked[0].lead, ranked[2].lead), (Some([8.0; 2]), None));
+        assert_eq!(ranked[1].mean - ranked[0].mean, 8.0);
         for (design, wins) in ranked.iter().zip([0.985, 0.485, 0.03]) {
             assert!((design.wins - wins).abs() < 1e-12, "{design:?}");
         }

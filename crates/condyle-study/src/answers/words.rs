@@ -31,6 +31,21 @@ pub(crate) fn sides_in_words(bound: &Bound) -> impl Iterator<Item = String> {
     })
 }
 
+/// Returns the title of an output within a sentence, with its design if there are several.
+pub(crate) fn within_design(title: &str, design: Option<&str>) -> String {
+    design.map_or_else(|| title.to_owned(), |design| format!("{title} of {design}"))
+}
+
+/// Returns a title as it stands within a sentence: "AP force" keeps its capitals.
+pub(crate) fn within_sentence(title: &str) -> String {
+    let is_word = title.chars().nth(1).is_none_or(char::is_lowercase);
+    let mut letters = title.chars();
+    match letters.next().filter(|_| is_word) {
+        Some(first) => first.to_lowercase().chain(letters).collect(),
+        None => title.to_owned(),
+    }
+}
+
 /// Returns a number with four significant digits; a dash for one that is not known.
 pub(crate) fn shown(value: f64) -> String {
     if value.is_nan() {

@@ -157,17 +157,14 @@ impl Copula {
             Place::Share(share) => normal_quantile(*share),
             Place::OfCase | Place::Along(_) => 0.0,
         };
-        let scores: Vec<f64> = places.iter().map(score).collect();
+        let independent = places.to_vec();
         for (row, place) in places.iter_mut().enumerate() {
             let before = self.0.row(row);
-            if before.iter().take(row).all(|factor| *factor == 0.0) {
-                continue;
+            if before.iter().take(row).any(|factor| *factor != 0.0) {
+                let scores = before.iter().zip(&independent);
+                let sum = scores.map(|(factor, place)| factor * score(place)).sum();
+                *place = Place::Share(normal_share(sum));
             }
-            let sum = before
-                .iter()
-                .zip(&scores)
-                .map(|(factor, score)| factor * score);
-            *place = Place::Share(normal_share(sum.sum()));
         }
     }
 }

@@ -78,13 +78,9 @@ impl Emulator {
             return None;
         }
         let axes = points[0].len();
-        let fitted = points.len().min(MAX_FITTED);
-        let (fitted, [centre, scale]) = (&points[..fitted], scaling(values));
-        let scaled: Vec<f64> = values
-            .iter()
-            .map(|value| (value - centre) / scale)
-            .collect();
-        let scaled = DVector::from_column_slice(&scaled[..fitted.len()]);
+        let fitted = &points[..points.len().min(MAX_FITTED)];
+        let (scaled, _) = scaled(values);
+        let scaled = scaled.rows(0, fitted.len()).into_owned();
         let deviance = |logarithms: &DVector<f64>| {
             let process = Process::new(fitted, &scaled, logarithms)?;
             let slope = process.slope(fitted, logarithms);
@@ -105,9 +101,7 @@ impl Emulator {
 
     /// Conditions an emulator on tests, with the logarithms of lengths and nugget.
     fn with(points: Vec<Vec<f64>>, values: Vec<f64>, logarithms: DVector<f64>) -> Option<Self> {
-        let [centre, scale] = scaling(&values);
-        let scaled = values.iter().map(|value| (value - centre) / scale);
-        let scaled = DVector::from_iterator(values.len(), scaled);
+        let (scaled, [centre, scale]) = scaled(&values);
         Some(Self {
             process: Process::new(&points, &scaled, &logarithms)?,
             lengths: parameters(&logarithms).0,
@@ -235,8 +229,8 @@ impl Emulator {
         let axes = || 0..self.lengths.len();
         let with = points.iter().map(|one| self.with_tests(axes(), one));
         let with: Vec<DVector<f64>> = with.collect();
-        let mean = |with: &DVector<f64>| self.predict_average(with, 1.0).mean;
-        let means = DVector::from_iterator(points.len(), with.iter().map(mean));
+        let means = with.iter().map(|with| self.average(with));
+        let means = DVector::from_iterator(points.len(), means);
         let whitened: Vec<DVector<f64>> = with.iter().map(|with| self.whitened(with)).collect();
         let covariance = DMatrix::from_fn(points.len(), points.len(), |row, column| {
             let among = self.correlation(axes(), &points[row], &points[column]);
@@ -417,9 +411,13 @@ impl Emulator {
     }
 }
 
-/// Returns the mean and the standard deviation of values, 1 instead of 0.
-fn scaling(values: &[f64]) -> [f64; 2] {
-    let deviation = standard_deviation(values);
+/// Returns values less their mean over their standard deviation, and these two; 1 instead of a standard deviation of 0.
+fn scaled(values: &[f64]) -> (DVector<f64>, [f64; 2]) {
+    let (centre, deviation) = (mean(values), standard_deviation(values));
     let scale = if deviation > 0.0 { deviation } else { 1.0 };
-    [mean(values), scale]
+    let scaled = values.iter().map(|value| (value - centre) / scale);
+    (
+        DVector::from_iterator(values.len(), scaled),
+        [centre, scale],
+    )
 }

@@ -117,8 +117,7 @@ fn verify_left_out_tests_are_those_of_refits() {
 #[test]
 fn verify_slopes_are_finite_differences() {
     let (points, values, logarithms) = small(1e-2);
-    let [centre, scale] = scaling(&values);
-    let scaled = DVector::from_vec(values).map(|value| (value - centre) / scale);
+    let (scaled, _) = scaled(&values);
     let at = |logarithms: &DVector<f64>| Process::new(&points, &scaled, logarithms).unwrap();
     let slope = at(&logarithms).slope(&points, &logarithms);
     for axis in 0..logarithms.len() {

@@ -99,7 +99,7 @@ fn first_left(plan: &Plan, seed: u64, known: &[Known], pending: &[Vec<f64>]) -> 
     let mut taken: Vec<Vec<f64>> = known.chain(pending.iter().cloned()).collect();
     let mut tests = tests_at(plan, 0, first_places(plan.study(), seed));
     tests.retain_mut(|test| {
-        test.values = plan.numbers(test).into_iter().map(level).collect();
+        *test = plan.in_numbers(test);
         let point = point(plan.study(), test);
         let is_left = is_new(&point, &taken);
         taken.push(point);
@@ -116,11 +116,8 @@ pub(crate) fn starting_test(plan: &Plan, known: &[Known]) -> usize {
     };
     let mut places = first_places(plan.study(), keys.seed);
     places.truncate(1);
-    // The numbers of the case where a test has no values of its own; programs may have rounded those of a design.
-    let at = |test: &Test| {
-        let values = plan.numbers(test).into_iter().map(level).collect();
-        point(plan.study(), &Test { values, ..*test })
-    };
+    // Programs may have rounded the values of a design.
+    let at = |test: &Test| point(plan.study(), &plan.in_numbers(test));
     let start: Vec<_> = tests_at(plan, 0, places).iter().map(at).collect();
     let mut known = known.iter();
     let place = known.position(|(test, _)| !is_new(&at(test), &start));
@@ -150,6 +147,12 @@ impl Plan {
             value.as_ref().and_then(Level::number).unwrap_or(f64::NAN)
         };
         inputs.map(number).collect()
+    }
+
+    /// Returns a test with the numbers of the case where it has no values of its own.
+    fn in_numbers(&self, test: &Test) -> Test {
+        let values = self.numbers(test).into_iter().map(level).collect();
+        Test { values, ..*test }
     }
 
     /// Returns test `row` with these values of its inputs.

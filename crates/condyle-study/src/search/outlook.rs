@@ -60,7 +60,7 @@ impl Outlook {
 
     /// Returns the outlook after a test with the result that the emulator predicts.
     pub fn believing(&self, point: &[f64]) -> Option<Self> {
-        let mean = self.emulator.predict(point).mean;
+        let mean = self.emulator.mean(point);
         let emulator = self.emulator.with_test(point.to_vec(), mean)?;
         let (disturbances, weights) = (self.disturbances.clone(), self.weights.clone());
         Some(Self::with(emulator, disturbances, weights))
@@ -107,7 +107,7 @@ impl Outlook {
     /// Predicts the output of a design under each disturbance.
     pub fn outputs(&self, design: &[f64]) -> Vec<f64> {
         let under = self.disturbances.iter();
-        let output = |one: &Vec<f64>| self.emulator.predict(&[design, one].concat()).mean;
+        let output = |one: &Vec<f64>| self.emulator.mean(&[design, one].concat());
         under.map(output).collect()
     }
 

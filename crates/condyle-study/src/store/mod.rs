@@ -312,22 +312,40 @@ impl Store {
         })
     }
 
-    /// Returns the result of a test; none if it is not stored.
-    pub(crate) fn outputs(&self, row: u64, plan: &Plan) -> Result<Option<TestResult>, StudyError> {
-        let (_, outputs) = plan.columns();
-        let query = select(&outputs, ", reason, status");
+    /// Returns a test with its stored inputs, which for a sequential design are stored only here, and its result; none if it is not
+    /// stored.
+    fn stored(&self, row: u64, plan: &Plan) -> Result<Option<(Test, TestResult)>, StudyError> {
+        let (inputs, outputs) = plan.columns();
+        let columns = inputs.iter().chain(&outputs).map(|name| quoted(name));
+        let query = format!(
+            "SELECT status, reason, {} FROM tests WHERE \"row\" = ?1",
+            columns.collect::<Vec<_>>().join(", ")
+        );
         self.first_row(&query, row as i64, |cells| {
+            let places = 2..2 + inputs.len();
+            let levels = places
+                .clone()
+                .map(|place| cells.get(place).map(Level::Number));
+            let test = Test {
+                row,
+                alternative: 0,
+                values: levels
+                    .map(|level| level.map(Some))
+                    .collect::<Result<_, _>>()?,
+            };
             // An output that a test does not have, such as a motion of another joint, is empty.
-            let values = (0..outputs.len()).map(|place| cells.get::<_, Option<f64>>(place));
-            let values = values.map(|value| Ok(value?.unwrap_or(f64::NAN)));
-            let values = values.collect::<rusqlite::Result<Vec<f64>>>()?;
-            let reason: Option<String> = cells.get(outputs.len())?;
-            let doubts = reason.unwrap_or_default();
-            let is_done = cells.get_ref(outputs.len() + 1)?.as_str() == Ok("done");
-            Ok(match is_done {
-                true => Ok(TestOutputs { values, doubts }),
-                false => Err(doubts),
-            })
+            let values = (places.end..places.end + outputs.len())
+                .map(|place| Ok(cells.get::<_, Option<f64>>(place)?.unwrap_or(f64::NAN)));
+            let outputs = TestOutputs {
+                values: values.collect::<rusqlite::Result<_>>()?,
+                doubts: cells.get::<_, Option<String>>(1)?.unwrap_or_default(),
+            };
+            let is_done = cells.get_ref(0)?.as_str() == Ok("done");
+            let result = match is_done {
+                true => Ok(outputs),
+                false => Err(outputs.doubts),
+            };
+            Ok((test, result))
         })
     }
 
@@ -337,29 +355,8 @@ impl Store {
         plan: &Plan,
         first: u64,
     ) -> Result<Vec<(Test, TestResult)>, StudyError> {
-        let mut known = Vec::new();
-        for row in first.. {
-            let both = (self.test(row, plan)?, self.outputs(row, plan)?);
-            let (Some(test), Some(result)) = both else {
-                break;
-            };
-            known.push((test, result));
-        }
-        Ok(known)
-    }
-
-    /// Returns test `row` with its stored inputs, which for a sequential design are stored only here; none if it is not stored.
-    pub(crate) fn test(&self, row: u64, plan: &Plan) -> Result<Option<Test>, StudyError> {
-        let (inputs, _) = plan.columns();
-        let values = self.first_row(&select(&inputs, ""), row as i64, |cells| {
-            let values = (0..inputs.len()).map(|place| cells.get(place).map(Level::Number));
-            values.map(|value| value.map(Some)).collect()
-        })?;
-        Ok(values.map(|values| Test {
-            row,
-            alternative: 0,
-            values,
-        }))
+        let stored = (first..).map(|row| self.stored(row, plan));
+        stored.map_while(Result::transpose).collect()
     }
 
     /// Adds the tests of another database; tests that are already stored do not change.
@@ -429,7 +426,8 @@ impl Plan {
         }
         let mut test = self.test(row);
         if let (None, Some(folder)) = (&test, folder) {
-            test = Store::existing(folder, self)?.test(row, self)?;
+            let stored = Store::existing(folder, self)?.stored(row, self)?;
+            test = stored.map(|(test, _)| test);
         }
         test.ok_or_else(|| {
             StudyError::Plan(format!(
@@ -453,14 +451,6 @@ pub(crate) fn holds_anything(folder: &Path) -> Result<bool, StudyError> {
 
 fn quoted(name: &str) -> String {
     format!("\"{}\"", name.replace('"', "\"\""))
-}
-
-fn select(columns: &[&str], more: &str) -> String {
-    let columns: Vec<String> = columns.iter().map(|name| quoted(name)).collect();
-    format!(
-        "SELECT {}{more} FROM tests WHERE \"row\" = ?1",
-        columns.join(", ")
-    )
 }
 
 fn cells(plan: &Plan, test: &Test, result: &TestResult) -> Vec<Value> {
