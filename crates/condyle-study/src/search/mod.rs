@@ -138,7 +138,7 @@ pub(crate) fn standing(plan: &Plan, known: &[Known]) -> Option<Standing> {
     Some(Standing {
         expected_improvement: worth.exp(),
         is_converged,
-        q2: outlook.emulator.q2(),
+        q2: outlook.emulator.clone().calibrated().q2(),
         left_out_error: outlook.emulator.left_out().get(best)?.mean,
     })
 }
