@@ -158,9 +158,7 @@ fn emulated_output(
     let ((output, _, design), study) = (own, data.plan.study());
     let emulator = emulator(data, axes, own)?;
     let mut emulated = Emulated::new(output, data.name_of(design), axes, &emulator);
-    let failed = data.kept_values(own).into_iter();
-    let failed = failed.map(|value| f64::from(!value.is_finite()));
-    emulated.failed = mean(&failed.collect::<Vec<f64>>());
+    emulated.failed = failed(&data.kept_values(own));
     emulated.is_sample = data.is_sample() || matches!(study.design, Design::Adaptive(_));
     let mut indices = Vec::new();
     if emulated.why_not_used().is_none() {
@@ -174,6 +172,12 @@ fn emulated_output(
         }
     }
     Some((emulated, indices))
+}
+
+/// Returns the share of values of tests that failed.
+fn failed(values: &[f64]) -> f64 {
+    let failed = values.iter().map(|value| f64::from(!value.is_finite()));
+    mean(&failed.collect::<Vec<f64>>())
 }
 
 /// Returns an emulator of an output of a design from its first tests that are done.

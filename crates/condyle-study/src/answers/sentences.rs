@@ -168,13 +168,24 @@ impl Ranking {
             answer += " The disturbances are no random sample: the percentages are parts of them.";
         }
         for (_, title, count) in self.counts() {
-            let designs = self.designs.iter();
-            let counts =
-                designs.map(|one| format!("{} of {} of {}", count(one), one.tests, one.name));
-            let counts: Vec<String> = counts.collect();
-            answer += &format!(" {title}: {}.", counts.join(", "));
+            answer += &format!(" {title}: {}.", self.counted(count));
         }
         Some(answer)
+    }
+
+    /// Returns a count of each design in words.
+    fn counted(&self, count: CountOfDesign) -> String {
+        let designs = self.designs.iter();
+        let counts = designs.map(|one| format!("{} of {} of {}", count(one), one.tests, one.name));
+        counts.collect::<Vec<_>>().join(", ")
+    }
+
+    /// Returns the limits that a design breaks, with how often it keeps them.
+    fn broken_in_words(&self, design: &RankedDesign) -> String {
+        let kept = design.kept.iter().zip(&self.limits);
+        let broken = kept.filter(|(kept, limit)| **kept < limit.probability);
+        let words = broken.map(|(kept, limit)| format!("{} under {}", limit.words, percent(*kept)));
+        words.collect::<Vec<_>>().join(", ")
     }
 
     fn sentence_of_first(&self, first: &RankedDesign) -> String {
@@ -233,14 +244,7 @@ impl Ranking {
             1 => ("can be solved", "not in enough solved tests"),
             _ => ("keeps every limit", "breaks a limit"),
         };
-        let broken = |design: &RankedDesign| {
-            let kept = design.kept.iter().zip(limits);
-            let broken = kept.filter(|(kept, limit)| **kept < limit.probability);
-            let broken =
-                broken.map(|(kept, limit)| format!("{} under {}", limit.words, percent(*kept)));
-            broken.collect::<Vec<_>>().join(", ")
-        };
-        let (name, own) = (&nearest.name, broken(nearest));
+        let (name, own) = (&nearest.name, self.broken_in_words(nearest));
         let within = self.share(nearest.within_limits, nearest.within_limits_interval);
         let nearest_one = match nearest.within_limits > 0.0 {
             true => format!("{name} comes nearest, under {within}: {own}."),
@@ -249,7 +253,7 @@ impl Ranking {
         let mut designs = self.designs.iter();
         let least = designs.find(|one| one.wins > nearest.wins && one.best > 0.5);
         let least = least.map_or_else(String::new, |least| {
-            let (name, title, broken) = (&least.name, self.title, broken(least));
+            let (name, title, broken) = (&least.name, self.title, self.broken_in_words(least));
             let best = self.share(least.best, least.best_interval);
             format!(" {name} has the least {title} under {best}, but {breaks}: {broken}.")
         });

@@ -331,16 +331,13 @@ impl Emulator {
                 continue;
             };
             let left_out = (fold..self.points.len()).step_by(FOLDS);
-            squares.extend(left_out.clone().map(|test| {
-                let found = fitted.predict(&self.points[test]);
-                let deviation = found.standard_deviation.hypot(fitted.noise());
-                let ratio = (self.values[test] - found.mean) / deviation.max(f64::MIN_POSITIVE);
-                ratio * ratio
-            }));
+            let ratios = left_out
+                .clone()
+                .map(|test| fitted.standardised_error(&self.points[test], self.values[test]));
+            squares.extend(ratios.map(|ratio| ratio * ratio));
             let (points, values) = (self.points.clone(), self.values.clone());
             if let Some(all) = Self::with(points, values, fitted.logarithms) {
-                let errors = all.left_out().into_iter().map(|one| one.mean * one.mean);
-                let errors: Vec<f64> = errors.collect();
+                let errors = all.squared_left_out();
                 let own: f64 = left_out.map(|test| errors[test]).sum();
                 optimism += own - errors.iter().sum::<f64>() / FOLDS as f64;
             }
@@ -349,6 +346,19 @@ impl Emulator {
         // Lengths fitted without a test predict it better than others only by chance.
         self.optimism = optimism.max(0.0);
         self
+    }
+
+    /// Returns the error of the prediction of a test, relative to its standard deviation.
+    fn standardised_error(&self, point: &[f64], value: f64) -> f64 {
+        let found = self.predict(point);
+        let deviation = found.standard_deviation.hypot(self.noise());
+        (value - found.mean) / deviation.max(f64::MIN_POSITIVE)
+    }
+
+    /// Returns the squared error of every test, predicted from all others.
+    fn squared_left_out(&self) -> Vec<f64> {
+        let errors = self.left_out().into_iter().map(|one| one.mean);
+        errors.map(|error| error * error).collect()
     }
 
     /// Returns an emulator fitted to all tests but every fifth; none if they allow no fit, or are constant, as where the only test
@@ -414,16 +424,11 @@ impl Emulator {
     /// Returns Q2, the share of the variance of the values that predictions from the other tests explain, without the optimism if
     /// the emulator is calibrated; 1 for constant values.
     pub fn q2(&self) -> f64 {
-        let squares =
-            |values: &mut dyn Iterator<Item = f64>| values.map(|one| one * one).sum::<f64>();
-        let errors = squares(&mut self.left_out().iter().map(|one| one.mean));
+        let errors = self.squared_left_out().iter().sum::<f64>() + self.optimism;
         let mean = mean(&self.values);
-        let all = squares(&mut self.values.iter().map(|value| value - mean));
-        if all == 0.0 {
-            1.0
-        } else {
-            1.0 - (errors + self.optimism) / all
-        }
+        let squares = self.values.iter().map(|value| (value - mean).powi(2));
+        let all: f64 = squares.sum();
+        if all == 0.0 { 1.0 } else { 1.0 - errors / all }
     }
 }
 
