@@ -67,7 +67,6 @@ impl Case {
             self.built_femur(joint, flexion_rad, threads, keep, warnings)
         })?;
         self.check_head(&insert, femur.ball_radius_mm)?;
-        let warnings = [self.origin.notes.clone(), of_insert, of_femur].concat();
         let as_linked = |law| self.material.cross_linking.under(law);
         let comparison_laws = self.wear.comparison_laws().into_iter().map(as_linked);
         let is_round = self.insert.shape.is_round();
@@ -104,7 +103,7 @@ impl Case {
         };
         Ok(Built {
             test,
-            warnings,
+            warnings: [self.origin.notes.clone(), of_insert, of_femur].concat(),
             axes: femur.axes.clone(),
         })
     }
