@@ -1,5 +1,6 @@
 //! Values set from outside, which replace those of a case file.
 
+use std::collections::BTreeSet;
 use std::fmt;
 use std::ops::Range;
 
@@ -112,6 +113,45 @@ impl Assignment {
 
     pub(super) fn line(&self) -> String {
         format!("{} = {}", self.key, self.value())
+    }
+
+    /// Returns the assignment with the dotted path of its key, if a single key has its name, for any words of the choices of a case.
+    pub(super) fn placed(&self, items: &[Item]) -> Self {
+        let mut paths = BTreeSet::new();
+        add_paths(items, "", &mut paths);
+        paths.retain(|path| is_called(path, &self.key));
+        match (paths.pop_first(), paths.is_empty()) {
+            (Some(path), true) if !path.contains(OF_LIST) => Self::new(&path, self.text()),
+            _ => self.clone(),
+        }
+    }
+}
+
+/// The place in a path of the name of a table of a list.
+const OF_LIST: &str = "*.";
+
+/// Adds the dotted paths of all keys of `items`, for every word of their choices.
+fn add_paths(items: &[Item], above: &str, paths: &mut BTreeSet<String>) {
+    for item in items {
+        match item {
+            Item::Table(table) => {
+                let of_list = if table.is_list { OF_LIST } else { "" };
+                add_paths(
+                    &table.items,
+                    &format!("{above}{}.{of_list}", table.name),
+                    paths,
+                );
+            }
+            Item::Choice(choices) => {
+                paths.insert(format!("{above}{}", choices.by.name));
+                let offered = choices.offered.iter();
+                offered.for_each(|offer| add_paths(&offer.items, above, paths));
+            }
+            Item::Key(key) => {
+                paths.insert(format!("{above}{}", key.name));
+            }
+            Item::OneOf(_) | Item::AtMostOne(_) | Item::Needs(..) => {}
+        }
     }
 }
 
@@ -460,8 +500,8 @@ fn path_called(
         return Ok(current_path(written));
     }
     let paths = paths();
-    let is_meant = |path: &&String| leaf(path) == written || split_unit(leaf(path)).0 == written;
-    let meant: Vec<String> = paths.iter().filter(is_meant).cloned().collect();
+    let meant = paths.iter().filter(|path| is_called(path, written));
+    let meant: Vec<String> = meant.cloned().collect();
     match <[String; 1]>::try_from(meant) {
         Ok([path]) => Ok(path),
         Err(meant) if meant.is_empty() => {
@@ -478,6 +518,11 @@ fn path_called(
             paths.join("` or `")
         ))),
     }
+}
+
+/// Returns whether `written` is the last word of a path, with or without the unit.
+fn is_called(path: &str, written: &str) -> bool {
+    leaf(path) == written || split_unit(leaf(path)).0 == written
 }
 
 fn leaf(path: &str) -> &str {

@@ -55,14 +55,16 @@ impl CaseReader {
     /// As [`Self::read`]; a name that no key has, or several.
     pub fn read_changed(&self, path: &Path, changes: &[Assignment]) -> Result<Case, ChangeError> {
         let (file, base) = (self.source(path)?, Base::of(&self.files, path));
+        let items = Case::items_with(self.wear_laws);
+        let changes: Vec<Assignment> = changes.iter().map(|one| one.placed(&items)).collect();
         let (mut placed, named): (Vec<_>, Vec<_>) = changes
             .iter()
             .cloned()
             .partition(|change| change.key().contains('.'));
         if named.is_empty() {
-            return Ok(self.case_of(&file, base, changes)?);
+            return Ok(self.case_of(&file, base, &changes)?);
         }
-        // A name without a path is looked up in the case with all other changes: a law that is set brings keys.
+        // A name that several keys have is looked up in the case with all other changes: a shape that is set brings keys.
         let case = self.case_of(&file, base, &placed)?;
         let path_of = |change: &Assignment| case.path_of_key(change.key());
         placed = changes

@@ -123,20 +123,10 @@ type Pressures<'a> = (&'static str, &'a [f64], &'a ArticulatingSurface);
 /// Returns the pressures in the first and in the last cycle.
 fn pressures<'a>(finished: &'a Finished<'_>) -> Vec<Pressures<'a>> {
     let state = finished.march.state();
+    let first = ("first", &state.first_pressure_mpa[..], &finished.unworn);
     // After a single update, too, the final cycle is solved on the worn surface.
     let last = state.fields.as_ref();
-    let last = last.map(|fields| {
-        (
-            "last",
-            fields.peak_pressure_mpa.as_slice(),
-            &finished.surface,
-        )
-    });
-    let first = (
-        "first",
-        state.first_pressure_mpa.as_slice(),
-        &finished.unworn,
-    );
+    let last = last.map(|fields| ("last", &fields.peak_pressure_mpa[..], &finished.surface));
     [first].into_iter().chain(last).collect()
 }
 

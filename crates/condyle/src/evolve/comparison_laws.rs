@@ -2,6 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
+use super::next_step::MIN_OBSERVED;
 use super::rates::{SolvedStep, mean_cycles, volume_mm3, worn};
 use crate::wear::{MeanCycle, NamedLaw, NodeWear, SharedCycle, WearLaw};
 
@@ -62,13 +63,16 @@ impl ComparisonLaw {
             interval,
             depth_mm,
         };
-        // Without a last interval, last = now: Euler's method.
+        // Without a last interval, last = now: Euler's method. So too after a much shorter one, such as the first of an insert that
+        // creeps: the change of its rates does not hold over a long one.
+        let is_long = |last: &CycleByLaw| last.interval > MIN_OBSERVED * interval;
+        let last = self.last.take().filter(is_long);
         let step = |now: f64, last: f64, last_interval: f64| {
             interval * now + interval * interval / (2.0 * last_interval) * (now - last)
         };
         for (node, depth_mm) in self.depth_mm.iter_mut().enumerate() {
             let rate = now.depth_mm[node];
-            let (last, last_interval) = self.last.as_ref().map_or((rate, interval), |last| {
+            let (last, last_interval) = last.as_ref().map_or((rate, interval), |last| {
                 (last.depth_mm[node], last.interval)
             });
             let more_mm = step(rate, last, last_interval);
@@ -76,8 +80,8 @@ impl ComparisonLaw {
             self.volume_mm3 += area_mm2[node] * more_mm;
         }
         let outside = now.outside_mm3.map(|rate| {
-            let last = self.last.as_ref();
-            let before = last.and_then(|last| Some((last.outside_mm3?, last.interval)));
+            let before = last.as_ref();
+            let before = before.and_then(|last| Some((last.outside_mm3?, last.interval)));
             let (last, last_interval) = before.unwrap_or((rate, interval));
             step(rate, last, last_interval)
         });
@@ -215,6 +219,10 @@ mod tests {
         assert!((law_wear.max_depth_mm() / (first + second) - 1.0).abs() < 1e-12);
         assert!((law_wear.volume_mm3 / (2.0 * (first + second)) - 1.0).abs() < 1e-12);
         assert_eq!(law_wear.outside_mm3, None);
+        // The change of the rates over an interval is not extrapolated over one that is nine times as long.
+        add(&mut law_wear, 4.0, 18000.0);
+        let third = 2.64e-9 * 4.0 * 18000.0;
+        assert!((law_wear.max_depth_mm() / (first + second + third) - 1.0).abs() < 1e-12);
     }
 
     #[test]

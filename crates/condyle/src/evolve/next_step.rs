@@ -29,7 +29,7 @@ const NOISE: f64 = 0.01;
 /// Factor that shortens a step until its error is within the tolerance.
 const SHORTER: f64 = 0.9;
 /// Smallest ratio of the last interval to the next at which the change over the last is extrapolated.
-const MIN_OBSERVED: f64 = 0.25;
+pub(super) const MIN_OBSERVED: f64 = 0.25;
 
 pub(super) fn next_step(start: StepStart<'_>, schedule: &Schedule) -> WearStep {
     let left = schedule.cycles - start.cycles;
