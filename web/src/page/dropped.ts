@@ -43,9 +43,8 @@ export function takeDropped(listener: Listener): void {
 }
 
 export async function take(files: File[], listener: Listener): Promise<void> {
-  const meshes = files.filter(({ name }) => MESH.test(name));
-  const [one, other] = meshes;
-  if (!one || !other || files.length !== 2 || meshes.length !== 2) return takeNamed(files, meshes, listener);
+  const [one, other] = files.filter(({ name }) => MESH.test(name));
+  if (!one || !other || files.length !== 2) return takeNamed(files, listener);
   const femur = femurByName(one, other) ?? (await askFemur(one, other));
   if (!femur) return;
   const insert = femur === one ? other : one;
@@ -53,11 +52,13 @@ export async function take(files: File[], listener: Listener): Promise<void> {
   listener.bodies({ femur: femur.name, insert: insert.name, files: await read(files) });
 }
 
-async function takeNamed(files: File[], meshes: File[], listener: Listener): Promise<void> {
+async function takeNamed(files: File[], listener: Listener): Promise<void> {
   const texts = await Promise.all(files.filter(({ name }) => CASE.test(name)).map(async (file) => ({ file, text: await file.text() })));
   const [found, ...more] = texts.filter(({ text }) => !MACHINE.test(text));
-  const isKnown = files.length === meshes.length + texts.length + files.filter(({ name }) => TABLE.test(name)).length;
-  if (!isKnown || files.length === 0 || more.length > 0 || (!found && meshes.length > 0)) return listener.refused(WANTED);
+  // Without a case, meshes are those of a new one.
+  const kinds = found ? [CASE, TABLE, MESH] : [CASE, TABLE];
+  const areKnown = files.every(({ name }) => kinds.some((kind) => kind.test(name)));
+  if (!areKnown || files.length === 0 || more.length > 0) return listener.refused(WANTED);
   listener.named(await read(files.filter((file) => file !== found?.file)), found?.text);
 }
 

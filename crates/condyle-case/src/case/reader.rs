@@ -55,22 +55,20 @@ impl CaseReader {
     /// As [`Self::read`]; a name that no key has, or several.
     pub fn read_changed(&self, path: &Path, changes: &[Assignment]) -> Result<Case, ChangeError> {
         let (file, base) = (self.source(path)?, Base::of(&self.files, path));
+        let is_placed = |change: &&Assignment| change.key().contains('.');
+        if changes.iter().all(|change| is_placed(&change)) {
+            return Ok(self.case_of(&file, base, changes)?);
+        }
         let items = Case::items_with(self.wear_laws);
         let changes: Vec<Assignment> = changes.iter().map(|one| one.placed(&items)).collect();
-        let (mut placed, named): (Vec<_>, Vec<_>) = changes
-            .iter()
-            .cloned()
-            .partition(|change| change.key().contains('.'));
-        if named.is_empty() {
-            return Ok(self.case_of(&file, base, &changes)?);
-        }
         // A name that several keys have is looked up in the case with all other changes: a shape that is set brings keys.
-        let case = self.case_of(&file, base, &placed)?;
+        let others: Vec<Assignment> = changes.iter().filter(is_placed).cloned().collect();
+        let case = self.case_of(&file, base, &others)?;
         let path_of = |change: &Assignment| case.path_of_key(change.key());
-        placed = changes
+        let placed = changes
             .iter()
             .map(|change| Ok(Assignment::new(&path_of(change)?, change.text())))
-            .collect::<Result<_, AssignmentError>>()?;
+            .collect::<Result<Vec<_>, AssignmentError>>()?;
         Ok(self.case_of(&file, base, &placed)?)
     }
 

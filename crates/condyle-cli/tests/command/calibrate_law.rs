@@ -25,6 +25,9 @@ fn verify_the_table_follows_the_deformable_insert_and_a_run_says_how_well() {
         number(&json["left"]["mass_loss_percent"]).abs() < 3.0,
         "{json:#}"
     );
+    let motions = &json["left"]["first_cycle_motions"];
+    assert!(number(&motions["ap_mm"]) < 0.5, "{json:#}");
+    assert!(number(&motions["ie_deg"]) < 0.5, "{json:#}");
     for (name, part) in [
         (
             "pressure_table.csv",
@@ -59,6 +62,13 @@ fn a_folder_that_is_there_and_a_case_that_is_none_are_refused() {
     assert!(said.err.contains("replace it with --force"), "{}", said.err);
     let said = bench.say(&["calibrate", "none.toml", "--out", "new"]);
     assert_eq!(said.code, Some(2));
+    assert!(!bench.path("new").exists());
+    let activities = "[femur]\nshape = \"plane\"\n[insert]\nshape = \"pin\"\n[machine]\npreset = \"pin-on-disc\"\n\
+                      [[activity]]\nname = \"a\"\nshare = 0.5\n[[activity]]\nname = \"b\"\nshare = 0.5\n";
+    bench.write("activities.toml", activities);
+    let said = bench.say(&["calibrate", "activities.toml", "--out", "new"]);
+    assert_eq!(said.code, Some(2));
+    assert!(said.err.contains("fitted to one activity"), "{}", said.err);
     assert!(!bench.path("new").exists());
 }
 

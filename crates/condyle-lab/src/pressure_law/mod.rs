@@ -2,6 +2,7 @@
 
 pub(crate) mod fit;
 
+use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
 use condyle::{
@@ -295,7 +296,7 @@ struct RunErrors {
     first_cycle: CycleErrors,
     last_cycle: CycleErrors,
     /// Root mean square over the first cycle of the difference of each freedom, by its column.
-    first_cycle_motions: Vec<(&'static str, f64)>,
+    first_cycle_motions: BTreeMap<&'static str, f64>,
     deformable_mass_loss_mg: f64,
     mass_loss_mg: f64,
     mass_loss_percent: f64,
@@ -337,7 +338,7 @@ impl CycleErrors {
 }
 
 /// Returns the root mean square of the difference of two cycles along each freedom of the machine, by its column.
-fn motions(march: &March, found: &[CycleRow], wanted: &[CycleRow]) -> Vec<(&'static str, f64)> {
+fn motions(march: &March, found: &[CycleRow], wanted: &[CycleRow]) -> BTreeMap<&'static str, f64> {
     let machine = march.test().machine();
     let is_free = |joint: &JointIndex| matches!(machine.joint(*joint).drive, Drive::Loaded(_));
     let difference = |joint: JointIndex| {

@@ -30,6 +30,32 @@ fn warnings(case: &Case) -> Vec<String> {
 }
 
 #[test]
+fn a_last_word_is_found_for_any_choice_that_is_set_beside_it() {
+    for (set, placed) in [
+        (
+            ["cross_linking=high", "wear_over_conventional=0.1"],
+            [
+                "material.cross_linking=high",
+                "material.wear_over_conventional=0.1",
+            ],
+        ),
+        (
+            ["cross_linking=high", "material.wear_over_conventional=0.1"],
+            [
+                "material.cross_linking=high",
+                "material.wear_over_conventional=0.1",
+            ],
+        ),
+        (
+            ["update=auto", "depth_tolerance_fraction=0.1"],
+            ["march.update=auto", "march.depth_tolerance_fraction=0.1"],
+        ),
+    ] {
+        assert_eq!(changed("", &set).unwrap(), changed("", &placed).unwrap());
+    }
+}
+
+#[test]
 fn values_replace_those_of_the_file_or_its_defaults() {
     let text = "[march]\nupdates = 2 # few\n";
     let case = changed(

@@ -65,8 +65,32 @@ impl GapSpline {
 
     #[inline(always)]
     pub fn sample<T: Number>(&self, point: &Vector<T>) -> SurfaceSample<T> {
+        let spline = self.derivatives(point);
         let [per_spacing, per_spacing2] = self.per_spacing.map(T::splat);
-        sample_from(&self.derivatives(point), per_spacing, per_spacing2)
+        let [x, y, z] = spline.gradient;
+        let gap_gradient = Vector::new(x * per_spacing, y * per_spacing, z * per_spacing);
+        // Far from the surface the gap is constant; the normal is then zero and not NaN.
+        let length = Number::max(
+            gap_gradient.dot(&gap_gradient).sqrt(),
+            T::splat(f64::MIN_POSITIVE),
+        );
+        let per_length = T::one() / length;
+        let scale = per_length * per_spacing2;
+        // Written out: the compiler does not inline a map over an array here.
+        let [xx, yy, zz, xy, xz, yz] = spline.hessian;
+        SurfaceSample {
+            gap_mm: spline.value,
+            gap_gradient,
+            normal: gap_gradient * per_length,
+            curvature: Curvature {
+                xx: xx * scale,
+                yy: yy * scale,
+                zz: zz * scale,
+                xy: xy * scale,
+                xz: xz * scale,
+                yz: yz * scale,
+            },
+        }
     }
 
     /// Returns the spline and its derivatives at a point; outside the grid its value is a bound.
@@ -124,38 +148,6 @@ impl GapSpline {
             let from = corner + j * sy + k * sz;
             F64x4::new([all[from], all[from + 1], all[from + 2], all[from + 3]])
         }
-    }
-}
-
-#[inline(always)]
-fn sample_from<T: Number>(
-    spline: &Derivatives<T>,
-    per_spacing: T,
-    per_spacing2: T,
-) -> SurfaceSample<T> {
-    let [x, y, z] = spline.gradient;
-    let gap_gradient = Vector::new(x * per_spacing, y * per_spacing, z * per_spacing);
-    // Far from the surface the gap is constant; the normal is then zero and not NaN.
-    let length = Number::max(
-        gap_gradient.dot(&gap_gradient).sqrt(),
-        T::splat(f64::MIN_POSITIVE),
-    );
-    let per_length = T::one() / length;
-    let scale = per_length * per_spacing2;
-    // Written out: the compiler does not inline a map over an array here.
-    let [xx, yy, zz, xy, xz, yz] = spline.hessian;
-    SurfaceSample {
-        gap_mm: spline.value,
-        gap_gradient,
-        normal: gap_gradient * per_length,
-        curvature: Curvature {
-            xx: xx * scale,
-            yy: yy * scale,
-            zz: zz * scale,
-            xy: xy * scale,
-            xz: xz * scale,
-            yz: yz * scale,
-        },
     }
 }
 
