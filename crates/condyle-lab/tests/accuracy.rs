@@ -238,25 +238,37 @@ fn verify_the_estimated_errors_of_updates_where_the_insert_creeps() {
         case
     };
     let summary = run(&creeping());
-    let error = summary.error.clone().expect("is asked for");
     // Twice the updates leave a third of the error: with 80 instead of 10 a twenty-seventh of it is left.
-    let [mass_mg, depth_mm] = losses(creeping(), |case| updated(case, 80));
-    for (what, parts, now, truth) in [
-        (
-            "mass",
-            error.of(&catalogue::MASS_LOSS_MG).percent,
-            summary[&catalogue::MASS_LOSS_MG],
-            mass_mg,
-        ),
-        (
-            "depth",
-            error.of(&catalogue::MAX_DEPTH_MM).percent,
-            summary[&catalogue::MAX_DEPTH_MM],
-            depth_mm,
-        ),
-    ] {
-        let truth = 100.0 * 27.0 / 26.0 * (truth / now - 1.0);
-        assert_within_a_factor_of_two(what, parts.updates, truth, NOISE_PERCENT);
+    let truth = losses(creeping(), |case| updated(case, 80));
+    assert_errors_of_updates(&summary, truth, 27.0 / 26.0);
+}
+
+#[test]
+fn verify_the_estimated_errors_of_updates_in_a_cup() {
+    for (name, law) in [("hip-iso.toml", "kang"), ("hip-orbital.toml", "power-law")] {
+        let hip = || {
+            let mut case = case(name);
+            let keys = format!("[wear]\nlaw = \"{law}\"\n");
+            case.wear = Case::parse(&keys, "wear", Path::new("")).unwrap().wear;
+            updated(&mut case, 10);
+            case
+        };
+        let truth = losses(hip(), |case| updated(case, 40));
+        assert_errors_of_updates(&run(&hip()), truth, 1.0);
+    }
+}
+
+/// Compares the estimated errors by the updates with the change to `finer` (mass and depth), which leaves the rest of
+/// 1 / `part` of the error.
+fn assert_errors_of_updates(summary: &Summary, finer: [f64; 2], part: f64) {
+    let error = summary.error.as_ref().expect("the case requests it");
+    for (scalar, finer) in [&catalogue::MASS_LOSS_MG, &catalogue::MAX_DEPTH_MM]
+        .iter()
+        .zip(finer)
+    {
+        let truth = 100.0 * part * (finer / summary[*scalar] - 1.0);
+        let stated = error.of(scalar).percent.updates;
+        assert_within_a_factor_of_two(scalar.key, stated, truth, NOISE_PERCENT);
     }
 }
 
