@@ -115,7 +115,7 @@ class Summary:
     cycles_solved: float
     """Number of cycles solved."""
     cycles_not_repeating: int
-    """Updates whose motion did not become periodic within the tolerance."""
+    """Updates, and the final cycle, whose motion did not become periodic within the tolerance."""
     newton_iterations: int
     """Number of Newton iterations."""
     contact_evaluations: int

@@ -314,7 +314,8 @@ fn assert_as_deep_as_forty_updates(name: &str, most_cycles: f64, stated: fn(f64,
     case.march.update = auto_case().march.update;
     let few = run(&case);
     assert!(
-        few[&catalogue::CYCLES_SOLVED] <= most_cycles,
+        // The final cycle, on the worn surface, takes 1.4 until it repeats.
+        few[&catalogue::CYCLES_SOLVED] <= most_cycles + 1.4,
         "{}",
         few[&catalogue::CYCLES_SOLVED]
     );

@@ -117,8 +117,6 @@ mod tests {
                 contact_area_mm2: 0.0,
                 under_surface: None,
             },
-            cycles_solved: 1.0,
-            repeats: true,
             worst_quality: 1.0,
             creep: Some(creep),
         }

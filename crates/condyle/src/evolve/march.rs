@@ -307,7 +307,6 @@ impl March {
             step: &step,
         };
         let record = self.record(
-            &solved,
             &solved_step,
             &taken,
             before.worst_quality,
@@ -495,7 +494,6 @@ impl March {
     /// The results of an update, after the insert has been lowered by `taken`.
     fn record(
         &self,
-        solved: &SolvedCycles,
         &SolvedStep { rates, step, .. }: &SolvedStep<'_>,
         taken: &[DepthField],
         worst_quality: f64,
@@ -508,8 +506,6 @@ impl March {
         let creep = self.creep_record(taken, area_mm2);
         let creep_mm3 = creep.map_or(0.0, |creep| creep.volume_mm3);
         let wear_mm = self.state.depths.wear_mm().iter();
-        let cycles = solved.cycles.iter();
-        let increments: usize = cycles.clone().map(|cycle| cycle.increments_solved).sum();
         UpdateRecord {
             cycles: step.cycles_after,
             volume_loss_mm3,
@@ -519,8 +515,6 @@ impl March {
             mass_loss_mg: volume_loss_mm3 * self.test.density_mg_per_mm3,
             max_depth_mm: wear_mm.copied().fold(0.0, f64::max),
             peaks,
-            cycles_solved: increments as f64 / self.test.time.increments as f64,
-            repeats: cycles.clone().all(|cycle| cycle.repeats),
             worst_quality,
             creep,
         }
@@ -597,7 +591,11 @@ impl March {
     }
 
     /// Keeps the cycles solved after `cycles` as the last.
-    fn keep(&mut self, cycles: f64, solved: SolvedCycles) {
+    fn keep(&mut self, cycles: f64, mut solved: SolvedCycles) {
+        let (kept, counters) = (&solved.cycles, &mut solved.counters);
+        let increments = kept.iter().map(|cycle| cycle.increments_solved as u64);
+        counters.increments_solved += increments.sum::<u64>();
+        counters.not_repeating += u64::from(!kept.iter().all(|cycle| cycle.repeats));
         for (activity, cycle) in self.state.activities.iter_mut().zip(&solved.cycles) {
             activity.keep(cycles, cycle);
         }

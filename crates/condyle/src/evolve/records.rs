@@ -37,10 +37,6 @@ pub struct UpdateRecord {
     pub max_depth_mm: f64,
     /// Extremes of its cycles.
     pub peaks: CyclePeaks,
-    /// Cycles solved until every activity repeated itself.
-    pub cycles_solved: f64,
-    /// True if every activity repeated itself.
-    pub repeats: bool,
     /// Smallest scaled Jacobian of the worn mesh.
     pub worst_quality: f64,
     /// Creep so far, if the insert creeps.
