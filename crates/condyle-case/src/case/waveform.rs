@@ -6,7 +6,8 @@ use std::sync::Arc;
 
 use condyle::machine::knee::{self, KNEE};
 use condyle::machine::{
-    Channel, ChannelUnit, Interpolation, Knot, Waveform, WaveformError, low_passed, without_drift,
+    Channel, ChannelUnit, Interpolation, Knot, Waveform, WaveformError, extremes, low_passed,
+    without_drift,
 };
 use condyle::parameter::unit_of;
 use miette::NamedSource;
@@ -188,9 +189,15 @@ pub(super) fn read(
     if let Some(fault) = parts_of_a_cycle(samples.knots.iter().map(|knot| knot.percent)) {
         return samples.reject(samples.knots.len() - 1, fault, &section, log);
     }
-    let Some(knots) = levelled(samples.knots.clone(), &keys) else {
-        return log.reject(section.value_span("remove_drift"), unknown_drift(&section));
+    let knots = match levelled(samples.knots.clone(), &keys) {
+        Ok(knots) => knots,
+        Err((why, advice)) => {
+            let message = format!("{} cannot lose its drift: {why}", section.name());
+            let fault = Fault::new(message, advice);
+            return log.reject(section.value_span("remove_drift"), fault);
+        }
     };
+    let knots = without_zero_error(channel, knots);
     let interpolation = keys.interpolation.unwrap_or(samples.interpolation);
     let mut waveform = Waveform::new(knots.clone(), interpolation);
     if let (Ok(noisy), Some(harmonics)) = (&waveform, keys.low_pass_harmonics) {
@@ -208,6 +215,9 @@ pub(super) fn read(
         },
         Err(error) => {
             let advice = match error {
+                WaveformError::Seam { first, last, .. } if is_half_cycle(&knots, last - first) => {
+                    HALF_CYCLE
+                }
                 WaveformError::Seam { to: 100.0, .. } => {
                     "or, for a measured cycle, set `remove_drift = true`"
                 }
@@ -223,26 +233,57 @@ pub(super) fn read(
     samples.reject(index, fault, &section, log)
 }
 
-/// Returns points scaled, shifted and without drift; none where the drift is unknown.
-fn levelled(mut knots: Vec<Knot>, keys: &WaveformSource) -> Option<Vec<Knot>> {
+/// Largest drift that is removed, as a part of the range of the points; our choice: measured cycles of walking end within a tenth of
+/// their range, and a movement that does not return has one of nearly all.
+const MAX_DRIFT: f64 = 0.2;
+const HALF_CYCLE: &str = "a cycle ends where it begins: append the movement back";
+
+fn is_half_cycle(knots: &[Knot], drift: f64) -> bool {
+    let [low, high] = extremes(knots.iter().map(|knot| knot.value));
+    drift.abs() > MAX_DRIFT * (high - low)
+}
+
+/// Returns points scaled, shifted and without drift.
+///
+/// # Errors
+/// A drift that is unknown, or too large for that of a measured cycle: the reason and the advice.
+fn levelled(
+    mut knots: Vec<Knot>,
+    keys: &WaveformSource,
+) -> Result<Vec<Knot>, (String, &'static str)> {
     for knot in &mut knots {
         knot.value = knot.value * keys.scale + keys.offset;
     }
     // Drift is that of the scaled values, so that the seam closes in the unit of the machine.
-    if keys.remove_drift {
-        without_drift(&knots)
-    } else {
-        Some(knots)
+    if !keys.remove_drift {
+        return Ok(knots);
     }
+    let Some(level) = without_drift(&knots) else {
+        let advice = "give points up to 100 %, or to the last sample before it";
+        return Err(("its points end before the cycle".to_owned(), advice));
+    };
+    // Half of the drift is added to the first point.
+    let drift = 2.0 * (level[0].value - knots[0].value);
+    if is_half_cycle(&knots, drift) {
+        let why = format!(
+            "its end is {} from its start, more than {:.0} % of its range",
+            plain(drift.abs()),
+            100.0 * MAX_DRIFT
+        );
+        return Err((why, HALF_CYCLE));
+    }
+    Ok(level)
 }
 
-fn unknown_drift(section: &Section<'_>) -> Fault {
-    let name = section.name();
-    let message = format!("{name} cannot lose its drift: its points end before the cycle");
-    Fault::new(
-        message,
-        "give points up to 100 %, or to the last sample before it",
-    )
+/// Returns points in the range of a channel where they are outside by the zero error of a load cell: a force that lifts the body by a
+/// few newtons, however small, throws it off.
+fn without_zero_error(channel: &Channel, mut knots: Vec<Knot>) -> Vec<Knot> {
+    if first_outside(channel, &knots).is_none() {
+        for knot in &mut knots {
+            knot.value = knot.value.clamp(channel.least, channel.most);
+        }
+    }
+    knots
 }
 
 /// Writes the table of a waveform, by the default name or by its points.

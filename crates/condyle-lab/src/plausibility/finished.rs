@@ -128,6 +128,11 @@ impl<'a> Finished<'a> {
         }
     }
 
+    /// Returns a cycle as in "last cycle of stairs"; without the activity if there is only one.
+    pub fn cycle_in_words(&self, cycle: &SolvedCycle<'_>) -> String {
+        format!("{} cycle{}", cycle.name, self.activity_in_words(cycle))
+    }
+
     /// Returns the machine of a cycle.
     pub fn machine(&self, cycle: &SolvedCycle<'_>) -> &'a Machine {
         &self.march.test().activities[cycle.activity].machine

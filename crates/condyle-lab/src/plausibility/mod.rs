@@ -88,9 +88,11 @@ pub(crate) fn warnings(
     );
     warnings.extend(PLACE.iter().filter_map(one));
     warnings.extend(waveforms::motions(&finished));
+    warnings.extend(waveforms::noise(&finished));
     warnings.extend(waveforms::overshoots(&finished));
     warnings.extend(waveforms::coarse_increments(&finished));
     warnings.extend(loads::not_reached(&finished));
+    warnings.extend(loads::impact(&finished));
     warnings.extend(loads::springs_far(&finished));
     warnings.extend(loads::ranges(&finished));
     warnings.extend(loads::lift_off(&finished));

@@ -1,7 +1,7 @@
 //! Checks of the curves that drive the machine: whether they are plausible motions, and whether increments and splines follow them.
 
 use condyle::machine::{
-    Axis, Drive, Interpolation, JointIndex, JointKind, Knot, TestedJoint, Waveform, extremes,
+    Axis, Drive, Interpolation, JointIndex, JointKind, TestedJoint, Waveform, extremes,
     knee::{KNEE, VV},
 };
 use condyle_results::{PlausibilityWarning, joint_range};
@@ -17,10 +17,11 @@ const MIN_AP_STROKE_MM: f64 = 1.0;
 /// Largest excess of the path of a prescribed motion over that of the smoothed motion, %; our choice: noise of 6 % changed the mass of
 /// a knee by 12 %.
 const MAX_NOISE_PERCENT: f64 = 3.0;
-/// Part of the increments at which a noisy motion reverses: noise of 0.01 mm does so at a quarter of them.
-const MIN_REVERSALS: f64 = 0.15;
-/// Increments of a cycle from which smoothing keeps every motion of a joint.
-const MIN_ROWS_OF_NOISE: usize = 100;
+/// Reversals of a curve in a cycle beyond which it may be noisy: those of the eight harmonics of which motions and loads of joints
+/// consist. White noise reverses at two thirds of its samples.
+const MAX_REVERSALS: usize = 2 * 8;
+/// Samples of a cycle at which a curve is examined for noise.
+const NOISE_SAMPLINGS: [usize; 5] = [40, 60, 100, 200, 500];
 /// Largest error of the path of a motion or the peak of a load by the ends of increments, %; our choice: the preset waveforms have at
 /// most 0.1 % at 200 increments and 3.5 % at 50, and a jump within an increment has tens.
 const MAX_MISSED_PERCENT: f64 = 5.0;
@@ -28,22 +29,19 @@ const MAX_MISSED_PERCENT: f64 = 5.0;
 /// motions is 2 % at most, and that of a step from one sample to the next 10 % or more.
 const MAX_OVERSHOOT_PERCENT: f64 = 5.0;
 
-/// Warns of prescribed motions so small that their unit is probably not degrees or mm, or so noisy that the noise wears: each once.
+/// Warns of prescribed motions so small that their unit is probably not degrees or mm: each once.
 pub(crate) fn motions(finished: &Finished<'_>) -> Vec<PlausibilityWarning> {
-    let mut warnings: Vec<PlausibilityWarning> = Vec::new();
-    for index in JointIndex::ALL {
+    let small = |index| {
         let is_moved = |cycle: &SolvedCycle<'_>| {
             let machine = finished.machine(cycle);
             let is_prescribed = matches!(machine.joint(index).drive, Drive::Prescribed(_));
             // A constant curve varies by round-off.
             is_prescribed && joint_range(cycle.rows, machine.mechanism, index) > 1e-6
         };
-        for check in [small_motion, noisy_motion] {
-            let mut moved = finished.cycles().filter(is_moved);
-            warnings.extend(moved.find_map(|cycle| check(finished, &cycle, index)));
-        }
-    }
-    warnings
+        let mut moved = finished.cycles().filter(is_moved);
+        moved.find_map(|cycle| small_motion(finished, &cycle, index))
+    };
+    JointIndex::ALL.into_iter().filter_map(small).collect()
 }
 
 fn small_motion(
@@ -87,45 +85,65 @@ fn small_motion(
     (range < least).then(|| warning("motion_small", value, message, advice))
 }
 
-/// Compares the path of a prescribed motion with that of the motion smoothed over seven increments.
-fn noisy_motion(
-    finished: &Finished<'_>,
-    cycle: &SolvedCycle<'_>,
-    index: JointIndex,
-) -> Option<PlausibilityWarning> {
-    // The smoothing polynomial of second degree by Savitzky and Golay: it keeps curves, and removes most of the noise.
-    const WEIGHTS: [f64; 7] = [-2.0, 3.0, 6.0, 7.0, 6.0, 3.0, -2.0];
-    const SUM: f64 = 21.0;
-    let machine = finished.machine(cycle);
-    let count = cycle.rows.len();
-    let at = |row: usize| index.of(&cycle.rows[row % count].positions);
-    let smooth = |row: usize| {
-        let weighted = WEIGHTS.iter().enumerate();
-        weighted
-            .map(|(place, weight)| weight * at(row + place))
-            .sum::<f64>()
-            / SUM
-    };
-    let path = |value: &dyn Fn(usize) -> f64| -> f64 {
-        (0..count)
-            .map(|row| (value(row + 1) - value(row)).abs())
-            .sum()
-    };
-    let turns = |row: &usize| (at(row + 1) - at(*row)) * (at(row + 2) - at(row + 1)) < 0.0;
-    let reversals = (0..count).filter(turns).count() as f64;
-    // Smoothing shortens the path of a motion with corners, too, which has few.
-    if count < MIN_ROWS_OF_NOISE || reversals < MIN_REVERSALS * count as f64 {
-        return None;
+/// Warns of noise in a prescribed motion, or in a load that moves a joint: each joint once. That of the pressing load moves little.
+pub(crate) fn noise(finished: &Finished<'_>) -> Vec<PlausibilityWarning> {
+    of_each_joint(finished, |index, cycle| {
+        let machine = finished.machine(&cycle);
+        let (kind, waveform) = match &machine.joint(index).drive {
+            Drive::Prescribed(waveform) => ("prescribed motion", waveform),
+            Drive::Loaded(waveform) if machine.pressing_joint() != Some(index) => {
+                ("load", waveform)
+            }
+            _ => return None,
+        };
+        let percent = noise_percent(waveform);
+        let message = format!(
+            "the {kind} of `{}`{} is noisy: its curve is {percent:.0} % longer than the smoothed curve, and noise wears",
+            machine.mechanism.joint(index).symbol,
+            finished.activity_in_words(&cycle)
+        );
+        let advice = "Filter it: low_pass_harmonics = 8 in the table of its waveform.";
+        let value = (percent, MAX_NOISE_PERCENT, "%");
+        (percent > MAX_NOISE_PERCENT).then(|| warning("motion_noisy", value, message, advice))
+    })
+}
+
+/// Returns the largest excess of the path of a waveform over that of the smoothed waveform, %, at several samplings of the cycle; 0 if
+/// it reverses seldom.
+///
+/// Noise has the spacing of the samples of its file, which is seldom that of the knots or the increments.
+fn noise_percent(waveform: &Waveform) -> f64 {
+    let [low, high] = waveform.range();
+    // A constant curve varies by round-off.
+    if high - low <= 1e-9 * high.max(-low) {
+        return 0.0;
     }
-    let percent = 100.0 * (path(&at) / path(&smooth).max(f64::MIN_POSITIVE) - 1.0);
-    let message = format!(
-        "the prescribed motion {}{} is noisy: its path is {percent:.0} % longer than that of the smoothed motion, and noise wears",
-        machine.mechanism.joint(index).symbol,
-        finished.activity_in_words(cycle)
-    );
-    let advice = "Filter it: low_pass_harmonics = 15 in the table of its waveform.";
-    let value = (percent, MAX_NOISE_PERCENT, "%");
-    (percent > MAX_NOISE_PERCENT).then(|| warning("motion_noisy", value, message, advice))
+    let excess = NOISE_SAMPLINGS.map(|count| {
+        let values: Vec<f64> = sampled(waveform, count).collect();
+        let at = |place: usize| values[place % count];
+        let turns =
+            |place: &usize| (at(place + 1) - at(*place)) * (at(place + 2) - at(place + 1)) < 0.0;
+        let reversals = (0..count).filter(turns).count();
+        // Smoothing shortens the path of a curve with corners, too, which has few.
+        if reversals <= MAX_REVERSALS {
+            return 0.0;
+        }
+        // The smoothing polynomial of second degree by Savitzky and Golay: it keeps curves, and removes most of the noise.
+        const WEIGHTS: [f64; 7] = [-2.0, 3.0, 6.0, 7.0, 6.0, 3.0, -2.0];
+        let smooth = |place: usize| {
+            let weighted = WEIGHTS.iter().enumerate();
+            let sum: f64 = weighted
+                .map(|(next, weight)| weight * at(place + next))
+                .sum();
+            sum / WEIGHTS.iter().sum::<f64>()
+        };
+        let path = |value: &dyn Fn(usize) -> f64| -> f64 {
+            let steps = (0..count).map(|place| (value(place + 1) - value(place)).abs());
+            steps.sum()
+        };
+        100.0 * (path(&at) / path(&smooth).max(f64::MIN_POSITIVE) - 1.0)
+    });
+    excess.into_iter().fold(0.0, f64::max)
 }
 
 /// Returns the first warning of a check of the waveform of each joint.
@@ -183,17 +201,12 @@ pub(crate) fn overshoots(finished: &Finished<'_>) -> Vec<PlausibilityWarning> {
     })
 }
 
-/// Returns the distance by which a waveform leaves the range of its knots, % of that range; 0 for noise, which [`noisy_motion`]
-/// reports.
+/// Returns the distance by which a waveform leaves the range of its knots, % of that range; 0 for noise, which [`noise`] reports.
 fn overshoot_percent(waveform: &Waveform) -> f64 {
     if waveform.interpolation() == Interpolation::HalfCosine {
         return 0.0;
     }
-    let turns = |knots: &&[Knot]| {
-        (knots[1].value - knots[0].value) * (knots[2].value - knots[1].value) < 0.0
-    };
-    let turns = waveform.knots().windows(3).filter(turns).count() as f64;
-    if turns > MIN_REVERSALS * waveform.knots().len() as f64 {
+    if noise_percent(waveform) > MAX_NOISE_PERCENT {
         return 0.0;
     }
     let knots = waveform.knots().iter().map(|knot| knot.value);
@@ -243,6 +256,8 @@ fn missed_peak(waveform: &Waveform, increments: usize) -> f64 {
 
 #[cfg(test)]
 mod tests {
+    use condyle::machine::Knot;
+
     use super::*;
 
     #[test]
@@ -286,5 +301,27 @@ mod tests {
         );
         let sine = |percent: f64| (0.02 * std::f64::consts::PI * percent).sin();
         assert!(overshoot_percent(&curve(sine, Interpolation::Spline)) < 1.0);
+    }
+
+    #[test]
+    fn noise_is_found_at_the_spacing_of_its_samples() {
+        // A fixed sequence in place of a random one: its sign changes at two thirds of the samples.
+        let noise =
+            |place: usize| ((place * place * 7919 + place * 104_729) % 1000) as f64 / 500.0 - 1.0;
+        let motion = |count: usize, noise_mm: f64| {
+            let knot = |place| {
+                let percent = 100.0 * place as f64 / count as f64;
+                let turn = 0.02 * std::f64::consts::PI * percent;
+                let value = 2.0 * turn.sin() + 0.5 * (3.0 * turn).cos() + noise_mm * noise(place);
+                Knot { percent, value }
+            };
+            let knots = (0..count).map(knot).collect();
+            noise_percent(&Waveform::new(knots, Interpolation::Spline).unwrap())
+        };
+        for count in [40, 60, 100, 200, 500] {
+            assert_eq!(motion(count, 0.0), 0.0);
+            let percent = motion(count, 0.4);
+            assert!(percent > MAX_NOISE_PERCENT, "{count} samples: {percent} %");
+        }
     }
 }

@@ -116,6 +116,8 @@ pub struct ActivityWear {
     /// Volume that its cycles would have worn as the only activity, mm3, with the principal direction of its
     /// own paths. It differs from the part above where the law depends on cross-shear.
     pub alone_mm3: f64,
+    /// Longest sliding distance under pressure in its cycle of the last update, the mean over a node's share, mm.
+    pub longest_path_mm: f64,
     /// Highest pressure in any of its cycles, the final one included, anywhere on the surface, MPa.
     pub peak_pressure_mpa: f64,
     /// Largest contact area in any of its cycles, the final one included, mm2.
@@ -131,6 +133,10 @@ pub(super) fn wear_of_each(law: &dyn WearLaw, interval: &SolvedStep<'_>) -> Vec<
     each.map(|activity| ActivityWear {
         volume_mm3: part_mm3(interval, *activity),
         alone_mm3: alone_mm3(law, interval, *activity),
+        longest_path_mm: mean_cycles(&[(1.0, activity.1)], interval.surface)
+            .iter()
+            .map(|mean| mean.pressed_distance_mm)
+            .fold(0.0, f64::max),
         ..ActivityWear::default()
     })
     .collect()
@@ -169,6 +175,7 @@ impl ActivityWear {
         Self {
             volume_mm3: self.volume_mm3 + more.volume_mm3,
             alone_mm3: self.alone_mm3 + more.alone_mm3,
+            longest_path_mm: more.longest_path_mm,
             ..self
         }
     }

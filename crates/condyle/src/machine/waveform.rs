@@ -307,15 +307,16 @@ pub fn without_drift(samples: &[Knot]) -> Option<Vec<Knot>> {
     Some(levelled)
 }
 
-/// Samples the mean and the first `harmonics` Fourier terms of a waveform at every percent of the cycle.
+/// Samples the mean and the first `harmonics` Fourier terms of a waveform, at every percent of the cycle or closer.
 pub fn low_passed(waveform: &Waveform, harmonics: usize) -> Vec<Knot> {
-    // Even samples project low harmonics exactly, unless the curve has harmonics near the number of samples.
-    const SAMPLES: usize = 1000;
-    let sample = |k: usize| waveform.at(k as f64 / SAMPLES as f64).0;
-    let values: Vec<f64> = (0..SAMPLES).map(sample).collect();
+    // Even samples project low harmonics exactly, unless the curve has harmonics near the number of samples: noise has up to half
+    // as many harmonics as knots, and its spline hardly more.
+    let samples = (4 * waveform.knots().len()).max(1000);
+    let sample = |k: usize| waveform.at(k as f64 / samples as f64).0;
+    let values: Vec<f64> = (0..samples).map(sample).collect();
     let project = |order: usize, wave: fn(f64) -> f64| {
-        let weighted = |(k, y): (usize, &f64)| y * wave(TAU * (order * k) as f64 / SAMPLES as f64);
-        values.iter().enumerate().map(weighted).sum::<f64>() / SAMPLES as f64
+        let weighted = |(k, y): (usize, &f64)| y * wave(TAU * (order * k) as f64 / samples as f64);
+        values.iter().enumerate().map(weighted).sum::<f64>() / samples as f64
     };
     let terms: Vec<(f64, f64)> = (0..=harmonics)
         .map(|order| (project(order, f64::cos), project(order, f64::sin)))
@@ -328,13 +329,16 @@ pub fn low_passed(waveform: &Waveform, harmonics: usize) -> Vec<Knot> {
         };
         terms.iter().enumerate().map(term).sum()
     };
-    (0..100)
-        .map(f64::from)
-        .map(|percent| Knot {
+    // Through six points a wave or more, a spline follows every harmonic within 1 %.
+    let count = (6 * harmonics).max(100);
+    let knot = |place| {
+        let percent = 100.0 * place as f64 / count as f64;
+        Knot {
             percent,
             value: value(percent),
-        })
-        .collect()
+        }
+    };
+    (0..count).map(knot).collect()
 }
 
 /// The reason why knots do not define a waveform.
@@ -495,6 +499,34 @@ mod tests {
         for knot in low_passed(&wave, 8) {
             assert!((knot.value - (TAU * knot.percent / 100.0).sin()).abs() < 1e-3);
         }
+    }
+
+    #[test]
+    fn verify_a_low_pass_of_many_samples_and_harmonics() {
+        // Noise at harmonic 990 of 5000 samples, which 1000 samples would take for harmonic 10.
+        let noisy = |knot: Knot| Knot {
+            value: knot.value + 2.0 * (TAU * 990.0 * knot.percent / 100.0).sin(),
+            ..knot
+        };
+        let samples = sine(5000).into_iter().map(noisy).collect();
+        let wave = Waveform::new(samples, Interpolation::Spline).unwrap();
+        for knot in low_passed(&wave, 15) {
+            assert!((knot.value - (TAU * knot.percent / 100.0).sin()).abs() < 2e-3);
+        }
+        // A harmonic near the largest one that a case may keep.
+        let high = |percent: f64| 3.0 * (TAU * 45.0 * percent / 100.0).sin();
+        let sample = |place: u32| {
+            let percent = f64::from(place) / 10.0;
+            let value = high(percent);
+            Knot { percent, value }
+        };
+        let wave = Waveform::new((0..1000).map(sample).collect(), Interpolation::Spline).unwrap();
+        let wave = Waveform::new(low_passed(&wave, 50), Interpolation::Spline).unwrap();
+        let missed = (0..997).map(|place| {
+            let phase = f64::from(place) / 997.0;
+            (wave.at(phase).0 - high(100.0 * phase)).abs()
+        });
+        assert!(missed.fold(0.0, f64::max) < 0.03);
     }
 
     #[test]

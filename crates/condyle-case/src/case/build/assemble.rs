@@ -7,9 +7,9 @@ use condyle::contact::{
     ContactLaw, Deformable, Foundation, FrictionModel, PressureLaw, confined_modulus,
     shell_modulus, softening_modulus,
 };
-use condyle::evolve::{Schedule, Updates, WearTest};
+use condyle::evolve::{Activity, Schedule, Updates, WearTest};
 use condyle::geometry::Insert;
-use condyle::machine::{Integration, TestedJoint, TimeSettings};
+use condyle::machine::{Drive, Integration, TestedJoint, TimeSettings, knee::FLEXION};
 use condyle_fem::ElasticPlastic;
 
 use super::error::{BuildError, BuildWarning};
@@ -22,6 +22,9 @@ use crate::case::femur::FemurShape;
 use crate::case::insert::InsertShape;
 use crate::case::run_options::{IntegratorWord, Update};
 
+/// Largest flexion of the generic femur, degrees: from about 137 on, its surface behind the posterior arc, which no real femur has,
+/// reaches the posterior lip of an insert.
+const MAX_FLEXION_OF_GENERIC_DEG: f64 = 135.0;
 /// Smallest flat part of a backside that can rest on a flat tray.
 const MIN_FLAT_PART: f64 = 0.5;
 
@@ -59,6 +62,7 @@ impl Case {
                 self.built_insert(&self.insert, warnings)
             })?;
         let activities = self.built_activities(insert.dish_low_point_mm());
+        self.check_flexion(&activities)?;
         let flexion_rad = start_flexion_rad(&activities[0].machine);
         let (_, side, limits) = self.insert_inputs();
         let joint = activities[0].machine.mechanism.tests;
@@ -144,6 +148,24 @@ impl Case {
         let law = law.with_backside(backside, insert)?;
         self.load_compliance(&law, insert, keep)?;
         Ok(Arc::new(law))
+    }
+
+    /// Rejects flexion in which the back of the insert would reach the end of the generic femur.
+    fn check_flexion(&self, activities: &[Activity]) -> Result<(), BuildError> {
+        let is_generic = matches!(self.femur.shape, FemurShape::Generic(_));
+        let flexion = |activity: &Activity| match &activity.machine.joint(FLEXION).drive {
+            Drive::Prescribed(waveform) => waveform.range()[1].to_degrees(),
+            _ => 0.0,
+        };
+        let most = activities.iter().map(flexion).fold(0.0, f64::max);
+        if !is_generic || !self.tests_knee() || most <= MAX_FLEXION_OF_GENERIC_DEG {
+            return Ok(());
+        }
+        let message = format!(
+            "[femur] shape = \"generic\" ends behind at a flexion of {MAX_FLEXION_OF_GENERIC_DEG} degrees, and flexion reaches {most:.0} degrees; \
+             take a femur from a file, or less flexion"
+        );
+        Err(BuildError::conflict("femur", &["shape"], message))
     }
 
     /// Rejects a head that does not fit into its cup, where one of them is from a file.
