@@ -164,6 +164,17 @@ def test_a_study_that_was_stopped_goes_on(study: condyle.Study, done: condyle.St
     assert table(result) == table(done)
 
 
+def test_answers_of_a_part_are_not_those_of_the_tests(study: condyle.Study, tmp_path: Path) -> None:
+    for kept in (4, 12):
+        with pytest.raises(condyle.StudyInterrupted):
+            study.run(tmp_path, lambda progress, kept=kept: progress.kept < kept, threads=1)
+        if kept == 4:
+            assert study.answered(tmp_path).answers.kept == condyle.open_study(tmp_path).answers.kept < 12
+    with pytest.raises(condyle.BadInput, match=r"holds \d+ tests, and answers of \d+"):
+        condyle.open_study(tmp_path)
+    assert study.answered(tmp_path).answers.kept == len(condyle.open_study(tmp_path)["row"]) >= 12
+
+
 def _raise(progress: condyle.StudyProgress) -> None:
     raise RuntimeError("mine")
 
@@ -431,6 +442,8 @@ def test_results_that_do_not_fit_a_search_are_errors(study: condyle.Study, small
                 search.tell([wrong], [result])
         with pytest.raises(condyle.BadInput, match="not that of the case of its design"):
             search.tell([design], [condyle.run(small.replace({"insert.thickness_mm": 8.25}), fields=False)])
+        with pytest.raises(condyle.BadInput, match="has a wear_law of its own"):
+            search.tell([design], [condyle.run(search.case(design), fields=False, wear_law=lambda _: 0.0)])
         assert search.tested == 0 and search.pending == [design]
         search.tell([design], [condyle.NotSolved("no equilibrium\nat 3 %")])
         assert search.tested == 1 and search.pending == []
