@@ -102,11 +102,10 @@ def open_study(folder: str | os.PathLike[str]) -> StudyResult:
         content = "an unfinished study; run the same study to resume it" if is_begun else "no study"
         raise BadInput(f"{path}: the folder holds {content}") from error
     result = StudyResult(path, answers)
-    kept, evaluated = len(result["row"]), answers["kept"]
-    if kept != evaluated:
+    if (path / "study.db").is_file() and len(result["row"]) != answers["kept"]:
         raise BadInput(
-            f"{path}: the folder holds {kept} tests, and answers of {evaluated}; run the same study to resume it, "
-            "or evaluate its tests with Study.answered"
+            f"{path}: the folder holds {len(result['row'])} tests, and answers of {answers['kept']}; run the same study to resume "
+            "it, or evaluate its tests with Study.answered"
         )
     return result
 
