@@ -14,6 +14,8 @@ def ply_bytes(vertices: ArrayLike, triangles: ArrayLike, what: str) -> bytes:
     """The bytes of a PLY file; messages call the body ``what``."""
     import numpy as np
 
+    if np.ma.is_masked(vertices) or np.ma.is_masked(triangles):
+        raise BadInput(f"arrays of the {what} have masked entries; give those of the body alone")
     positions = np.asarray(vertices, dtype="<f8")
     corners = np.asarray(triangles)
     if positions.ndim != 2 or positions.shape[1] != 3 or len(positions) == 0:

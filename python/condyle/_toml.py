@@ -48,4 +48,6 @@ def _plain(value: Any) -> Any:
         return [_plain(item) for item in value]
     if isinstance(value, os.PathLike):
         return os.fspath(value)
-    return value.tolist() if hasattr(value, "tolist") else value
+    if value is None:
+        raise TypeError("TOML has no null")
+    return _plain(value.tolist()) if hasattr(value, "tolist") else value

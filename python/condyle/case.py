@@ -6,6 +6,7 @@ import hashlib
 import json
 import os
 from collections.abc import Mapping
+from functools import partial
 from html import escape
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -14,6 +15,7 @@ from . import _condyle
 from ._ply import ply_bytes
 from ._toml import document, value_text
 from .check import Check
+from .errors import BadInput
 
 if TYPE_CHECKING:
     from typing import TypeAlias
@@ -86,8 +88,11 @@ class Case:
         Raises:
             BadInput: an unknown key, or a value outside its range.
         """
+        law, kept = changes.get("wear.law"), self._changes
+        if law is not None and law != self["wear.law"]:
+            kept = self._changes_outside("wear")
         written = tuple(f"{key}={value_text(value)}" for key, value in changes.items())
-        return Case(self._path, self._text, self._base, self._files, self._changes + written)
+        return Case(self._path, self._text, self._base, self._files, kept + written)
 
     def with_femur(self, vertices: ArrayLike, triangles: ArrayLike, **keys: Any) -> Case:
         """The case with a femoral component of triangles.
@@ -134,12 +139,12 @@ class Case:
         """Writes bodies given as arrays into ``folder`` as .ply files, and returns the case that names these files."""
         if not self._files:
             return self
-        text = self.text
+        text = self._text
         for name, data in self._files.items():
             file = Path(folder).absolute() / Path(name).name
             file.write_bytes(data)
             text = text.replace(value_text(name), value_text(str(file)))
-        return Case(self._path, text, self._base)
+        return Case(self._path, text, self._base, None, self._changes)
 
     @property
     def text(self) -> str:
@@ -151,11 +156,24 @@ class Case:
         return json.loads(self._raw.json())
 
     def __getitem__(self, key: str) -> Any:
-        """The value of the key at a dotted path; the unit is in the name."""
+        """The value of the key at a dotted path, such as ``"activity.stairs.share"``; the unit is in the name."""
         value: Any = self.to_dict()
         for name in key.split("."):
+            if isinstance(value, list):
+                value = {one["name"]: one for one in value if isinstance(one, dict)}
+            if not isinstance(value, dict) or name not in value:
+                raise KeyError(key)
             value = value[name]
         return value
+
+    def __contains__(self, key: str) -> bool:
+        try:
+            self[key]
+        except KeyError:
+            return False
+        return True
+
+    __iter__ = None  # type: ignore[assignment]
 
     @property
     def inputs_blake3(self) -> str:
@@ -177,21 +195,54 @@ class Case:
         return f"<details><summary>{escape(repr(self))}</summary><pre>{escape(self.text)}</pre></details>"
 
     def __reduce__(self) -> tuple[Any, ...]:
-        return Case, (self._path, self._text, self._base, self._files, self._changes)
+        return Case, self.later().args
+
+    def later(self) -> partial[Case]:
+        """The same case, read again when it is called, for use in the package."""
+        return partial(Case, self._path, self._text, self._base, self._files, self._changes)
 
     def _with_body(self, body: str, vertices: ArrayLike, triangles: ArrayLike, keys: dict[str, Any]) -> Case:
         data = ply_bytes(vertices, triangles, body)
         # Named by content, so that equal bodies give equal cases; no folder of a disk has this name.
         name = f"/arrays/{body}-{hashlib.blake2b(data, digest_size=6).hexdigest()}.ply"
         table = document({"shape": "mesh", "file": name, **keys})
-        text = _condyle.with_table(self.text if self._changes else self._text, body, table)
+        text = _condyle.with_table(self._text, body, table)
         files = {file: kept for file, kept in self._files.items() if file in text}
-        return Case(self._path, text, self._base, {**files, name: data})
+        return Case(self._path, text, self._base, {**files, name: data}, self._changes_outside(body))
+
+    def _changes_outside(self, table: str) -> tuple[str, ...]:
+        """The changes without those of ``table`` and its keys."""
+        own = [table, *self[table]]
+
+        def is_outside(change: str) -> bool:
+            first, _, rest = change.partition("=")[0].partition(".")
+            # A key without its table may also lack its unit.
+            return first != table if rest else not any(f"{name}_".startswith(f"{first}_") for name in own)
+
+        return tuple(filter(is_outside, self._changes))
 
     @property
     def compiled(self) -> _condyle.RawCase:
         """The compiled case, for use in the package."""
         return self._raw
+
+    @property
+    def file(self) -> tuple[str, str]:
+        """Path and text of a file with this case, for use in the package: its own text, or the case as run if it was changed."""
+        if not self._changes:
+            return os.path.join(self._base, self._path), self._text
+        text = self.text
+        return f"/cases/{hashlib.blake2b(text.encode(), digest_size=6).hexdigest()}.toml", text
+
+    def has_processed(self, waveform: str) -> bool:
+        """True if a waveform of :attr:`file`, at a dotted path, has its scale, offset or low pass applied, for use in the package."""
+        if not self._changes:
+            return False
+        try:
+            plain = self.replace({f"{waveform}.scale": 1.0, f"{waveform}.offset": 0.0})
+        except BadInput:  # Its values have another unit.
+            return True
+        return plain != self or "low_pass_harmonics" in "".join([self._text, *self._changes])
 
     @property
     def arrays(self) -> dict[str, bytes]:

@@ -19,6 +19,9 @@ if TYPE_CHECKING:
 
 __all__ = ["data_set"]
 
+# Names of motions and loads that the wear table or the nodes have too.
+_OF_INSERT_TOO = ("peak_pressure_mpa", "x_mm", "y_mm", "z_mm")
+
 
 def data_set(result: Result) -> xr.Dataset:
     """Tables and fields of a run as one data set."""
@@ -26,7 +29,11 @@ def data_set(result: Result) -> xr.Dataset:
 
     xarray = extra("xarray", "xarray")
     check_fields(result)
-    variables = {**_at_nodes(result), **_by_update(result.wear), **_by_increment(result.kinematics)}
+    variables = {**_at_nodes(result), **_by_update(result.wear)}
+    for name, table in result.tables.items():
+        if name != "wear":
+            _, _, activity = name.partition("kinematics_")
+            variables |= _by_increment(table, f"{activity}_" if activity else "")
     places = result.points_mm[0]
     kinematics = result.kinematics
     first = rows_of_cycle(kinematics["cycles"], "first")
@@ -70,7 +77,7 @@ def _by_update(table: Table) -> dict[str, Any]:
     return {name: _described(("update",), from_unworn(name), name) for name in table if name != "cycles"}
 
 
-def _by_increment(table: Table) -> dict[str, Any]:
+def _by_increment(table: Table, prefix: str) -> dict[str, Any]:
     import numpy as np
 
     cycles = np.unique(table["cycles"])
@@ -79,5 +86,5 @@ def _by_increment(table: Table) -> dict[str, Any]:
         return table[name].reshape(len(cycles), -1)
 
     names = [name for name in table if name not in ("cycles", "percent")]
-    own = {name: "cycle_peak_pressure_mpa" if name == "peak_pressure_mpa" else name for name in names}
-    return {own[name]: _described(("cycle", "increment"), by_cycle(name), name) for name in names}
+    own = {name: f"cycle_{name}" if name in _OF_INSERT_TOO else name for name in names}
+    return {prefix + own[name]: _described(("cycle", "increment"), by_cycle(name), name) for name in names}

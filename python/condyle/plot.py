@@ -49,12 +49,15 @@ class Plots:
         return self._map("wear_depth_mm", "wear depth, mm", update, ax)
 
     def pressure(self, update: int = -1, ax: Axes | None = None) -> Axes:
-        """Highest pressure in the cycle repeated up to an update, or in the final cycle, from above, MPa."""
-        axes = self._map("peak_pressure_mpa", "peak pressure, MPa", update, ax)
+        """Highest pressure in the cycle repeated up to an update, from 1, or in the final cycle, from above, MPa."""
+        check_fields(self._result)
         cycles = self._result.update_cycles
         place = range(len(cycles))[update]
+        if place == 0:
+            raise ValueError("the unworn insert, update 0, has no cycle; the first cycle is that of update 1")
+        axes = self._map("peak_pressure_mpa", "peak pressure, MPa", update, ax)
         is_final = self._result.is_done and place == len(cycles) - 1
-        axes.set_title(f"cycle at {cycles[place if is_final else max(place - 1, 0)] / 1e6:g} million cycles", fontsize="medium")
+        axes.set_title(f"cycle at {cycles[place if is_final else place - 1] / 1e6:g} million cycles", fontsize="medium")
         return axes
 
     def wear_curve(self, ax: Axes | None = None) -> Axes:

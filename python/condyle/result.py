@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal
 
@@ -25,6 +26,9 @@ if TYPE_CHECKING:
 
 __all__ = ["Result"]
 
+# Fields of the cycle before an update, which the unworn insert does not have.
+_OF_A_CYCLE = {"cross_shear", "depth_per_cycle_mm", "peak_pressure_mpa", "principal_direction", "sliding_distance_mm"}
+
 
 class Result(Summary):
     """The results of a run, whether it was run from Python or read from a folder of the command.
@@ -41,7 +45,7 @@ class Result(Summary):
     True
     """
 
-    def __init__(self, run: RawRun, folder: Path | None = None, case: Case | None = None) -> None:
+    def __init__(self, run: RawRun, folder: Path | None = None, case: Case | partial[Case] | None = None) -> None:
         """Use :func:`condyle.run` or :func:`condyle.open`."""
         self._run, self._folder, self._case = run, folder, case
         summary = run["summary"]
@@ -51,6 +55,8 @@ class Result(Summary):
         """Wear, femur pose and the kinematics of every activity, by the names of their files without the ending."""
         for name, text in run["tables"].items():
             self.tables[name] = Table.from_csv(text, f"{folder or 'the run'}: {name}.csv")
+        for name in _OF_A_CYCLE & run["fields"].keys():
+            run["fields"][name][:1] = float("nan")
         arrays: list[NDArray[Any]] = [run["points_mm"], run["hexes"], run["articulating"]]
         for array in [*arrays, run["femur_points_mm"], run["femur_triangles"], *run["fields"].values()]:
             array.flags.writeable = False
@@ -85,9 +91,9 @@ class Result(Summary):
     @property
     def case(self) -> Case:
         """The case as run."""
-        if self._case is not None:
-            return self._case
-        return Case.from_text(self._run["case"], folder=self._folder or ".", name="case of the run")
+        if self._case is None:
+            return Case.from_text(self._run["case"], folder=self._folder or ".", name="case of the run")
+        return self._case if isinstance(self._case, Case) else self._case()
 
     @property
     def wear(self) -> Table:
@@ -136,8 +142,8 @@ class Result(Summary):
         """Results at the nodes at every update, unworn first: shape (updates + 1, nodes), for directions (updates + 1, nodes, 3).
 
         ``wear_depth_mm``, ``depth_per_cycle_mm``, ``peak_pressure_mpa``, ``sliding_distance_mm``, ``cross_shear``,
-        ``thickness_mm``, ``principal_direction``; 0 at nodes outside of the articulating surface. NaN at updates without the field,
-        such as ``von_mises_mpa`` of the unworn insert. Depth, thickness and positions are those after the update. Fields of a
+        ``thickness_mm``, ``principal_direction``; 0 at nodes outside of the articulating surface. NaN at updates without the field:
+        the unworn insert has thickness and depth only. Depth, thickness and positions are those after the update. Fields of a
         cycle, such as pressure, are those of the cycle that was repeated up to the update (of several activities, the highest pressure,
         and the mean of the others by their shares): update ``k`` has the cycle at
         ``update_cycles[k - 1]``, and the last update of a finished run the final cycle.
@@ -172,10 +178,11 @@ class Result(Summary):
         return self.wear.to_pandas()
 
     def to_xarray(self) -> xr.Dataset:
-        """Tables and fields as one data set.
+        """All tables and fields as one data set.
 
         Dimensions are ``update`` (the unworn insert is 0), ``node``, ``component``, ``cycle`` (first and last) and
-        ``increment``; units are attributes.
+        ``increment``; units are attributes. Motions and loads of a further activity have its name as a prefix, and those with the
+        name of a result of the insert, such as ``peak_pressure_mpa``, the prefix ``cycle_``.
         """
         from .data_set import data_set
 
@@ -218,10 +225,12 @@ class Result(Summary):
         return _html.table(repr(self), ("", "value", "unit"), rows)
 
     def __getstate__(self) -> dict[str, Any]:
-        return {"_run": self._run, "_folder": self._folder}
+        # Read at its first use: the files that it names may be missing on the other machine.
+        case = self._case.later() if isinstance(self._case, Case) else self._case
+        return {"_run": self._run, "_folder": self._folder, "_case": case}
 
     def __setstate__(self, state: dict[str, Any]) -> None:
-        self.__init__(state["_run"], state["_folder"])
+        self.__init__(state["_run"], state["_folder"], state["_case"])
 
 
 def check_fields(result: Result) -> None:

@@ -87,7 +87,7 @@ class Search:
 
         Raises:
             BadInput: values outside the study, results that lack an output, and a :class:`Result` of another case than that of its
-                design; nothing is stored then.
+                design or of a ``wear_law`` of its own; nothing is stored then.
         """
         if len(designs) != len(results):
             raise ValueError(f"there are {len(designs)} designs and {len(results)} results; tell one result for each design")
@@ -122,8 +122,13 @@ class Search:
         raw, doubts = self._study._raw, ""
         known = raw.results
         if isinstance(result, Result):
-            if result.inputs_blake3 != self.case(design).inputs_blake3:
+            case = self.case(design)
+            if result.inputs_blake3 != case.inputs_blake3:
                 raise BadInput(f"the result is not that of the case of its design, {dict(design)}")
+            if result.wear_laws[0]["law"] != case["wear.law"]:
+                raise BadInput(
+                    "the result has a wear_law of its own, which the study does not have; give its outputs by their keys"
+                )
             doubts = " ".join(doubt["check"] for doubt in result.plausibility)
             result = {key: result.summary[key] for key in known if result.summary.get(key) is not None}
         for key in result:

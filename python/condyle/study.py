@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-import hashlib
 import json
 import os
+import re
 from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -13,6 +13,7 @@ from . import _condyle, _html
 from ._toml import document, value_text
 from ._workers import Cluster, Source, run_on
 from .case import Case
+from .errors import BadInput
 from .progress import StudyProgress, listening
 from .search import Search
 from .study_result import StudyResult
@@ -23,6 +24,9 @@ if TYPE_CHECKING:
 __all__ = ["Study"]
 
 TESTS_A_TASK = 64
+
+# The path of a waveform whose processing a key changes.
+_PROCESSED = re.compile(r"((?:machine|activity)\.[\w.-]+)\.(?:scale|offset|low_pass_harmonics)\b")
 
 
 class Study:
@@ -62,18 +66,25 @@ class Study:
         Args:
             text: the text of a study file.
             folder: paths in it are relative to this folder.
-            case: the case, if ``text`` names none; its bodies may be arrays.
+            case: the case, if ``text`` names none; its bodies may be arrays. If :meth:`Case.replace` has changed it, keys
+                such as ``scale`` of its scaled waveforms cannot be varied.
 
         Raises:
             BadInput: all problems of the study and its case, with their places.
         """
-        files: dict[str, bytes] = {}
-        if case is not None:
-            written = case.text.encode()
-            name = f"/cases/{hashlib.blake2b(written, digest_size=6).hexdigest()}.toml"
-            text = f"case = {value_text(name)}\n{text}"
-            files = {**case.arrays, name: written}
-        return cls(os.path.join(os.path.abspath(folder), "study"), text, files)
+        path = os.path.join(os.path.abspath(folder), "study")
+        if case is None:
+            return cls(path, text)
+        name, written = case.file
+        study = cls(path, f"case = {value_text(name)}\n{text}", {**case.arrays, name: written.encode()})
+        for waveform in set(_PROCESSED.findall("\n".join([text, *study.inputs]))):
+            # The study would process the points again.
+            if case.has_processed(waveform):
+                raise BadInput(
+                    f"the study varies the processing of {waveform}, which the case processes, and the case was changed by "
+                    "replace; write the changed values into the file or text of the case"
+                )
+        return study
 
     @classmethod
     def from_dict(cls, tables: Mapping[str, Any], *, folder: str | os.PathLike[str] = ".", case: Case | None = None) -> Study:
@@ -105,6 +116,8 @@ class Study:
 
     def case(self, row: int, out: str | os.PathLike[str] | None = None) -> Case:
         """The case of test ``row``, counted from 0; tests of a search are read from the study's folder ``out``."""
+        if row < 0:
+            raise BadInput(f"the study has no row {row}; rows count from 0")
         return self._changed(self._raw.changes(row, None if out is None else os.fspath(out)))
 
     def _changed(self, changes: Sequence[str]) -> Case:

@@ -91,7 +91,8 @@ def open_study(folder: str | os.PathLike[str]) -> StudyResult:
     """Opens the study in a folder written by ``condyle study`` or :meth:`Study.run`.
 
     Raises:
-        BadInput: a folder without a study, or with an unfinished one.
+        BadInput: a folder without a study, or with tests that are not evaluated: those of an unfinished study are evaluated by
+            :meth:`Study.answered`.
     """
     path = Path(folder)
     try:
@@ -100,7 +101,13 @@ def open_study(folder: str | os.PathLike[str]) -> StudyResult:
         is_begun = (path / "study.db").is_file()
         content = "an unfinished study; run the same study to resume it" if is_begun else "no study"
         raise BadInput(f"{path}: the folder holds {content}") from error
-    return StudyResult(path, answers)
+    result = StudyResult(path, answers)
+    if (path / "study.db").is_file() and len(result["row"]) != answers["kept"]:
+        raise BadInput(
+            f"{path}: the folder holds {len(result['row'])} tests, and answers of {answers['kept']}; run the same study to resume "
+            "it, or evaluate its tests with Study.answered"
+        )
+    return result
 
 
 def _read(folder: Path) -> dict[str, NDArray[Any]]:

@@ -48,7 +48,7 @@ class Table(Mapping[str, "NDArray[np.float64]"]):
         import numpy as np
 
         header, _, rows = text.partition("\n")
-        columns = header.split(",")
+        columns = header.rstrip("\r").split(",")
         array = np.empty((0, len(columns)))
         try:
             if rows:

@@ -24,9 +24,9 @@ def main() -> None:
     # Any executor will do, such as that of a Dask client: study.run(..., client=client).
     with ThreadPoolExecutor(2) as executor:
         result = study.run("conformity", executor=executor)
-    flat, dished = result.answers["ranking"]["designs"]
-    print(f"flat {flat['mean']:.1f} mg, dished {dished['mean']:.1f} mg")
-    print(f"flat wears less in {flat['beats'][1]:.0%} of the tests; see {result.folder / 'study.html'}")
+    best, other = result.answers["ranking"]["designs"]
+    print(f"{best['name']} {best['mean']:.1f} mg, {other['name']} {other['mean']:.1f} mg")
+    print(f"{best['name']} wears less in {best['beats'][1]:.0%} of the tests; see {result.folder / 'study.html'}")
 
 
 if __name__ == "__main__":

@@ -35,6 +35,39 @@ def test_changes_are_those_of_the_command() -> None:
     assert case["contact.friction"] == 0.07, "the case itself stays"
 
 
+def test_a_key_is_found_by_its_path() -> None:
+    case = condyle.Case.read(ROOT / "cases" / "gait-and-stairs.toml")
+    assert case["activity.stairs.share"] == 0.15 == case.replace({"activity.gait.share": 0.85})["activity.stairs.share"]
+    assert "contact.friction" in case and "activity.stairs.flexion" in case
+    for missing in ("contact.frictoin", "contact.friction.value", "activity.running"):
+        assert missing not in case
+        with pytest.raises(KeyError, match=missing):
+            case[missing]
+    with pytest.raises(TypeError, match="not iterable"):
+        list(case)  # type: ignore[call-overload]
+
+
+def test_a_new_law_drops_the_constants_that_were_set(small: condyle.Case) -> None:
+    kang = small.replace({"wear.law": "kang", "wear.cross_shear_exponent": 0.3, "decay": 0.2, "march.updates": 2})
+    again = kang.replace({"wear.law": "power-law"})
+    assert again == small.replace({"wear.law": "power-law", "march.updates": 2})
+    assert kang.replace({"wear.law": "kang"}) == kang
+    assert again.replace({"wear.law": "kang", "wear.cross_shear_exponent": 0.3, "decay": 0.2}) == kang
+
+
+BODY = ([[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 0.0, 1.0]], [[0, 1, 2]])
+
+
+def test_a_body_leaves_the_processing_of_waveforms(tmp_path: Path) -> None:
+    processed = {"machine.axial_force.scale": 1.1, "machine.flexion.offset": 2.0, "machine.ap_force.low_pass_harmonics": 5}
+    changed = condyle.Case.read(STANMORE).replace({**processed, "femur.spacing_mm": 44.0, "distal_radius": 36.0, "edge": 2.0})
+    again = {"machine.axial_force.scale": 1.2, "machine.flexion.offset": 3.0, "machine.ap_force.low_pass_harmonics": 9}
+    expected = condyle.Case.read(STANMORE).with_insert(*BODY, thickness_mm=8.0).with_femur(*BODY)
+    assert changed.with_insert(*BODY, thickness_mm=8.0).with_femur(*BODY).replace(again) == expected.replace(again)
+    written = changed.with_femur(*BODY).written_in(tmp_path)
+    assert written.replace(again) == changed.with_femur(*BODY).replace(again) and not written.has_arrays
+
+
 def test_a_case_keeps_its_folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     (tmp_path / "waves").mkdir()
     text = "[machine.ap_force]\nfile = 'waves/ap.csv'\n"
@@ -86,6 +119,7 @@ def test_bodies_come_from_arrays(tmp_path: Path) -> None:
         ([[0.0, 0.0, float("nan")]], [[0, 0, 0]], "no"),
         ([[0.0, 0.0, 0.0]], [[0.0, 0.0, 0.0]], "whole numbers"),
         ([], [], "shape (0,)"),
+        (np.ma.masked_equal([[0.0, 0.0, 9.0]], 9.0), [[0, 0, 0]], "masked"),
     ],
 )
 def test_arrays_that_are_no_body_are_refused(vertices: list, triangles: list, message: str) -> None:

@@ -4,6 +4,7 @@ import pickle
 import subprocess
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 import condyle
@@ -46,6 +47,12 @@ def test_every_refusal_has_a_reason(case: object, kind: type, message: str) -> N
     with pytest.raises(kind) as raised:
         condyle.run(case)  # type: ignore[arg-type]
     assert message in str(raised.value)
+
+
+@pytest.mark.parametrize("value", [None, [1.0, None], np.ma.masked_equal([1.0, 9.0], 9.0), float("nan")])
+def test_values_that_a_case_cannot_have_are_named(small: condyle.Case, value: object) -> None:
+    with pytest.raises(condyle.BadInput, match="is no value of a case; give finite numbers"):
+        small.replace({"contact.friction": value})
 
 
 def test_physics_that_cannot_be_solved_has_its_own_exception() -> None:

@@ -92,3 +92,12 @@ def test_pyright_rejects_an_attribute_that_no_result_has(tmp_path: Path) -> None
 @pytest.mark.parametrize("example", sorted((ROOT / "python" / "examples").glob("*.py")), ids=lambda path: path.stem)
 def test_examples_run(example: Path, tmp_path: Path) -> None:
     subprocess.run([sys.executable, example], check=True, cwd=tmp_path, capture_output=True)
+
+
+def test_the_designs_of_the_example_have_their_masses(tmp_path: Path) -> None:
+    example = ROOT / "python" / "examples" / "conformity.py"
+    done = subprocess.run([sys.executable, example], check=True, cwd=tmp_path, capture_output=True, text=True)
+    study = condyle.open_study(tmp_path / "conformity")
+    means = {name: study["mass_loss_mg"][study["design"] == name].mean() for name in ("dished", "flat")}
+    best, other = sorted(means, key=means.__getitem__)
+    assert done.stdout.startswith(f"{best} {means[best]:.1f} mg, {other} {means[other]:.1f} mg\n{best} wears less in ")

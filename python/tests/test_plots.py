@@ -27,6 +27,13 @@ def test_maps_show_the_articulating_surface(result: condyle.Result) -> None:
         axes.figure.canvas.draw()
 
 
+def test_the_unworn_insert_has_no_cycle(result: condyle.Result) -> None:
+    for update in (0, -4):
+        with pytest.raises(ValueError, match="has no cycle"):
+            result.plot.pressure(update)
+    assert result.plot.pressure(1).get_title() == "cycle at 0 million cycles"
+
+
 def test_maps_take_axes_and_an_update(result: condyle.Result) -> None:
     _, axes = plt.subplots()
     assert result.plot.wear_map(update=1, ax=axes) is axes

@@ -1,12 +1,15 @@
 """Results: their numbers, arrays and what they become."""
 
 import pickle
+from pathlib import Path
 
 import numpy as np
 import pytest
 
 import condyle
 from condyle._summary import Summary
+
+from conftest import ROOT
 
 
 def test_every_entry_of_the_summary_is_a_typed_attribute(result: condyle.Result) -> None:
@@ -25,6 +28,10 @@ def test_a_column_is_a_view(result: condyle.Result) -> None:
     assert mass[-1] == result.mass_loss_mg and result.wear.units["mass_loss_mg"] == "mg"
     with pytest.raises(KeyError, match="there are cycles, mass_loss_mg"):
         result.wear["mass"]
+
+
+def test_a_table_may_have_line_ends_of_windows() -> None:
+    assert condyle.Table.from_csv("a,b\r\n1,2\r\n", "wear.csv")["b"].tolist() == [2.0]
 
 
 @pytest.mark.parametrize("text", ["a,b\n1\n", "a,b\n1,x\n", "a\n1,2\n"])
@@ -66,6 +73,21 @@ def test_a_result_is_pickled(result: condyle.Result) -> None:
     assert again.summary == result.summary and np.array_equal(again.wear.array, result.wear.array)
 
 
+def test_a_pickled_result_has_its_case_with_arrays(small: condyle.Case, result: condyle.Result) -> None:
+    case = small.with_femur(result.femur_points_mm, result.femur_triangles).replace({"march.updates": 1})
+    again = pickle.loads(pickle.dumps(pickle.loads(pickle.dumps(condyle.run(case, fields=False)))))
+    assert again.case == case
+
+
+def test_the_unworn_insert_has_no_fields_of_a_cycle(small: condyle.Case, result: condyle.Result, tmp_path: Path) -> None:
+    for one in (result, pickle.loads(pickle.dumps(result)), condyle.run(small, out=tmp_path / "out")):
+        unworn = {name for name, values in one.fields.items() if np.isnan(values[0]).all()}
+        of_a_cycle = {"cross_shear", "depth_per_cycle_mm", "peak_pressure_mpa", "principal_direction", "sliding_distance_mm"}
+        assert unworn == of_a_cycle and not any(np.isnan(values[1:]).any() for values in one.fields.values())
+    pytest.importorskip("xarray")
+    assert bool(result.to_xarray()["node_peak_pressure_mpa"][0].isnull().all())
+
+
 def test_pandas(result: condyle.Result) -> None:
     frame = result.to_pandas()
     assert frame["mass_loss_mg"].iloc[-1] == result.mass_loss_mg
@@ -83,6 +105,18 @@ def test_xarray(result: condyle.Result) -> None:
     assert pressed.sizes["node"] == result.articulating_nodes
     range_mm = float(data["ap_mm"].sel(cycle="first").max() - data["ap_mm"].sel(cycle="first").min())
     assert range_mm == pytest.approx(result.ap_range_mm)
+
+
+@pytest.mark.parametrize("name", ["pin-on-disc", "gait-and-stairs"])
+def test_xarray_of_other_cases(name: str) -> None:
+    pytest.importorskip("xarray")
+    changes = {"march.updates": 1, "time.increments": 50, "accuracy.estimate": False}
+    result = condyle.run(condyle.Case.read(ROOT / "cases" / f"{name}.toml").replace(changes))
+    data = result.to_xarray()
+    column, key = ("x_mm", "cycle_x_mm") if name == "pin-on-disc" else ("ap_mm", "stairs_ap_mm")
+    table = result.kinematics if name == "pin-on-disc" else result.tables["kinematics_stairs"]
+    assert np.array_equal(data[key].values.ravel(), table[column]) and data[key].attrs["units"] == "mm"
+    assert np.array_equal(data["r_xz"].values.ravel(), result.femur_pose["r_xz"])
 
 
 def test_pyvista(result: condyle.Result) -> None:

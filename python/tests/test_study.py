@@ -59,8 +59,9 @@ def test_a_row_is_a_run(study: condyle.Study, done: condyle.StudyResult) -> None
     case = study.case(row)
     assert case["contact.friction"] == done["contact.friction"][row]
     assert condyle.run(case, fields=False).mass_loss_mg == done["mass_loss_mg"][row]
-    with pytest.raises(condyle.BadInput, match="the study has no row 24"):
-        study.case(24)
+    for missing in (24, -1):
+        with pytest.raises(condyle.BadInput, match=f"the study has no row {missing}"):
+            study.case(missing)
 
 
 @pytest.mark.parametrize("workers", ["threads", "thread pool", "processes"])
@@ -162,6 +163,51 @@ def test_a_study_that_was_stopped_goes_on(study: condyle.Study, done: condyle.St
     result = study.run(out, lambda progress: reported.append(progress.part), threads=2)
     assert reported[0] >= 0.5 and reported[-1] == 1.0
     assert table(result) == table(done)
+
+
+def test_answers_of_a_part_are_not_those_of_the_tests(study: condyle.Study, tmp_path: Path) -> None:
+    for kept in (4, 12):
+        with pytest.raises(condyle.StudyInterrupted):
+            study.run(tmp_path, lambda progress, kept=kept: progress.kept < kept, threads=1)
+        if kept == 4:
+            assert study.answered(tmp_path).answers.kept == condyle.open_study(tmp_path).answers.kept < 12
+    with pytest.raises(condyle.BadInput, match=r"holds \d+ tests, and answers of \d+"):
+        condyle.open_study(tmp_path)
+    assert study.answered(tmp_path).answers.kept == len(condyle.open_study(tmp_path)["row"]) >= 12
+
+
+def test_a_waveform_is_processed_once(small: condyle.Case, tmp_path: Path) -> None:
+    tables = {"design": {"kind": "one-at-a-time"}, "vary": [{"key": "machine.axial_force.scale", "levels": [1.0, 1.1]}]}
+    file = tmp_path / "case.toml"
+    file.write_text("[machine.axial_force]\nwaveform = 'iso-like'\nscale = 1.2\n")
+    by_file = condyle.Study.from_dict({"case": "case.toml", **tables}, folder=tmp_path)
+    case = condyle.Case.read(file)
+    for same in (case, condyle.Case.from_text(file.read_text())):
+        study = condyle.Study.from_dict(tables, case=same)
+        assert [study.case(row) for row in range(3)] == [by_file.case(row) for row in range(3)]
+    changed = case.replace({"contact.friction": 0.05})
+    with pytest.raises(condyle.BadInput, match=r"varies the processing of machine\.axial_force"):
+        condyle.Study.from_dict(tables, case=changed)
+    named = {"name": "a", "set": ["machine.axial_force.offset=10"]}
+    other = {"vary": TABLES["vary"][:1], "design": TABLES["design"]}
+    with pytest.raises(condyle.BadInput, match=r"varies the processing of machine\.axial_force"):
+        condyle.Study.from_dict({**other, "alternative": [named]}, case=changed)
+    assert condyle.Study.from_dict(other, case=changed).tests == 24
+    plain = condyle.Study.from_dict(tables, case=small.replace({"contact.friction": 0.05}))
+    assert plain.case(2)["machine.axial_force.knots_n"] == by_file.case(2)["machine.axial_force.knots_n"]
+
+
+def test_a_case_in_a_study_keeps_its_folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    rows = "".join(f"{percent},{500 + percent * (100 - percent) / 5}\n" for percent in range(0, 101, 5))
+    (tmp_path / "load.csv").write_text("percent,axial_force_n\n" + rows)
+    text = "[machine.axial_force]\nfile = 'load.csv'\n"
+    (tmp_path / "case.toml").write_text(text)
+    monkeypatch.chdir(tmp_path)
+    cases = [condyle.Case.read("case.toml"), condyle.Case.from_text(text)]
+    monkeypatch.chdir("/")
+    for case in cases:
+        study = condyle.Study.from_dict({**TABLES, "vary": TABLES["vary"][:1]}, case=case)
+        assert pickle.loads(pickle.dumps(study)).case(3)["machine.axial_force"] == case["machine.axial_force"]
 
 
 def _raise(progress: condyle.StudyProgress) -> None:
@@ -431,6 +477,8 @@ def test_results_that_do_not_fit_a_search_are_errors(study: condyle.Study, small
                 search.tell([wrong], [result])
         with pytest.raises(condyle.BadInput, match="not that of the case of its design"):
             search.tell([design], [condyle.run(small.replace({"insert.thickness_mm": 8.25}), fields=False)])
+        with pytest.raises(condyle.BadInput, match="has a wear_law of its own"):
+            search.tell([design], [condyle.run(search.case(design), fields=False, wear_law=lambda _: 0.0)])
         assert search.tested == 0 and search.pending == [design]
         search.tell([design], [condyle.NotSolved("no equilibrium\nat 3 %")])
         assert search.tested == 1 and search.pending == []
