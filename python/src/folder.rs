@@ -18,11 +18,11 @@ const ARTICULATING: &str = "articulating";
 /// The run in the folder `path`, in the form of `run_in_memory`.
 #[pyfunction]
 pub fn read_folder(py: Python<'_>, path: PathBuf) -> PyResult<Bound<'_, PyDict>> {
-    py.detach(|| read(&path))?.into_python(py)
+    py.detach(|| read(&path, true))?.into_python(py)
 }
 
-/// Reads the run in `folder`.
-pub fn read(folder: &Path) -> PyResult<Record> {
+/// Reads the run in `folder`, without the fields at the nodes if they are not kept.
+pub fn read(folder: &Path, keeps_fields: bool) -> PyResult<Record> {
     let Some(case) = text(&folder.join("case.toml"))? else {
         return Err(bad_input(format!(
             "{}: the folder holds no run: there is no case.toml; give the folder of `condyle run --out`",
@@ -39,7 +39,8 @@ pub fn read(folder: &Path) -> PyResult<Record> {
     if let Ok(bytes) = fs::read(&femur) {
         record.femur = parse_vtu_triangles(&femur, &bytes).map_err(bad_input)?;
     }
-    for (_, path) in read_pvd(folder.join("insert.pvd")).map_err(bad_input)? {
+    let updates = read_pvd(folder.join("insert.pvd")).map_err(bad_input)?;
+    for (_, path) in updates.into_iter().filter(|_| keeps_fields) {
         check_file(&path).map_err(bad_input)?;
         let file = read_vtu_points(&path).map_err(bad_input)?;
         let marks = file.values(ARTICULATING).unwrap_or_default();

@@ -75,7 +75,7 @@ pub fn run<'py>(
             let fields = (reached.updates, reached.cycles, reached.of_cycles);
             return Err(errors::exception("Interrupted", fields));
         }
-        (_, Some(out)) => py.detach(|| folder::read(&out))?,
+        (_, Some(out)) => py.detach(|| folder::read(&out, keeps_fields))?,
         (Outcome::Done(summary) | Outcome::DoneBefore(summary), None) => {
             let text = serde_json::to_string(&summary).expect("numbers and text serialise");
             recorder.record.summary = Some(text);

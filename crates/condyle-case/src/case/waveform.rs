@@ -201,7 +201,8 @@ pub(super) fn read(
     let interpolation = keys.interpolation.unwrap_or(samples.interpolation);
     let mut waveform = Waveform::new(knots.clone(), interpolation);
     if let (Ok(noisy), Some(harmonics)) = (&waveform, keys.low_pass_harmonics) {
-        waveform = Waveform::new(low_passed(noisy, harmonics as usize), Interpolation::Spline);
+        let smooth = without_zero_error(channel, low_passed(noisy, harmonics as usize));
+        waveform = Waveform::new(smooth, Interpolation::Spline);
     }
     let (index, fault) = match waveform {
         Ok(waveform) => match first_outside(channel, &knots) {

@@ -350,7 +350,7 @@ fn notes_and_doubts_of_a_hip_say_nothing_of_knees() {
     }
 }
 
-const TWO_ACTIVITIES: &str = "[femur]\nshape = \"sphere\"\nradius_mm = 14.0\n[insert]\nshape = \"cup\"\nedge_mm = 2.5\nlayers = 2\n\
+pub const TWO_ACTIVITIES: &str = "[femur]\nshape = \"sphere\"\nradius_mm = 14.0\n[insert]\nshape = \"cup\"\nedge_mm = 2.5\nlayers = 2\n\
     [machine]\npreset = \"iso-14242-1-like\"\n[march]\nupdates = 1\n[accuracy]\nestimate = false\n\
     [[activity]]\nname = \"walking\"\ncycles_in_sequence = 9\n\
     [[activity]]\nname = \"strolling\"\ncycles_in_sequence = 1\nfrequency_hz = 0.5\n";

@@ -4,6 +4,7 @@ use condyle_results::catalogue;
 use std::fs;
 
 use crate::bench::{Bench, SMALL, reproducer};
+use crate::hips::TWO_ACTIVITIES;
 use crate::measured::noise;
 
 /// A femur that rides over the rim of a flat dish; found among random designs.
@@ -141,6 +142,31 @@ fn units_of_loads_and_motions_are_doubtful() {
         let found = checks(&bench, "out");
         assert!(found.iter().any(|one| one == check), "{check}: {found:?}");
     }
+}
+
+#[test]
+fn a_slow_activity_is_doubtful_beside_a_fast_one() {
+    let bench = Bench::with_case(&TWO_ACTIVITIES.replace("_hz = 0.5", "_hz = 0.01"));
+    bench.run_into("out");
+    let slow = bench.summary("out").plausibility.into_iter();
+    let slow: Vec<_> = slow.filter(|one| one.check == "slides_slowly").collect();
+    assert!(
+        slow.len() == 1 && slow[0].message.contains("under pressure of strolling"),
+        "{slow:?}"
+    );
+}
+
+#[test]
+fn a_head_that_hits_its_cup_is_doubtful() {
+    let bench = Bench::new();
+    let case = concat!(
+        env!("CARGO_MANIFEST_DIR"),
+        "/../../cases/hip-edge-loading.toml"
+    );
+    let said = bench.say(&["run", case, "--out", "out"]);
+    assert_eq!(said.code, Some(0), "{}", said.err);
+    assert!(checks(&bench, "out").contains(&"impact".to_owned()));
+    assert!(said.out.contains("exceeds the load by"), "{}", said.out);
 }
 
 #[test]

@@ -118,14 +118,16 @@ fn noise_percent(waveform: &Waveform) -> f64 {
     if high - low <= 1e-9 * high.max(-low) {
         return 0.0;
     }
+    let knots: Vec<f64> = waveform.knots().iter().map(|knot| knot.value).collect();
+    // A spline rings at a step of its knots, which are not noisy.
+    if reversals(&knots) <= MAX_REVERSALS {
+        return 0.0;
+    }
     let excess = NOISE_SAMPLINGS.map(|count| {
         let values: Vec<f64> = sampled(waveform, count).collect();
         let at = |place: usize| values[place % count];
-        let turns =
-            |place: &usize| (at(place + 1) - at(*place)) * (at(place + 2) - at(place + 1)) < 0.0;
-        let reversals = (0..count).filter(turns).count();
         // Smoothing shortens the path of a curve with corners, too, which has few.
-        if reversals <= MAX_REVERSALS {
+        if reversals(&values) <= MAX_REVERSALS {
             return 0.0;
         }
         // The smoothing polynomial of second degree by Savitzky and Golay: it keeps curves, and removes most of the noise.
@@ -144,6 +146,11 @@ fn noise_percent(waveform: &Waveform) -> f64 {
         100.0 * (path(&at) / path(&smooth).max(f64::MIN_POSITIVE) - 1.0)
     });
     excess.into_iter().fold(0.0, f64::max)
+}
+
+fn reversals(values: &[f64]) -> usize {
+    let turns = |three: &&[f64]| (three[1] - three[0]) * (three[2] - three[1]) < 0.0;
+    values.windows(3).filter(turns).count()
 }
 
 /// Returns the first warning of a check of the waveform of each joint.

@@ -6,6 +6,7 @@ use std::path::Path;
 use condyle::Vec3;
 use condyle::evolve::Schedule;
 use condyle::geometry::{Counterface, GenericFemur, GenericFemurShape, SmoothField, TriangleMesh};
+use condyle::machine::Drive;
 use tempfile::TempDir;
 
 use super::assemble::Built;
@@ -32,6 +33,31 @@ fn with_stl(name: &str, mesh: &TriangleMesh) -> TempDir {
     let folder = tempfile::tempdir().unwrap();
     write_stl(File::create(folder.path().join(name)).unwrap(), mesh).unwrap();
     folder
+}
+
+#[test]
+fn a_load_cell_that_reads_a_little_below_zero_does_not_lift_the_femur() {
+    let knots = "[machine.axial_force]\nknots_n = [[0, 2000], [40, -4], [60, -4]]\n";
+    let test = built(knots, Path::new("")).unwrap().test;
+    let machine = test.machine();
+    let drive = &machine.joint(machine.pressing_joint().unwrap()).drive;
+    let Drive::Loaded(load) = drive else {
+        panic!("{drive:?}")
+    };
+    assert_eq!(load.range(), [-2000.0, 0.0]);
+}
+
+#[test]
+fn the_generic_femur_ends_behind() {
+    let flexed = |deg: u32| {
+        format!(
+            "[machine]\nflexion_offset_deg = 0.0\n[machine.flexion]\nknots_deg = [[0, 0], [50, {deg}]]\n"
+        )
+    };
+    assert!(built(&flexed(134), Path::new("")).is_ok());
+    let why = "ends behind at a flexion of 135 degrees, and flexion reaches 148 degrees";
+    let refusal = refusal(&flexed(148), Path::new(""));
+    assert!(refusal.contains(why), "{refusal}");
 }
 
 /// A closed block of 20 by 8 by 30 mm on y = 0.

@@ -214,9 +214,16 @@ fn csv_with_a_gap_or_a_step_is_refused_at_its_row() {
         &[
             "jumps at the end of the cycle",
             "12 | 100,2",
-            "`remove_drift = true`",
+            "append the movement back",
         ],
     );
+    let shown = refused(&drifting, "remove_drift = true\n");
+    let why = "its end is 2 from its start, more than 20 % of its";
+    assert_shows(&shown, &[why, "append the movement back"]);
+    let slight =
+        |percent: f64| 10.0 * (0.02 * std::f64::consts::PI * percent).sin() + percent / 50.0;
+    let drifting = format!("percent,a_deg\n{}", samples(slight));
+    assert_shows(&refused(&drifting, ""), &["`remove_drift = true`"]);
     assert!(with_csv(&drifting, "remove_drift = true\n").is_ok());
     let open = "percent,a_deg\n0,1\n10,2\n20,2\n30,1\n";
     let extra = "interpolation = \"half-cosine\"\nremove_drift = true\n";
