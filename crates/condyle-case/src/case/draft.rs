@@ -253,7 +253,12 @@ impl<'a> Concluded<'a> {
     fn shell(&self, lies: &WrittenRotation) -> Result<CheckedMesh, BuildError> {
         let rotation = lies.rotation();
         let placed = self.mesh.clone().mapped(|vertex| rotation * vertex);
-        checked(&self.file, &placed, &placed, checks_of(self.body, None))
+        checked(
+            &self.file,
+            (&placed, false),
+            &placed,
+            checks_of(self.body, None),
+        )
     }
 
     fn keys(&self, lies: &WrittenRotation) -> String {

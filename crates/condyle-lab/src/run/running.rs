@@ -12,7 +12,7 @@ use condyle_case::{
     case::{BuildWarning, Case, FEMUR_TRIANGLES, PressureLawChoice, SharedBodies},
 };
 use condyle_results::{
-    CALIBRATED_LAW, Checkpoint, ErrorEstimate, LawWear, NeutralPose, Prediction, Summary,
+    CALIBRATED_LAW, Checkpoint, ErrorEstimate, LawWear, NeutralPose, Prediction, Side, Summary,
     catalogue::RunFacts,
 };
 
@@ -131,7 +131,10 @@ impl<'a> Run<'a> {
             let mut watch = |progress| on_event(RunEvent::Solved(progress));
             let updated = clock.time(|| march.update(&mut watch).map(|flow| flow.is_continue()));
             let is_updated = updated.map_err(|source| RunError::March {
-                source,
+                source: match self.case.side_in_frame() {
+                    Side::Left => source.mirrored(),
+                    Side::Right => source,
+                },
                 out: self.context.out.map(Path::to_path_buf),
             })?;
             flow = ControlFlow::Break(());

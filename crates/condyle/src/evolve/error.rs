@@ -86,6 +86,21 @@ pub enum MarchError {
 }
 
 impl MarchError {
+    /// Returns the error of a joint of the other side, with its places mirrored at the plane z = 0.
+    #[must_use]
+    pub fn mirrored(mut self) -> Self {
+        match &mut self {
+            Self::WornThrough { place_mm, .. }
+            | Self::InvalidDepth { place_mm, .. }
+            | Self::InvertedElements { place_mm, .. } => place_mm.z = -place_mm.z,
+            Self::Placement(_)
+            | Self::Cycle { .. }
+            | Self::LostContact { .. }
+            | Self::ThrownOff { .. } => {}
+        }
+        self
+    }
+
     pub(super) fn inverted_elements(update: usize, mesh: &HexMesh) -> Self {
         let qualities = || mesh.qualities().enumerate();
         let worst = qualities().min_by(|a, b| a.1.total_cmp(&b.1));

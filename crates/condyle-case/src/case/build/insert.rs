@@ -203,7 +203,9 @@ impl Case {
         }
         let unrolled = UnrolledCup::new(mesh.clone(), &socket, opens_along, cup.edge_mm);
         // Unrolled, its sides are divided: only the vertices of the file scatter.
-        let shell = checked(path, &unrolled.mesh, &mesh, checks_of(Body::Insert, None))?;
+        let checks = checks_of(Body::Insert, None);
+        // An unrolled socket is in a frame of its own.
+        let shell = checked(path, (&unrolled.mesh, false), &mesh, checks)?;
         if !shell.closed {
             let message = "the cup is open, so its thickness is unknown; give its closed surface";
             return Err(BuildError::mesh(path, &["file"], message));

@@ -7,7 +7,9 @@ use condyle::anatomy::Orientation;
 use condyle::geometry::{Dishes, TriangleMesh};
 use condyle::{Mat3, Vec3};
 use condyle_mesh::formats::{parse_surface, surface_bytes};
-use condyle_mesh::repair::{CheckedMesh, Checks, Defect, LeftOut, Parts, Touching, WhyLeftOut};
+use condyle_mesh::repair::{
+    CheckedMesh, Checks, Defect, LeftOut, Parts, RepairError, Touching, WhyLeftOut,
+};
 
 use super::error::{Body, BuildError, BuildWarning, Finding};
 use super::size::{check_triangles, stray_piece};
@@ -157,7 +159,7 @@ pub(super) fn parsed_shell(
         );
         return Err(BuildError::mesh(file, &["clip_below_mm"], message));
     }
-    let mut shell = checked(file, &mesh, &mesh, checks)?;
+    let mut shell = checked(file, (&mesh, placing.mirrors), &mesh, checks)?;
     // A closed shell shows its inside; an open one must face the other body.
     let must_face_up = checks.touching == Touching::FromAbove;
     if !shell.closed && faces_up(&shell.mesh) != must_face_up {
@@ -167,21 +169,31 @@ pub(super) fn parsed_shell(
     Ok(shell)
 }
 
-/// Checks a mesh in place; the noise of the scan from which it was made is named before the crossings that it causes.
+/// Checks a mesh in place; the noise of the scan from which it was made is named before the crossings that it causes. The places of a
+/// mesh that is mirrored are those of the results, mirrored back.
 pub(in crate::case) fn checked(
     file: &Path,
-    mesh: &TriangleMesh,
+    (mesh, is_mirrored): (&TriangleMesh, bool),
     scan: &TriangleMesh,
     checks: Checks,
 ) -> Result<CheckedMesh, BuildError> {
-    checks
-        .check(mesh.clone())
-        .map_err(|error| match noise(scan) {
-            Some((_, noise)) => {
-                BuildError::mesh(file, &["file"], format_args!("{noise}; as it is, {error}"))
-            }
-            None => BuildError::shell(file, &error),
-        })
+    let mut checked = checks.check(mesh.clone());
+    if is_mirrored {
+        let (defects, left_out) = match &mut checked {
+            Ok(shell) => (&mut shell.defects[..], &mut shell.left_out[..]),
+            Err(RepairError::Defects { defects }) => (&mut defects[..], &mut [][..]),
+            Err(RepairError::Empty) => (&mut [][..], &mut [][..]),
+        };
+        let defects = defects.iter_mut().flat_map(|defect| &mut defect.places_mm);
+        let places = defects.chain(left_out.iter_mut().map(|part| &mut part.at_mm));
+        places.for_each(|place| place.z = -place.z);
+    }
+    checked.map_err(|error| match noise(scan) {
+        Some((_, noise)) => {
+            BuildError::mesh(file, &["file"], format_args!("{noise}; as it is, {error}"))
+        }
+        None => BuildError::shell(file, &error),
+    })
 }
 
 /// Largest noise of a scan of an implant, mm: beyond it, coarse facets scatter.

@@ -578,6 +578,28 @@ fn block_on_a_peg() -> TriangleMesh {
 }
 
 #[test]
+fn defects_of_a_left_knee_are_at_their_places_in_the_file() {
+    let off_middle = block_on_a_peg().mapped(|at| Vec3::new(at.x, at.y, at.z + 4.0));
+    let folder = with_stl("a.stl", &off_middle);
+    for side in ["right", "left"] {
+        let axes = "axes = [\"anterior\", \"superior\", \"right\"]\n";
+        let built = built(
+            &format!("side = \"{side}\"\n{MESH_INSERT}{axes}"),
+            folder.path(),
+        );
+        let warning = built.unwrap().warnings[0].to_string();
+        assert!(
+            warning.contains(" that cross (left) at (2.00, 0.00, "),
+            "{warning}"
+        );
+        assert!(
+            warning.contains(", (2.00, 0.00, 7.00), "),
+            "{side}: {warning}"
+        );
+    }
+}
+
+#[test]
 fn defects_without_effect_on_contact_are_one_warning() {
     let folder = with_stl("a.stl", &block_on_a_peg());
     let built = built(MESH_INSERT, folder.path()).unwrap();
