@@ -257,7 +257,7 @@ pub(crate) fn updates_overshoot(finished: &Finished<'_>) -> Option<PlausibilityW
         .into_iter()
         .find(|(percent, limit, ..)| percent > limit)?;
     let message = format!(
-        "the last step of {:.0} cycles {does} {percent:.0} % of {of}: such long steps overshoot, and the stated error does \
+        "the last step of {:.0} cycles {does} {percent:.0} % of {of}: such long steps overshoot, and the stated error may \
          not show it",
         step.interval
     );
