@@ -6,7 +6,6 @@ import hashlib
 import json
 import os
 from collections.abc import Mapping
-from functools import partial
 from html import escape
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -195,11 +194,7 @@ class Case:
         return f"<details><summary>{escape(repr(self))}</summary><pre>{escape(self.text)}</pre></details>"
 
     def __reduce__(self) -> tuple[Any, ...]:
-        return Case, self.later().args
-
-    def later(self) -> partial[Case]:
-        """The same case, read again when it is called, for use in the package."""
-        return partial(Case, self._path, self._text, self._base, self._files, self._changes)
+        return Case, (self._path, self._text, self._base, self._files, self._changes)
 
     def _with_body(self, body: str, vertices: ArrayLike, triangles: ArrayLike, keys: dict[str, Any]) -> Case:
         data = ply_bytes(vertices, triangles, body)
@@ -235,14 +230,21 @@ class Case:
         return f"/cases/{hashlib.blake2b(text.encode(), digest_size=6).hexdigest()}.toml", text
 
     def has_processed(self, waveform: str) -> bool:
-        """True if a waveform of :attr:`file`, at a dotted path, has its scale, offset or low pass applied, for use in the package."""
-        if not self._changes:
+        """True if a waveform of :attr:`file`, at a dotted path, has its scale, offset or low pass applied, for use in the package.
+
+        Raises:
+            BadInput: the case cannot process it, such as a joint of a preset.
+        """
+        if not self._changes or waveform not in self:
             return False
-        try:
-            plain = self.replace({f"{waveform}.scale": 1.0, f"{waveform}.offset": 0.0})
-        except BadInput:  # Its values have another unit.
+        shape = f"{waveform}.interpolation"
+        # A low pass makes a spline of any interpolation.
+        if self.replace({shape: "half-cosine"})[shape] == "spline":
             return True
-        return plain != self or "low_pass_harmonics" in "".join([self._text, *self._changes])
+        try:
+            return self.replace({f"{waveform}.scale": 1.0, f"{waveform}.offset": 0.0}) != self
+        except BadInput:  # They convert its values from another unit: without them, it would stay as it is.
+            return True
 
     @property
     def arrays(self) -> dict[str, bytes]:

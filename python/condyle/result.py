@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import json
+import os
+from collections.abc import Mapping
 from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal
@@ -47,7 +49,7 @@ class Result(Summary):
 
     def __init__(self, run: RawRun, folder: Path | None = None, case: Case | partial[Case] | None = None) -> None:
         """Use :func:`condyle.run` or :func:`condyle.open`."""
-        self._run, self._folder, self._case = run, folder, case
+        self._run, self._folder, self._case = run, folder, case or _as_run(run, folder)
         summary = run["summary"]
         self.summary: dict[str, Any] = json.loads(summary) if summary else {}
         """The content of ``summary.json``."""
@@ -56,7 +58,8 @@ class Result(Summary):
         for name, text in run["tables"].items():
             self.tables[name] = Table.from_csv(text, f"{folder or 'the run'}: {name}.csv")
         for name in _OF_A_CYCLE & run["fields"].keys():
-            run["fields"][name][:1] = float("nan")
+            if run["fields"][name].flags.writeable:  # Otherwise those of a result that was copied.
+                run["fields"][name][:1] = float("nan")
         arrays: list[NDArray[Any]] = [run["points_mm"], run["hexes"], run["articulating"]]
         for array in [*arrays, run["femur_points_mm"], run["femur_triangles"], *run["fields"].values()]:
             array.flags.writeable = False
@@ -91,8 +94,6 @@ class Result(Summary):
     @property
     def case(self) -> Case:
         """The case as run."""
-        if self._case is None:
-            return Case.from_text(self._run["case"], folder=self._folder or ".", name="case of the run")
         return self._case if isinstance(self._case, Case) else self._case()
 
     @property
@@ -225,12 +226,17 @@ class Result(Summary):
         return _html.table(repr(self), ("", "value", "unit"), rows)
 
     def __getstate__(self) -> dict[str, Any]:
-        # Read at its first use: the files that it names may be missing on the other machine.
-        case = self._case.later() if isinstance(self._case, Case) else self._case
+        # As run, since its files may be other ones by then; read when it is used, since meshes may be missing on the other machine.
+        case = _as_run(self._run, self._folder, self._case.arrays) if isinstance(self._case, Case) else self._case
         return {"_run": self._run, "_folder": self._folder, "_case": case}
 
     def __setstate__(self, state: dict[str, Any]) -> None:
         self.__init__(state["_run"], state["_folder"], state["_case"])
+
+
+def _as_run(run: RawRun, folder: Path | None, arrays: Mapping[str, bytes] | None = None) -> partial[Case]:
+    """The case as written for the run, read when it is called."""
+    return partial(Case, "case of the run", run["case"], os.path.abspath(folder or "."), arrays)
 
 
 def check_fields(result: Result) -> None:

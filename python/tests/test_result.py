@@ -1,5 +1,6 @@
 """Results: their numbers, arrays and what they become."""
 
+import copy
 import pickle
 from pathlib import Path
 
@@ -77,6 +78,32 @@ def test_a_pickled_result_has_its_case_with_arrays(small: condyle.Case, result: 
     case = small.with_femur(result.femur_points_mm, result.femur_triangles).replace({"march.updates": 1})
     again = pickle.loads(pickle.dumps(pickle.loads(pickle.dumps(condyle.run(case, fields=False)))))
     assert again.case == case
+
+
+@pytest.mark.parametrize("is_in_folder", [False, True])
+def test_a_pickled_result_has_its_case_as_run(
+    small: condyle.Case, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, is_in_folder: bool
+) -> None:
+    file = tmp_path / "load.csv"
+    load = "percent,axial_force_n\n" + "".join(f"{percent},{500 + percent * (100 - percent)}\n" for percent in range(0, 101, 5))
+    file.write_text(load)
+    tables = {**small.to_dict(), "machine": {"axial_force": {"file": "load.csv", "scale": 0.5}}}
+    monkeypatch.chdir(tmp_path)
+    result = condyle.run(condyle.Case.from_dict(tables), out="out" if is_in_folder else None, fields=False)
+    before, pickled = result.case, pickle.dumps(result)
+    monkeypatch.chdir("/")
+    for change in (lambda: file.write_text(load.replace("500", "900")), file.unlink):
+        change()
+        again = pickle.loads(pickle.dumps(pickle.loads(pickled)))
+        assert again.case == before and again.case["machine.axial_force"] == before["machine.axial_force"]
+        assert again.case.inputs_blake3 == again.inputs_blake3 == result.inputs_blake3
+
+
+def test_a_result_is_copied(result: condyle.Result) -> None:
+    for again in (copy.copy(result), copy.deepcopy(result), copy.copy(copy.deepcopy(result))):
+        assert again.summary == result.summary and again.case == result.case
+        for name, values in result.fields.items():
+            assert np.array_equal(again.fields[name], values, equal_nan=True) and not again.fields[name].flags.writeable
 
 
 def test_the_unworn_insert_has_no_fields_of_a_cycle(small: condyle.Case, result: condyle.Result, tmp_path: Path) -> None:

@@ -17,6 +17,8 @@ import pytest
 
 import condyle
 
+from conftest import ROOT
+
 TABLES: dict[str, Any] = {
     "title": "Friction and load",
     "design": {"kind": "latin-hypercube", "size": 24, "seed": 3},
@@ -195,6 +197,42 @@ def test_a_waveform_is_processed_once(small: condyle.Case, tmp_path: Path) -> No
     assert condyle.Study.from_dict(other, case=changed).tests == 24
     plain = condyle.Study.from_dict(tables, case=small.replace({"contact.friction": 0.05}))
     assert plain.case(2)["machine.axial_force.knots_n"] == by_file.case(2)["machine.axial_force.knots_n"]
+
+
+@pytest.mark.parametrize("is_replaced", [False, True])
+def test_a_low_pass_is_of_its_own_waveform(is_replaced: bool) -> None:
+    low_pass = {"machine.flexion.low_pass_harmonics": 8}
+    case = condyle.Case.from_text(
+        "[machine.flexion]\nwaveform = 'iso-like'\n" + ("" if is_replaced else "low_pass_harmonics = 8\n")
+    )
+    changed = case.replace({"contact.friction": 0.05, **(low_pass if is_replaced else {})})
+    for key, levels in {"scale": [0.9, 1.1], "low_pass_harmonics": [8, 9]}.items():
+        tables = {"design": {"kind": "one-at-a-time"}, "vary": [{"key": f"machine.axial_force.{key}", "levels": levels}]}
+        study = condyle.Study.from_dict(tables, case=changed)
+        assert study.case(2) == changed.replace({f"machine.axial_force.{key}": levels[1]})
+        tables["vary"] = [{"key": f"machine.flexion.{key}", "levels": levels}]
+        with pytest.raises(condyle.BadInput, match=r"varies the processing of machine\.flexion, which"):
+            condyle.Study.from_dict(tables, case=changed)
+
+
+def test_a_waveform_that_a_case_cannot_process_is_said_to_be_so() -> None:
+    tables = {"design": {"kind": "one-at-a-time"}, "vary": [{"key": "machine.joints.penetration.load.scale", "levels": [0.9]}]}
+    case = condyle.Case.read(ROOT / "cases" / "hip-iso.toml")
+    for one in (case, case.replace({"contact.friction": 0.05})):
+        with pytest.raises(condyle.BadInput, match=r"\[machine\.joints\] has no key\s+(\| )?`penetration`"):
+            condyle.Study.from_dict(tables, case=one)
+
+
+def test_a_low_pass_is_known_of_every_waveform() -> None:
+    for path in sorted((ROOT / "cases").glob("*.toml")):
+        case = condyle.Case.read(path)
+        as_run = condyle.Case.from_text(case.text).replace({"contact.friction": 0.05})
+        activities = [f"activity.{one['name']}" for one in case.to_dict().get("activity", [])]
+        for above in ["machine", *activities]:
+            for name, value in case[above].items():
+                if isinstance(value, dict) and "interpolation" in value:
+                    low_passed = as_run.replace({f"{above}.{name}.low_pass_harmonics": 8})
+                    assert not as_run.has_processed(f"{above}.{name}") and low_passed.has_processed(f"{above}.{name}"), path
 
 
 def test_a_case_in_a_study_keeps_its_folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
