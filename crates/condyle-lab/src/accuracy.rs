@@ -59,9 +59,9 @@ const MISSED: f64 = 1.0;
 /// For twice the updates if the insert creeps or encloses the counterface: between first order (2) and second (4/3).
 /// Finer runs of hips, discs and creep confirm it (`docs/src/accuracy.md`).
 const TWICE_THE_UPDATES: f64 = 3.0 / 2.0;
-/// Length of the mean normal of the worn surface, weighted by wear, below which the insert encloses the counterface: 0.97
-/// and more in knees, 0.9 and less in cups.
-const MIN_MEAN_NORMAL: f64 = 0.95;
+/// Length of the mean normal of the worn surface, weighted by wear, below which the insert encloses the counterface: 0.95
+/// and more in knees, less than 0.9 in cups and discs, and on both sides of it in ankles.
+const MIN_MEAN_NORMAL: f64 = 0.94;
 
 /// The result of a changed test, or the reason why there is none.
 type Found<T> = Result<T, String>;
@@ -362,28 +362,33 @@ impl<'a> Again<'a> {
     ///
     /// That estimate does not contain the effect of a wrong shape on later rates. If the insert creeps or encloses the
     /// counterface, this effect is large, and two marches estimate the error, one of them with twice the updates. They
-    /// differ nearly as marches on the mesh and with the increments of the run do, at a third of its time.
+    /// differ nearly as marches on the mesh and with the increments of the run do, at a third of its time where a coarser mesh
+    /// exists.
     fn wear_by_updates(&mut self, base: &Base) -> Found<OfWear> {
         let state = self.march.state();
         let last = state.updates.last().filter(|_| state.updates.len() > 1);
         let last = last.ok_or_else(|| "a single update cannot be compared".to_owned())?;
-        if self.march.test().creep.is_none() && mean_normal(self.march) > MIN_MEAN_NORMAL {
+        // Without wear there is no mean normal: it is not a number.
+        let encloses = mean_normal(self.march) < MIN_MEAN_NORMAL;
+        if self.march.test().creep.is_none() && !encloses {
             let error = state.step_error;
             return Ok([
                 100.0 * error.volume_mm3 / last.volume_loss_mm3,
                 100.0 * error.max_depth_mm / last.max_depth_mm,
             ]);
         }
-        let [as_many, twice] = [1, 2].map(|times| {
+        let own = self.march.test().schedule;
+        let twice = Schedule::fixed(last.cycles, 2 * state.updates.len());
+        let [own, twice] = [own, twice].map(|schedule| {
             let mut test = self.march.test().clone();
             test.insert = Arc::clone(&base.test.insert);
-            test.schedule = Schedule::fixed(last.cycles, times * state.updates.len());
+            test.schedule = schedule;
             test.time.increments = test.time.increments.div_ceil(2);
             test.comparison_laws.clear();
             test.law_family = false;
             self.marched(test)
         });
-        Ok(errors([TWICE_THE_UPDATES; 2], twice?, as_many?))
+        Ok(errors([TWICE_THE_UPDATES; 2], twice?, own?))
     }
 
     /// Returns the volume loss of a whole march, mm3, and the mean depth at the bottom of its scar, mm: the maximum depth of a
@@ -471,12 +476,10 @@ impl<'a> Again<'a> {
 
 /// Returns errors in %: `factors` times the relative differences of `now` from `reference`; 0 where they are equal.
 fn errors<const N: usize>(factors: [f64; N], now: [f64; N], reference: [f64; N]) -> [f64; N] {
-    std::array::from_fn(|i| {
+    std::array::from_fn(|i| match now[i] == reference[i] {
         // Both may be 0, and their quotient would be NaN.
-        if now[i] == reference[i] {
-            return 0.0;
-        }
-        100.0 * factors[i] * (now[i] / reference[i] - 1.0)
+        true => 0.0,
+        false => 100.0 * factors[i] * (now[i] / reference[i] - 1.0),
     })
 }
 
@@ -498,9 +501,11 @@ fn first_peaks(state: &MarchState) -> Peaks {
 
 /// Returns the peaks of the first cycle of a march, and the ranges of its motion, in the units of files.
 fn first_cycle(state: &MarchState) -> FirstCycle {
-    let cycles = state.activities.first().map(|own| &own.first_and_last);
-    let first = cycles.and_then(|cycles| cycles.as_ref());
-    let range = |joint| first.map_or(0.0, |(first, _)| joint_range(&first.rows, &KNEE, joint));
+    let cycles = state
+        .activities
+        .iter()
+        .find_map(|own| own.first_and_last.as_ref());
+    let range = |joint| cycles.map_or(0.0, |(first, _)| joint_range(&first.rows, &KNEE, joint));
     FirstCycle {
         peaks: first_peaks(state),
         ranges: [range(AP), range(IE)],

@@ -197,12 +197,10 @@ pub(super) fn read(
             return log.reject(section.value_span("remove_drift"), fault);
         }
     };
-    let knots = without_zero_error(channel, knots);
     let interpolation = keys.interpolation.unwrap_or(samples.interpolation);
     let mut waveform = Waveform::new(knots.clone(), interpolation);
     if let (Ok(noisy), Some(harmonics)) = (&waveform, keys.low_pass_harmonics) {
-        let smooth = without_zero_error(channel, low_passed(noisy, harmonics as usize));
-        waveform = Waveform::new(smooth, Interpolation::Spline);
+        waveform = Waveform::new(low_passed(noisy, harmonics as usize), Interpolation::Spline);
     }
     let (index, fault) = match waveform {
         Ok(waveform) => match first_outside(channel, &knots) {
@@ -211,7 +209,7 @@ pub(super) fn read(
                 Some(fault) => {
                     return log.reject(section.span(), fault);
                 }
-                None => return Some(waveform),
+                None => return Some(cut_off(waveform, channel)),
             },
         },
         Err(error) => {
@@ -237,7 +235,7 @@ pub(super) fn read(
 /// Largest drift that is removed, as a part of the range of the points; our choice: measured cycles of walking end within a tenth of
 /// their range, and a movement that does not return has one of nearly all.
 const MAX_DRIFT: f64 = 0.2;
-const HALF_CYCLE: &str = "a cycle ends where it begins: append the movement back";
+const HALF_CYCLE: &str = "append the movement back to its start; for a real step, write `interpolation = \"half-cosine\"`";
 
 fn is_half_cycle(knots: &[Knot], drift: f64) -> bool {
     let [low, high] = extremes(knots.iter().map(|knot| knot.value));
@@ -267,24 +265,13 @@ fn levelled(
     let drift = 2.0 * (level[0].value - knots[0].value);
     if is_half_cycle(&knots, drift) {
         let why = format!(
-            "its end is {} from its start, more than {:.0} % of its range",
-            plain(drift.abs()),
+            "its end is {:.3} from its start, more than {:.0} % of its range",
+            drift.abs(),
             100.0 * MAX_DRIFT
         );
         return Err((why, HALF_CYCLE));
     }
     Ok(level)
-}
-
-/// Returns points in the range of a channel where they are outside by the zero error of a load cell: a force that lifts the body by a
-/// few newtons, however small, throws it off.
-fn without_zero_error(channel: &Channel, mut knots: Vec<Knot>) -> Vec<Knot> {
-    if first_outside(channel, &knots).is_none() {
-        for knot in &mut knots {
-            knot.value = knot.value.clamp(channel.least, channel.most);
-        }
-    }
-    knots
 }
 
 /// Writes the table of a waveform, by the default name or by its points.
@@ -462,9 +449,11 @@ pub(crate) fn parts_of_a_cycle(percents: impl ExactSizeIterator<Item = f64>) -> 
     let last = percents
         .reduce(f64::max)
         .filter(|last| is_enough && *last <= 1.0)?;
-    let message = format!("the points end at {last} % of the cycle");
     let advice = "give percent from 0 to 100, not parts of the cycle from 0 to 1";
-    Some(Fault::new(message, advice))
+    Some(Fault::new(
+        format!("the points end at {last} % of the cycle"),
+        advice,
+    ))
 }
 
 /// Reads percent from the first column and values from column `index`.
@@ -503,6 +492,15 @@ fn first_outside(channel: &Channel, knots: &[Knot]) -> Option<(usize, Fault)> {
     let value = format!("{} {unit} at {} %", plain(knot.value), knot.percent);
     let fault = out_of_range(channel.name, &value, &format!("{limits} {unit}"));
     Some((index, fault))
+}
+
+/// Cuts a waveform that is roughly in its range off at the limits: a load that lifts a body by a few newtons would move it far.
+fn cut_off(waveform: Waveform, channel: &Channel) -> Waveform {
+    let ([low, high], limits) = (waveform.range(), [channel.least, channel.most]);
+    match low < channel.least || high > channel.most {
+        true => waveform.limited(limits),
+        false => waveform,
+    }
 }
 
 /// Returns the fault of values outside the range between the points, which a spline or a low pass makes.

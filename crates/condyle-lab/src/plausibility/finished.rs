@@ -120,6 +120,11 @@ impl<'a> Finished<'a> {
         })
     }
 
+    /// Returns the first cycle of every activity.
+    pub fn first_cycles(&self) -> impl Iterator<Item = SolvedCycle<'a>> {
+        self.cycles().filter(|cycle| cycle.name == "first")
+    }
+
     /// Returns the name of the activity of a cycle as it follows its cycle in a sentence; empty if there is only one.
     pub fn activity_in_words(&self, cycle: &SolvedCycle<'_>) -> String {
         match self.march.test().activities.as_slice() {

@@ -100,8 +100,7 @@ pub(crate) fn slides_slowly(finished: &Finished<'_>) -> Option<PlausibilityWarni
     let slips_mm = finished.march.fields().sliding_distance_mm.iter();
     let mean_mm = slips_mm.copied().fold(0.0, f64::max);
     // A slow activity counts by itself: its wear would be that of the tolerance, however far the others slide.
-    let cycles = finished.cycles().filter(|cycle| cycle.name == "first");
-    let slow = cycles.filter_map(|cycle| {
+    let slow = finished.first_cycles().filter_map(|cycle| {
         let own = &finished.march.state().activities[cycle.activity];
         let path_mm = match test.activities.len() {
             1 => mean_mm,
@@ -376,8 +375,11 @@ pub(crate) fn lift_off(finished: &Finished<'_>) -> Option<PlausibilityWarning> {
 }
 
 fn lifted_percent(cycle: &SolvedCycle<'_>) -> f64 {
-    let rows = cycle.rows.iter();
-    let largest = rows.fold(0.0_f64, |most, row| most.max(row.axial_force_n));
+    let largest = cycle
+        .rows
+        .iter()
+        .map(|row| row.axial_force_n)
+        .fold(0.0, f64::max);
     cycle.percent_of_rows(|row| {
         let sides = &row.region_force_n[..KNEE.regions.len()];
         let least = sides.iter().copied().fold(f64::INFINITY, f64::min);

@@ -257,8 +257,7 @@ pub(crate) fn updates_overshoot(finished: &Finished<'_>) -> Option<PlausibilityW
         .into_iter()
         .find(|(percent, limit, ..)| percent > limit)?;
     let message = format!(
-        "the last step of {:.0} cycles {does} {percent:.0} % of {of}: such long steps overshoot, and the stated error may \
-         not show it",
+        "the last step of {:.0} cycles {does} {percent:.0} % of {of}: such long steps overshoot",
         step.interval
     );
     let advice = "Take more updates, or update = \"auto\".";
@@ -271,8 +270,8 @@ pub(crate) fn updates_too_few(finished: &Finished<'_>) -> Option<PlausibilityWar
     let error = finished.summary.error.as_ref()?;
     let percent = error.of(&MAX_DEPTH_MM).percent.updates?.abs();
     let message = format!(
-        "the estimated error of the deepest wear due to updates is {percent:.1} %; with such long steps, the stated error \
-             of mass and depth may be several times too small"
+        "the estimated error of the deepest wear due to updates is {percent:.1} %; with such long steps, the stated errors \
+             of mass and depth are uncertain themselves"
     );
     let advice = "Take more updates, or update = \"auto\".";
     let value = (percent, MAX_OF_UPDATES_PERCENT, "%");
@@ -293,7 +292,7 @@ pub(crate) fn added_inertia(finished: &Finished<'_>) -> Option<PlausibilityWarni
 
 pub(crate) fn cycles_not_repeating(finished: &Finished<'_>) -> Option<PlausibilityWarning> {
     let count = finished.summary[&CYCLES_NOT_REPEATING];
-    let message = format!("in {count} updates no cycle repeated within the tolerance");
+    let message = format!("no cycle repeated within the tolerance {count} times");
     let advice = "The motion still changes from cycle to cycle: use more cycles per update, or a machine with more \
                  damping or stiffer springs.";
     (count > 0.0).then(|| warning("cycles_not_repeating", (count, 0.0, ""), message, advice))

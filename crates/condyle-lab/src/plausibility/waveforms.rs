@@ -6,7 +6,7 @@ use condyle::machine::{
 };
 use condyle_results::{PlausibilityWarning, joint_range};
 
-use super::finished::{Finished, SolvedCycle, warning};
+use super::finished::{Finished, SolvedCycle, percent_of, warning};
 
 /// Smallest plausible ranges of prescribed motions; our choice: the smallest of a standard are 4 degrees, on a disc, and 3 mm, and in
 /// radians and m, those of a hip and a knee are 0.75 and 0.005.
@@ -20,6 +20,8 @@ const MAX_NOISE_PERCENT: f64 = 3.0;
 /// Reversals of a curve in a cycle beyond which it may be noisy: those of the eight harmonics of which motions and loads of joints
 /// consist. White noise reverses at two thirds of its samples.
 const MAX_REVERSALS: usize = 2 * 8;
+/// Knots from one reversal to the next from which a reversal is a stroke of the machine; the noise that matters has fewer.
+const KNOTS_OF_A_STROKE: usize = 6;
 /// Samples of a cycle at which a curve is examined for noise.
 const NOISE_SAMPLINGS: [usize; 5] = [40, 60, 100, 200, 500];
 /// Largest error of the path of a motion or the peak of a load by the ends of increments, %; our choice: the preset waveforms have at
@@ -85,7 +87,7 @@ fn small_motion(
     (range < least).then(|| warning("motion_small", value, message, advice))
 }
 
-/// Warns of noise in a prescribed motion, or in a load that moves a joint: each joint once. That of the pressing load moves little.
+/// Warns of noise in a prescribed motion, or in a load that moves a joint: each joint once. Noise of the pressing load hardly moves the joint.
 pub(crate) fn noise(finished: &Finished<'_>) -> Vec<PlausibilityWarning> {
     of_each_joint(finished, |index, cycle| {
         let machine = finished.machine(&cycle);
@@ -111,46 +113,53 @@ pub(crate) fn noise(finished: &Finished<'_>) -> Vec<PlausibilityWarning> {
 /// Returns the largest excess of the path of a waveform over that of the smoothed waveform, %, at several samplings of the cycle; 0 if
 /// it reverses seldom.
 ///
-/// Noise has the spacing of the samples of its file, which is seldom that of the knots or the increments.
+/// Noise has the spacing of the samples of its file, which is seldom that of the increments.
 fn noise_percent(waveform: &Waveform) -> f64 {
     let [low, high] = waveform.range();
-    // A constant curve varies by round-off.
-    if high - low <= 1e-9 * high.max(-low) {
-        return 0.0;
-    }
     let knots: Vec<f64> = waveform.knots().iter().map(|knot| knot.value).collect();
-    // A spline rings at a step of its knots, which are not noisy.
-    if reversals(&knots) <= MAX_REVERSALS {
+    // A constant curve varies by round-off, a spline rings at a step of its knots, and strokes with several knots each are none.
+    let is_even = high - low <= 1e-9 * high.max(-low);
+    if is_even || reversals(&knots) <= MAX_REVERSALS.max(knots.len() / KNOTS_OF_A_STROKE) {
         return 0.0;
     }
     let excess = NOISE_SAMPLINGS.map(|count| {
         let values: Vec<f64> = sampled(waveform, count).collect();
-        let at = |place: usize| values[place % count];
         // Smoothing shortens the path of a curve with corners, too, which has few.
-        if reversals(&values) <= MAX_REVERSALS {
-            return 0.0;
+        match reversals(&values) > MAX_REVERSALS {
+            true => excess_percent(&values[..count]),
+            false => 0.0,
         }
-        // The smoothing polynomial of second degree by Savitzky and Golay: it keeps curves, and removes most of the noise.
-        const WEIGHTS: [f64; 7] = [-2.0, 3.0, 6.0, 7.0, 6.0, 3.0, -2.0];
-        let smooth = |place: usize| {
-            let weighted = WEIGHTS.iter().enumerate();
-            let sum: f64 = weighted
-                .map(|(next, weight)| weight * at(place + next))
-                .sum();
-            sum / WEIGHTS.iter().sum::<f64>()
-        };
-        let path = |value: &dyn Fn(usize) -> f64| -> f64 {
-            let steps = (0..count).map(|place| (value(place + 1) - value(place)).abs());
-            steps.sum()
-        };
-        100.0 * (path(&at) / path(&smooth).max(f64::MIN_POSITIVE) - 1.0)
     });
     excess.into_iter().fold(0.0, f64::max)
 }
 
+/// Returns the number of times that the rise of some values becomes a fall, or a fall a rise; equal values are neither.
 fn reversals(values: &[f64]) -> usize {
-    let turns = |three: &&[f64]| (three[1] - three[0]) * (three[2] - three[1]) < 0.0;
-    values.windows(3).filter(turns).count()
+    let steps = values.windows(2).map(|two| two[1] - two[0]);
+    let rises: Vec<bool> = steps
+        .filter(|step| *step != 0.0)
+        .map(|step| step > 0.0)
+        .collect();
+    rises.windows(2).filter(|two| two[0] != two[1]).count()
+}
+
+/// Returns the excess of the path of periodic values over that of the smoothed values, %.
+fn excess_percent(values: &[f64]) -> f64 {
+    // The smoothing polynomial of second degree by Savitzky and Golay: it keeps curves, and removes most of the noise.
+    const WEIGHTS: [f64; 7] = [-2.0, 3.0, 6.0, 7.0, 6.0, 3.0, -2.0];
+    let at = |place: usize| values[place % values.len()];
+    let smooth = |place: usize| {
+        let weighted = WEIGHTS.iter().enumerate();
+        let sum: f64 = weighted
+            .map(|(next, weight)| weight * at(place + next))
+            .sum();
+        sum / WEIGHTS.iter().sum::<f64>()
+    };
+    let path = |value: &dyn Fn(usize) -> f64| -> f64 {
+        let steps = (0..values.len()).map(|place| (value(place + 1) - value(place)).abs());
+        steps.sum()
+    };
+    100.0 * (path(&at) / path(&smooth).max(f64::MIN_POSITIVE) - 1.0)
 }
 
 /// Returns the first warning of a check of the waveform of each joint.
@@ -159,8 +168,11 @@ fn of_each_joint(
     check: impl Fn(JointIndex, SolvedCycle<'_>) -> Option<PlausibilityWarning>,
 ) -> Vec<PlausibilityWarning> {
     // The last cycle has the same waveforms.
-    let first = || finished.cycles().filter(|cycle| cycle.name == "first");
-    let of_joint = |index| first().find_map(|cycle| check(index, cycle));
+    let of_joint = |index| {
+        finished
+            .first_cycles()
+            .find_map(|cycle| check(index, cycle))
+    };
     JointIndex::ALL.into_iter().filter_map(of_joint).collect()
 }
 
@@ -218,10 +230,7 @@ fn overshoot_percent(waveform: &Waveform) -> f64 {
     }
     let knots = waveform.knots().iter().map(|knot| knot.value);
     let ([low, high], [lowest, highest]) = (extremes(knots), waveform.range());
-    if low == high {
-        return 0.0;
-    }
-    100.0 * (low - lowest).max(highest - high) / (high - low)
+    percent_of((low - lowest).max(highest - high), high - low)
 }
 
 /// Instants of each increment at which a waveform is compared with its values at the ends of increments.
@@ -254,11 +263,7 @@ fn missed_path(waveform: &Waveform, kind: JointKind, increments: usize) -> f64 {
 fn missed_peak(waveform: &Waveform, increments: usize) -> f64 {
     let [low, high] = waveform.range();
     let [low_here, high_here] = extremes(sampled(waveform, increments));
-    let largest = high.max(-low);
-    if largest == 0.0 {
-        return 0.0;
-    }
-    100.0 * (low_here - low).max(high - high_here) / largest
+    percent_of((low_here - low).max(high - high_here), high.max(-low))
 }
 
 #[cfg(test)]
@@ -329,6 +334,22 @@ mod tests {
             assert_eq!(motion(count, 0.0), 0.0);
             let percent = motion(count, 0.4);
             assert!(percent > MAX_NOISE_PERCENT, "{count} samples: {percent} %");
+        }
+        let curve = |count: usize, value: &dyn Fn(usize) -> f64| {
+            let percent = |place| 100.0 * place as f64 / count as f64;
+            let knot = |place| Knot {
+                percent: percent(place),
+                value: value(place),
+            };
+            noise_percent(
+                &Waveform::new((0..count).map(knot).collect(), Interpolation::Spline).unwrap(),
+            )
+        };
+        // Samples that are held for two, and a machine of many strokes.
+        assert!(curve(200, &|place| noise(place / 2)) > MAX_NOISE_PERCENT);
+        for strokes in 9..=12 {
+            let turn = std::f64::consts::TAU * f64::from(strokes) / 200.0;
+            assert_eq!(curve(200, &|place| (turn * place as f64).sin()), 0.0);
         }
     }
 }

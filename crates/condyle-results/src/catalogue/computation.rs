@@ -21,7 +21,7 @@ scalars! { "Computation";
         .continued();
 
     /// Updates, and the final cycle, whose motion did not become periodic within the tolerance.
-    CYCLES_NOT_REPEATING = Scalar::new("cycles_not_repeating", "updates that do not repeat", 0, |run| run.state().counters.not_repeating as f64)
+    CYCLES_NOT_REPEATING = Scalar::new("cycles_not_repeating", "updates and final cycle that do not repeat", 0, |run| run.state().counters.not_repeating as f64)
         .count()
         .listed();
 

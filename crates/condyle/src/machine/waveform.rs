@@ -58,7 +58,11 @@ pub struct Waveform {
     bends: Vec<f64>,
     /// Advance of a constant during a cycle: whole turns of a rotation.
     turn: f64,
+    /// The lowest and the highest value; a spline that leaves this range is cut off.
+    limits: [f64; 2],
 }
+
+const NO_LIMITS: [f64; 2] = [f64::NEG_INFINITY, f64::INFINITY];
 
 /// Number of samples from which their slopes show whether the seam is a jump; our choice.
 const MIN_SAMPLES: usize = 20;
@@ -83,6 +87,7 @@ impl Waveform {
             interpolation: Interpolation::HalfCosine,
             bends: Vec::new(),
             turn: 0.0,
+            limits: NO_LIMITS,
         }
     }
 
@@ -152,6 +157,7 @@ impl Waveform {
             interpolation,
             bends,
             turn: 0.0,
+            limits: NO_LIMITS,
         })
     }
 
@@ -170,12 +176,24 @@ impl Waveform {
         self.knots.iter_mut().for_each(|knot| knot.value *= factor);
         self.bends.iter_mut().for_each(|bend| *bend *= factor);
         self.turn *= factor;
+        let [low, high] = self.limits;
+        // A negative factor reverses their order; one of 0 would make infinite limits NaN.
+        if factor != 0.0 {
+            self.limits = extremes([low * factor, high * factor]);
+        }
+        self
+    }
+
+    /// Cuts the waveform off at the lowest and the highest value.
+    pub fn limited(mut self, limits: [f64; 2]) -> Self {
+        self.limits = limits;
         self
     }
 
     /// Adds `offset` to the waveform.
     pub fn shifted(mut self, offset: f64) -> Self {
         self.knots.iter_mut().for_each(|knot| knot.value += offset);
+        self.limits = self.limits.map(|limit| limit + offset);
         self
     }
 
@@ -207,13 +225,19 @@ impl Waveform {
                 (value, slope)
             }
         };
+        let [low, high] = self.limits;
+        if value < low || value > high {
+            return (value.clamp(low, high), 0.0);
+        }
         (value, slope * 100.0 / span)
     }
 
     /// Returns the lowest and the highest of the values at the knots and at a thousand instants; a spline can leave the range of its knots.
     pub fn range(&self) -> [f64; 2] {
         let between = (0..1000).map(|place| self.at(f64::from(place) / 1000.0).0);
-        extremes(self.knots.iter().map(|knot| knot.value).chain(between))
+        let [low, high] = self.limits;
+        let at_knots = self.knots.iter().map(|knot| knot.value.clamp(low, high));
+        extremes(at_knots.chain(between))
     }
 }
 

@@ -62,8 +62,7 @@ impl Case {
                 self.built_insert(&self.insert, warnings)
             })?;
         let activities = self.built_activities(insert.dish_low_point_mm());
-        self.check_flexion(&activities)?;
-        let flexion_rad = start_flexion_rad(&activities[0].machine);
+        let flexion_rad = self.checked_start_flexion_rad(&activities)?;
         let (_, side, limits) = self.insert_inputs();
         let joint = activities[0].machine.mechanism.tests;
         let inputs = (self.femur.clone(), side, limits, (joint, flexion_rad));
@@ -150,8 +149,9 @@ impl Case {
         Ok(Arc::new(law))
     }
 
-    /// Rejects flexion in which the back of the insert would reach the end of the generic femur.
-    fn check_flexion(&self, activities: &[Activity]) -> Result<(), BuildError> {
+    /// Returns the flexion in which the counterface settles. Rejects flexion in which the back of the insert would reach the end of the
+    /// generic femur.
+    fn checked_start_flexion_rad(&self, activities: &[Activity]) -> Result<f64, BuildError> {
         let is_generic = matches!(self.femur.shape, FemurShape::Generic(_));
         let flexion = |activity: &Activity| match &activity.machine.joint(FLEXION).drive {
             Drive::Prescribed(waveform) => waveform.range()[1].to_degrees(),
@@ -159,10 +159,10 @@ impl Case {
         };
         let most = activities.iter().map(flexion).fold(0.0, f64::max);
         if !is_generic || !self.tests_knee() || most <= MAX_FLEXION_OF_GENERIC_DEG {
-            return Ok(());
+            return Ok(start_flexion_rad(&activities[0].machine));
         }
         let message = format!(
-            "[femur] shape = \"generic\" ends behind at a flexion of {MAX_FLEXION_OF_GENERIC_DEG} degrees, and flexion reaches {most:.0} degrees; \
+            "[femur] shape = \"generic\" has no articulating surface beyond {MAX_FLEXION_OF_GENERIC_DEG} degrees of flexion, and flexion reaches {most:.0} degrees; \
              take a femur from a file, or less flexion"
         );
         Err(BuildError::conflict("femur", &["shape"], message))

@@ -293,8 +293,7 @@ fn faces_up(mesh: &TriangleMesh) -> bool {
         (b - a).cross(&(c - a)).y
     };
     // An open surface has no inside; areas seen from above weigh a rim that curls over little.
-    let sum: f64 = (0..mesh.triangles.len()).map(upward).sum();
-    sum > 0.0
+    (0..mesh.triangles.len()).map(upward).sum::<f64>() > 0.0
 }
 
 /// A rigid motion, p' = R p + t.

@@ -55,7 +55,7 @@ fn the_generic_femur_ends_behind() {
         )
     };
     assert!(built(&flexed(134), Path::new("")).is_ok());
-    let why = "ends behind at a flexion of 135 degrees, and flexion reaches 148 degrees";
+    let why = "beyond 135 degrees of flexion, and flexion reaches 148 degrees";
     let refusal = refusal(&flexed(148), Path::new(""));
     assert!(refusal.contains(why), "{refusal}");
 }

@@ -510,7 +510,7 @@ fn waveform_with_a_gap_a_nan_or_a_step_is_refused_at_its_point() {
         &wave("knots_deg = [[0.0, 1.0], [100.0, 2.0]]"),
         &[
             "jumps at the end of the cycle: 1 at 0 % but 2 at 100 %",
-            "help: a cycle ends where it begins: append the movement back",
+            "help: append the movement back to its start",
         ],
     );
     assert_shows(&wave("knots_deg = []"), &["the waveform has no points"]);

@@ -214,12 +214,12 @@ fn csv_with_a_gap_or_a_step_is_refused_at_its_row() {
         &[
             "jumps at the end of the cycle",
             "12 | 100,2",
-            "append the movement back",
+            "append the movement back to its start",
         ],
     );
     let shown = refused(&drifting, "remove_drift = true\n");
-    let why = "its end is 2 from its start, more than 20 % of its";
-    assert_shows(&shown, &[why, "append the movement back"]);
+    let why = "its end is 2.000 from its start, more than 20 % of";
+    assert_shows(&shown, &[why, "append the movement back to its start"]);
     let slight =
         |percent: f64| 10.0 * (0.02 * std::f64::consts::PI * percent).sin() + percent / 50.0;
     let drifting = format!("percent,a_deg\n{}", samples(slight));

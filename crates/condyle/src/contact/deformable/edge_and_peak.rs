@@ -70,7 +70,8 @@ impl<'a> NodePressures<'a> {
         let at = |node: u32| self.surface.positions[node as usize];
         let fall = outside().map(|other| -slope.dot(&(at(other) - at(node))));
         fall.reduce(f64::max).map_or(1.0, |fall| {
-            let ratio = (own / (own + fall.max(0.0))).sqrt();
+            // The square of a pressure near 0 can be 0.
+            let ratio = (own / (own + fall.max(0.0)).max(f64::MIN_POSITIVE)).sqrt();
             // The share begins half a step before the node; no contact counts farther than a step beyond it. With the ratio
             // as the least part, the pressure on the part in contact is at most that of the next node inside.
             (0.5 + STEPS_BY_RATIO * ratio - STEPS_LESS).clamp(ratio, 1.5)
