@@ -3,8 +3,13 @@
 use condyle_results::catalogue;
 use std::fs;
 use std::ops::ControlFlow;
+use std::sync::{Arc, Mutex};
 
-use condyle::{evolve::March, geometry::TriangleMesh};
+use condyle::{
+    evolve::March,
+    geometry::TriangleMesh,
+    wear::{MeanCycle, NamedLaw, NodeWear, WearLaw},
+};
 use condyle_case::{cache::Cache, case::Case};
 use condyle_lab::{InMemory, Outcome, RunEvent, RunKeeper, RunOptions, run_case, run_in_memory};
 use condyle_results::{Summary, wear_csv};
@@ -96,4 +101,43 @@ fn a_run_in_memory_stops_where_somebody_asks_to() {
     let (outcome, counted) = in_memory(&mut until_second);
     assert!(matches!(outcome, Outcome::Interrupted(reached) if reached.updates == 2));
     assert_eq!(counted.updated, 2);
+}
+
+/// Archard's law, which keeps the highest pressure that it is given, MPa.
+#[derive(Debug, Default)]
+struct HighestPressure(Mutex<f64>);
+
+impl WearLaw for HighestPressure {
+    fn wear(&self, cycle: &MeanCycle<'_>) -> NodeWear {
+        let pressures = cycle.moments().map(|(_, moment)| moment.pressure_mpa);
+        let highest = pressures.fold(0.0, f64::max);
+        let mut so_far = self.0.lock().expect("no thread has panicked");
+        *so_far = so_far.max(highest);
+        NodeWear::of_depth(1e-9 * cycle.pressure_slip_mpa_mm)
+    }
+}
+
+#[test]
+fn an_own_law_is_given_no_pressure_above_the_peak_of_the_contact() {
+    let text = format!("{CASE}[contact]\nmodel = \"deformable\"\n[accuracy]\nestimate = false\n");
+    let case = Case::parse(&text, "case", ".".as_ref()).expect("a good case");
+    let law = Arc::new(HighestPressure::default());
+    let how = InMemory {
+        threads: 1,
+        cache: Cache::off(),
+        wear_law: Some(NamedLaw {
+            word: "own",
+            law: Arc::clone(&law) as Arc<dyn WearLaw>,
+        }),
+    };
+    let mut go_on = |_: RunEvent<'_>| ControlFlow::Continue(());
+    let outcome = run_in_memory(&case, &how, &mut Counted::default(), &mut go_on);
+    let Ok(Outcome::Done(summary)) = outcome else {
+        panic!("{outcome:?}");
+    };
+    let (highest_mpa, peak_mpa) = (
+        *law.0.lock().unwrap(),
+        summary[&catalogue::PEAK_PRESSURE_MPA],
+    );
+    assert!(highest_mpa < 1.05 * peak_mpa, "{highest_mpa} {peak_mpa}");
 }

@@ -70,12 +70,21 @@ impl<'a> NodePressures<'a> {
         let at = |node: u32| self.surface.positions[node as usize];
         let fall = outside().map(|other| -slope.dot(&(at(other) - at(node))));
         fall.reduce(f64::max).map_or(1.0, |fall| {
-            // The square of a pressure near 0 can be 0.
-            let ratio = (own / (own + fall.max(0.0)).max(f64::MIN_POSITIVE)).sqrt();
-            // The share begins half a step before the node; no contact counts farther than a step beyond it. With the ratio
-            // as the least part, the pressure on the part in contact is at most that of the next node inside.
-            (0.5 + STEPS_BY_RATIO * ratio - STEPS_LESS).clamp(ratio, 1.5)
+            let ratio = (own / (own + fall.max(0.0))).sqrt();
+            // The share begins half a step before the node; no contact counts farther than a step beyond it.
+            (0.5 + STEPS_BY_RATIO * ratio - STEPS_LESS).clamp(self.least_part(node), 1.5)
         })
+    }
+
+    /// Returns the least part of a node's share in contact: with it, the pressure there is the highest around the node.
+    fn least_part(&self, node: u32) -> f64 {
+        let own = self.pressure2[node as usize];
+        let around = self.faces.of(node as usize).iter().flatten();
+        let highest = around
+            .map(|&other| self.pressure2[other as usize])
+            .fold(own, f64::max);
+        // The square of a pressure near 0 can be 0.
+        (own / highest.max(f64::MIN_POSITIVE)).sqrt()
     }
 
     /// Returns the slope of the square of the pressure at a node, a least-squares fit to the nodes in contact around it; none
