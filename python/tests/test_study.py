@@ -224,7 +224,9 @@ def test_a_waveform_that_a_case_cannot_process_is_said_to_be_so() -> None:
 
 
 def test_a_low_pass_is_known_of_every_waveform() -> None:
-    for path in sorted((ROOT / "cases").glob("*.toml")):
+    # The bodies of some cases are not part of the repository.
+    own = [path for path in sorted((ROOT / "cases").glob("*.toml")) if "shared/data" not in path.read_text()]
+    for path in own:
         case = condyle.Case.read(path)
         as_run = condyle.Case.from_text(case.text).replace({"contact.friction": 0.05})
         activities = [f"activity.{one['name']}" for one in case.to_dict().get("activity", [])]
