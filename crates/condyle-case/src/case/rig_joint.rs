@@ -434,6 +434,9 @@ impl RigJoint {
                 Drive::Prescribed(Waveform::turning(0.0, turns * std::f64::consts::TAU))
             }
             (DriveWord::Prescribed, None) => Drive::Prescribed(waveform()),
+            (DriveWord::Loaded, _) if matches!(self.axis(), Axis::Along([0.0, _, 0.0])) => {
+                Drive::Loaded(waveform::cut_off_at_zero(waveform()))
+            }
             (DriveWord::Loaded, _) => Drive::Loaded(waveform()),
         }
     }

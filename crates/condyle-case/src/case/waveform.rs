@@ -503,6 +503,17 @@ fn cut_off(waveform: Waveform, channel: &Channel) -> Waveform {
     }
 }
 
+/// Cuts a load that presses the bodies together off at zero if it is roughly on one side of it, as [`cut_off`].
+pub(crate) fn cut_off_at_zero(waveform: Waveform) -> Waveform {
+    let [low, high] = waveform.range();
+    let rough = ROUGHLY * high.max(-low);
+    match (low < 0.0 && low >= -rough, high > 0.0 && high <= rough) {
+        (true, _) => waveform.limited([0.0, f64::INFINITY]),
+        (_, true) => waveform.limited([f64::NEG_INFINITY, 0.0]),
+        _ => waveform,
+    }
+}
+
 /// Returns the fault of values outside the range between the points, which a spline or a low pass makes.
 fn beyond_points(channel: &Channel, waveform: &Waveform) -> Option<Fault> {
     let percents = (0..1000).map(|place| f64::from(place) / 10.0);

@@ -231,16 +231,18 @@ pub(crate) fn impact(finished: &Finished<'_>) -> Option<PlausibilityWarning> {
     let hits = finished.cycles().filter_map(|cycle| {
         let machine = finished.machine(&cycle);
         let joint = machine.pressing_joint()?;
-        let balanced = is_balanced_by_contact(machine, joint);
         let Drive::Loaded(waveform) = &machine.joint(joint).drive else {
             return None;
         };
+        if !is_balanced_by_contact(machine, joint) {
+            return None;
+        }
         let loads = || cycle.rows.iter().map(|row| load(waveform, row).abs());
         let excess = cycle.rows.iter().zip(loads());
         let excess = excess.map(|(row, load_n)| (row.axial_force_n - load_n, row));
         let (excess_n, row) = excess.max_by(|a, b| a.0.total_cmp(&b.0))?;
         let percent = 100.0 * excess_n / loads().fold(f64::MIN_POSITIVE, f64::max);
-        balanced.then_some((percent, row, cycle))
+        Some((percent, row, cycle))
     });
     let (percent, row, cycle) = hits.max_by(|a, b| a.0.total_cmp(&b.0))?;
     let message = format!(

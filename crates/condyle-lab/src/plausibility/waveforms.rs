@@ -1,7 +1,7 @@
 //! Checks of the curves that drive the machine: whether they are plausible motions, and whether increments and splines follow them.
 
 use condyle::machine::{
-    Axis, Drive, Interpolation, JointIndex, JointKind, TestedJoint, Waveform, extremes,
+    Axis, Drive, Interpolation, JointIndex, JointKind, Machine, TestedJoint, Waveform, extremes,
     knee::{KNEE, VV},
 };
 use condyle_results::{PlausibilityWarning, joint_range};
@@ -34,14 +34,8 @@ const MAX_OVERSHOOT_PERCENT: f64 = 5.0;
 /// Warns of prescribed motions so small that their unit is probably not degrees or mm: each once.
 pub(crate) fn motions(finished: &Finished<'_>) -> Vec<PlausibilityWarning> {
     let small = |index| {
-        let is_moved = |cycle: &SolvedCycle<'_>| {
-            let machine = finished.machine(cycle);
-            let is_prescribed = matches!(machine.joint(index).drive, Drive::Prescribed(_));
-            // A constant curve varies by round-off.
-            is_prescribed && joint_range(cycle.rows, machine.mechanism, index) > 1e-6
-        };
-        let mut moved = finished.cycles().filter(is_moved);
-        moved.find_map(|cycle| small_motion(finished, &cycle, index))
+        let mut cycles = finished.cycles();
+        cycles.find_map(|cycle| small_motion(finished, &cycle, index))
     };
     JointIndex::ALL.into_iter().filter_map(small).collect()
 }
@@ -56,7 +50,10 @@ fn small_motion(
     // Heights and varus are small in any unit.
     let is_along_y = matches!(description.axis, Axis::Along([0.0, _, 0.0]));
     let is_varus = *machine.mechanism == KNEE && index == VV;
-    if is_along_y || is_varus {
+    let is_prescribed = matches!(machine.joint(index).drive, Drive::Prescribed(_));
+    let range = joint_range(cycle.rows, machine.mechanism, index);
+    // A constant curve varies by round-off.
+    if is_along_y || is_varus || !is_prescribed || range <= 1e-6 {
         return None;
     }
     let is_ap_of_joint = matches!(description.axis, Axis::Along([_, 0.0, 0.0]))
@@ -77,7 +74,6 @@ fn small_motion(
             "Write translations in mm: a waveform in m needs scale = 1000, and one in cm scale = 10.",
         ),
     };
-    let range = joint_range(cycle.rows, machine.mechanism, index);
     let of_activity = finished.activity_in_words(cycle);
     let message = format!(
         "the prescribed motion {} is {range:.2} {unit} in the {} cycle{of_activity}; that of a machine is at least {least} {unit}",
@@ -89,8 +85,12 @@ fn small_motion(
 
 /// Warns of noise in a prescribed motion, or in a load that moves a joint: each joint once. Noise of the pressing load hardly moves the joint.
 pub(crate) fn noise(finished: &Finished<'_>) -> Vec<PlausibilityWarning> {
-    of_each_joint(finished, |index, cycle| {
-        let machine = finished.machine(&cycle);
+    let limit = Limit {
+        check: "motion_noisy",
+        most_percent: MAX_NOISE_PERCENT,
+        advice: "Filter it: low_pass_harmonics = 8 in the table of its waveform.",
+    };
+    of_each_joint(finished, limit, |machine, index, _, joint| {
         let (kind, waveform) = match &machine.joint(index).drive {
             Drive::Prescribed(waveform) => ("prescribed motion", waveform),
             Drive::Loaded(waveform) if machine.pressing_joint() != Some(index) => {
@@ -100,13 +100,9 @@ pub(crate) fn noise(finished: &Finished<'_>) -> Vec<PlausibilityWarning> {
         };
         let percent = noise_percent(waveform);
         let message = format!(
-            "the {kind} of `{}`{} is noisy: its curve is {percent:.0} % longer than the smoothed curve, and noise wears",
-            machine.mechanism.joint(index).symbol,
-            finished.activity_in_words(&cycle)
+            "the {kind} of {joint} is noisy: its curve is {percent:.0} % longer than the smoothed curve, and noise wears"
         );
-        let advice = "Filter it: low_pass_harmonics = 8 in the table of its waveform.";
-        let value = (percent, MAX_NOISE_PERCENT, "%");
-        (percent > MAX_NOISE_PERCENT).then(|| warning("motion_noisy", value, message, advice))
+        Some((percent, message))
     })
 }
 
@@ -162,16 +158,31 @@ fn excess_percent(values: &[f64]) -> f64 {
     100.0 * (path(&at) / path(&smooth).max(f64::MIN_POSITIVE) - 1.0)
 }
 
-/// Returns the first warning of a check of the waveform of each joint.
+/// A check of waveforms, its limit, and what to do beyond it.
+struct Limit {
+    check: &'static str,
+    most_percent: f64,
+    advice: &'static str,
+}
+
+/// Returns the first warning of each joint from its machine, its index, the increments of the cycle and its name in words.
 fn of_each_joint(
     finished: &Finished<'_>,
-    check: impl Fn(JointIndex, SolvedCycle<'_>) -> Option<PlausibilityWarning>,
+    limit: Limit,
+    percent_and_message: impl Fn(&Machine, JointIndex, usize, &str) -> Option<(f64, String)>,
 ) -> Vec<PlausibilityWarning> {
+    let of_cycle = |index: JointIndex, cycle: SolvedCycle<'_>| {
+        let machine = finished.machine(&cycle);
+        let symbol = machine.mechanism.joint(index).symbol;
+        let joint = format!("`{symbol}`{}", finished.activity_in_words(&cycle));
+        let (percent, message) = percent_and_message(machine, index, cycle.rows.len(), &joint)?;
+        let value = (percent, limit.most_percent, "%");
+        (percent > limit.most_percent).then(|| warning(limit.check, value, message, limit.advice))
+    };
     // The last cycle has the same waveforms.
     let of_joint = |index| {
-        finished
-            .first_cycles()
-            .find_map(|cycle| check(index, cycle))
+        let mut cycles = finished.first_cycles();
+        cycles.find_map(|cycle| of_cycle(index, cycle))
     };
     JointIndex::ALL.into_iter().filter_map(of_joint).collect()
 }
@@ -180,43 +191,41 @@ fn of_each_joint(
 ///
 /// Slip is the rate at the end of an increment times its duration, so a jump between two ends has no slip, and one at an end too much.
 pub(crate) fn coarse_increments(finished: &Finished<'_>) -> Vec<PlausibilityWarning> {
-    of_each_joint(finished, |index, cycle| {
-        let machine = finished.machine(&cycle);
-        let (kind, count) = (machine.mechanism.joint(index).kind(), cycle.rows.len());
+    let limit = Limit {
+        check: "increments_coarse",
+        most_percent: MAX_MISSED_PERCENT,
+        advice: "Use more increments, interpolation = \"spline\" for samples, or a waveform whose jumps take several increments.",
+    };
+    of_each_joint(finished, limit, |machine, index, count, joint| {
+        let kind = machine.mechanism.joint(index).kind();
         let (of, percent) = match &machine.joint(index).drive {
             Drive::Locked(_) => return None,
             Drive::Prescribed(waveform) => ("path", missed_path(waveform, kind, count)),
             Drive::Loaded(waveform) => ("peak", missed_peak(waveform, count)),
         };
-        let message = format!(
-            "the increments resolve the {of} of `{}`{} with an error of {percent:.1} %",
-            machine.mechanism.joint(index).symbol,
-            finished.activity_in_words(&cycle)
-        );
-        let advice = "Use more increments, interpolation = \"spline\" for samples, or a waveform whose jumps take several increments.";
-        let value = (percent, MAX_MISSED_PERCENT, "%");
-        (percent > MAX_MISSED_PERCENT).then(|| warning("increments_coarse", value, message, advice))
+        let message =
+            format!("the increments resolve the {of} of {joint} with an error of {percent:.1} %");
+        Some((percent, message))
     })
 }
 
 /// Warns of a spline that leaves the range of its samples, as it does at a step: each joint once.
 pub(crate) fn overshoots(finished: &Finished<'_>) -> Vec<PlausibilityWarning> {
-    of_each_joint(finished, |index, cycle| {
-        let machine = finished.machine(&cycle);
+    let limit = Limit {
+        check: "waveform_overshoots",
+        most_percent: MAX_OVERSHOOT_PERCENT,
+        advice: "Write interpolation = \"half-cosine\" in the table of its waveform, or give more samples where it changes fast.",
+    };
+    of_each_joint(finished, limit, |machine, index, _, joint| {
         let (Drive::Prescribed(waveform) | Drive::Loaded(waveform)) = &machine.joint(index).drive
         else {
             return None;
         };
         let percent = overshoot_percent(waveform);
         let message = format!(
-            "the curve of `{}`{} leaves the range of its samples by {percent:.0} % of it: a spline overshoots at steps",
-            machine.mechanism.joint(index).symbol,
-            finished.activity_in_words(&cycle)
+            "the curve of {joint} leaves the range of its samples by {percent:.0} % of it: a spline overshoots at steps"
         );
-        let advice = "Write interpolation = \"half-cosine\" in the table of its waveform, or give more samples where it changes fast.";
-        let value = (percent, MAX_OVERSHOOT_PERCENT, "%");
-        (percent > MAX_OVERSHOOT_PERCENT)
-            .then(|| warning("waveform_overshoots", value, message, advice))
+        Some((percent, message))
     })
 }
 

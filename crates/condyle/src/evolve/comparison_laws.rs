@@ -129,17 +129,19 @@ pub(super) fn wear_of_each(law: &dyn WearLaw, interval: &SolvedStep<'_>) -> Vec<
     if interval.shared.len() < 2 {
         return Vec::new();
     }
-    let each = interval.shared.iter();
-    each.map(|activity| ActivityWear {
-        volume_mm3: part_mm3(interval, *activity),
-        alone_mm3: alone_mm3(law, interval, *activity),
-        longest_path_mm: mean_cycles(&[(1.0, activity.1)], interval.surface)
-            .iter()
-            .map(|mean| mean.pressed_distance_mm)
-            .fold(0.0, f64::max),
-        ..ActivityWear::default()
-    })
-    .collect()
+    let of_one = |&(share, history): &SharedCycle<'_>| {
+        // A share of 1: the law sees the cross-shear of this activity alone.
+        let shared = [(1.0, history)];
+        let mean = mean_cycles(&shared, interval.surface);
+        let paths_mm = mean.iter().map(|mean| mean.pressed_distance_mm);
+        ActivityWear {
+            volume_mm3: part_mm3(interval, (share, history)),
+            alone_mm3: share * alone_mm3(law, interval, &mean),
+            longest_path_mm: paths_mm.fold(0.0, f64::max),
+            ..ActivityWear::default()
+        }
+    };
+    interval.shared.iter().map(of_one).collect()
 }
 
 /// Returns the activity's part of the volume that the step takes, mm3.
@@ -154,20 +156,15 @@ fn part_mm3(interval: &SolvedStep<'_>, (share, history): SharedCycle<'_>) -> f64
     volume_mm3(&interval.rates.area_mm2, &depth_mm)
 }
 
-/// Returns the volume that the activity's cycles would wear alone, mm3: their rate times the number of cycles by
-/// which the step extrapolates the rate of all activities.
-fn alone_mm3(
-    law: &dyn WearLaw,
-    interval: &SolvedStep<'_>,
-    (share, history): SharedCycle<'_>,
-) -> f64 {
-    // A share of 1: the law sees the cross-shear of this activity alone.
-    let worn = worn(law, &mean_cycles(&[(1.0, history)], interval.surface));
+/// Returns the volume that these cycles would wear alone, mm3: their rate times the number of cycles by which the step
+/// extrapolates the rate of all activities.
+fn alone_mm3(law: &dyn WearLaw, interval: &SolvedStep<'_>, mean: &[MeanCycle<'_>]) -> f64 {
+    let worn = worn(law, mean);
     let depth_mm: Vec<f64> = worn.iter().map(|worn| worn.depth_mm).collect();
     let area_mm2 = &interval.rates.area_mm2;
     let cycles = volume_mm3(area_mm2, &interval.step.depth_mm)
         / interval.rates.volume_per_cycle_mm3().max(f64::MIN_POSITIVE);
-    share * volume_mm3(area_mm2, &depth_mm) * cycles
+    volume_mm3(area_mm2, &depth_mm) * cycles
 }
 
 impl ActivityWear {

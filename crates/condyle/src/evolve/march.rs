@@ -277,9 +277,7 @@ impl March {
         // The wear of one cycle, and the interval over which it can be extrapolated.
         let shared = solved.with_shares(&self.test.activities);
         let mean = mean_cycles(&shared, &solved.surface);
-        let worn = self.worn(&mean, &solved.surface)?;
-        let contact = self.test.contact.as_ref();
-        let rates = Rates::new(contact, &self.insert, &solved.surface, &mean, &worn);
+        let (worn, rates) = self.worn(&mean, &solved.surface)?;
         let start = self.step_start(&rates);
         let step = next_step(start, &self.test.schedule);
         let settled_error = self.state.settled_error.after(start);
@@ -329,14 +327,7 @@ impl March {
         };
         let shared = solved.with_shares(&self.test.activities);
         let mean = mean_cycles(&shared, &solved.surface);
-        let worn = self.worn(&mean, &solved.surface)?;
-        let rates = Rates::new(
-            self.test.contact.as_ref(),
-            &self.insert,
-            &solved.surface,
-            &mean,
-            &worn,
-        );
+        let (_, rates) = self.worn(&mean, &solved.surface)?;
         let surface = &solved.surface;
         let fields = NodeFields::new(&mean, surface, &rates, &self.insert, &self.state.depths);
         self.state.fields = Some(fields);
@@ -347,7 +338,7 @@ impl March {
         Ok(ControlFlow::Continue(()))
     }
 
-    /// Returns the wear per mean cycle at every node.
+    /// Returns the wear per mean cycle at every node, and its rates.
     ///
     /// # Errors
     /// A law that adds material, or gives no number.
@@ -355,17 +346,19 @@ impl March {
         &self,
         mean: &[MeanCycle<'_>],
         surface: &ArticulatingSurface,
-    ) -> Result<Vec<NodeWear>, MarchError> {
+    ) -> Result<(Vec<NodeWear>, Rates), MarchError> {
         let worn = worn(self.test.wear.as_ref(), mean);
         let is_valid = |depth_mm: f64| depth_mm.is_finite() && depth_mm >= 0.0;
-        match worn.iter().position(|worn| !is_valid(worn.depth_mm)) {
-            Some(node) => Err(MarchError::InvalidDepth {
+        if let Some(node) = worn.iter().position(|worn| !is_valid(worn.depth_mm)) {
+            return Err(MarchError::InvalidDepth {
                 update: self.update_in_progress(),
                 place_mm: surface.positions[node],
                 depth_mm: worn[node].depth_mm,
-            }),
-            None => Ok(worn),
+            });
         }
+        let contact = self.test.contact.as_ref();
+        let rates = Rates::new(contact, &self.insert, surface, mean, &worn);
+        Ok((worn, rates))
     }
 
     /// Returns the number of the update in progress, from 1.

@@ -405,6 +405,21 @@ fn activities_of_a_machine_by_joints_have_their_own_drives() {
 }
 
 #[test]
+fn a_pressing_load_slightly_beyond_zero_is_cut_off() {
+    let least_n = |knots: &str| {
+        let text = HIP.replacen("[[0, 3000]]", knots, 1);
+        let case = Case::parse(&text, "case.toml", Path::new("")).unwrap();
+        let machine = &case.built_activities(Vec3::zeros())[0].machine;
+        match &machine.joint(condyle::machine::JointIndex::ALL[0]).drive {
+            condyle::machine::Drive::Loaded(load) => load.range()[0],
+            other => panic!("{other:?}"),
+        }
+    };
+    assert_eq!(least_n("[[0, 3000], [50, -5]]"), 0.0);
+    assert_eq!(least_n("[[0, 3000], [50, -300]]"), -300.0);
+}
+
+#[test]
 fn scales_of_machine_and_activity_multiply_every_load_and_motion() {
     let scales = |table: &str| format!("{table}\nload_scale = 1.5\nmotion_scale = 0.5\n");
     let text = with_activities("[[0, 3000]]", "[[0, 3500]]")
