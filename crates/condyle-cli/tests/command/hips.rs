@@ -234,6 +234,42 @@ fn an_opening_against_the_socket_is_refused_with_that_of_the_socket() {
 }
 
 #[test]
+fn a_cup_and_its_mirror_image_wear_alike_on_both_sides() {
+    let bench = Bench::new();
+    // Thicker laterally on a left hip, by up to 4 mm.
+    let thick = cup().mapped(|vertex| match vertex.norm() > 20.0 {
+        true => vertex * (1.09 + 0.09 * vertex.z / vertex.norm()),
+        false => *vertex,
+    });
+    let mut mirrored = thick
+        .clone()
+        .mapped(|vertex| Vec3::new(vertex.x, vertex.y, -vertex.z));
+    mirrored
+        .triangles
+        .iter_mut()
+        .for_each(|corners| corners.swap(0, 1));
+    let mass_mg = |side: &str, cup: &TriangleMesh, out: &str| {
+        let mut stl = Vec::new();
+        write_stl(&mut stl, cup).unwrap();
+        std::fs::write(bench.path("cup.stl"), stl).unwrap();
+        let case = format!(
+            "side = \"{side}\"\n[femur]\nshape = \"sphere\"\nradius_mm = 14.0\n[insert]\nshape = \"cup-mesh\"\nfile = \
+             \"cup.stl\"\nedge_mm = 2.5\nlayers = 1\n[machine]\npreset = \"iso-14242-1-like\"\n[march]\nupdates = 1\n\
+             [accuracy]\nestimate = false\n"
+        );
+        std::fs::write(bench.path("hip.toml"), case).unwrap();
+        mass_mg(&bench, "hip.toml", out)
+    };
+    let (left, right) = (
+        mass_mg("left", &thick, "left"),
+        mass_mg("right", &mirrored, "right"),
+    );
+    assert!((right / left - 1.0).abs() < 1e-6, "{left} {right}");
+    let other = mass_mg("right", &thick, "other");
+    assert!((other / left - 1.0).abs() > 1e-4, "{left} {other}");
+}
+
+#[test]
 fn the_largest_usual_clearance_is_usual_after_rounding() {
     let bench = Bench::new();
     write(&bench, "head.stl", head());
@@ -257,7 +293,7 @@ fn a_head_of_triangles_wears_its_cup_as_a_ball_does_wherever_its_file_has_it() {
         .map(|angle| (14.0 * angle.sin().max(1e-7), -14.0 * angle.cos()))
         .collect();
     let head = TriangleMesh::revolved(&profile, 180);
-    let head = head.mapped(|vertex| vertex + Vec3::new(5.0, 3.0, 0.0));
+    let head = head.mapped(|vertex| vertex + Vec3::new(150.0, 300.0, 0.0));
     let mut stl = Vec::new();
     write_stl(&mut stl, &head).unwrap();
     std::fs::write(bench.path("head.stl"), stl).unwrap();

@@ -34,7 +34,8 @@ pub(super) fn place(
         .at(&driven(test))
         .pose;
     let start_mm = test.start_mm;
-    let height_mm = test.start_height_mm.map(|height_mm| height_mm - axis_y);
+    let above_mm = |height_mm: f64| height_mm + flexed.translation.y;
+    let height_mm = test.start_height_mm.map(above_mm);
     let lowered = lowered(bodies.counterface, bodies.surface, flexed, height_mm);
     let lowered = lowered.ok_or(PlacementError::Apart { start_mm })?;
     // A slight overclosure, so that the first evaluation has a stiffness.

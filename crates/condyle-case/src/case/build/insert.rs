@@ -13,12 +13,14 @@ use condyle_mesh::columns::listed_holes;
 use condyle_mesh::formats::{HexFile, read_hexahedra, read_surface};
 use condyle_mesh::repair::{CheckedMesh, RepairError};
 use condyle_mesh::{FittedSphere, Roundness};
+use condyle_results::point_on_side;
 
 use super::checks::off_centre;
 use super::error::{Body, BuildError, BuildWarning, Finding};
 use super::placing::{Placing, checked, checks_of, middle_of_mesh, middle_of_points, shell, warn};
 use super::size::{check_points, check_triangles};
 use crate::case::contents::Case;
+use crate::case::frame::Axes;
 use crate::case::insert::{
     CupMeshInsert, GenericInsert, HexahedralInsert, Insert, InsertShape, MeshInsert,
 };
@@ -176,8 +178,9 @@ impl Case {
         warnings: &mut Vec<BuildWarning>,
     ) -> Result<geometry::Insert, BuildError> {
         let (file, path) = (&cup.file, cup.file.path());
-        let mesh = read_surface(file.files(), path)?;
-        let mesh = mesh.mapped(|vertex| vertex * cup.length_unit.in_mm());
+        let side = self.side_in_frame();
+        let placing = Placing::new(cup.length_unit, &Axes::ISB, (None, None), side)?;
+        let mesh = placing.mesh(read_surface(file.files(), path)?);
         check_triangles(path, &mesh, cup.length_unit)?;
         let Some(socket) = FittedSphere::new(&mesh, Roundness::Concave) else {
             let message = "this body has no spherical socket, as a cup has; check that it is the cup, not its head, and that its \
@@ -188,13 +191,14 @@ impl Case {
         // A hemisphere has the area of a square with sides of 2.5 radii.
         let side_mm = 2.5 * socket.radius_mm;
         check_node_count((side_mm, side_mm), meshing, &self.limits)?;
-        let opens_along = cup.opens_along.map_or(socket.opens_along, Vec3::from);
+        let given = |along| placing.point(&Vec3::from(along));
+        let opens_along = cup.opens_along.map_or(socket.opens_along, given);
         if opens_along.norm() == 0.0 {
             let message = "`opens_along` has no direction; write that from the pole of the socket to its centre";
             return Err(BuildError::mesh(path, &["opens_along"], message));
         }
         if opens_along.normalize().dot(&socket.opens_along) < MIN_COSINE_TO_SOCKET {
-            let [x, y, z]: [f64; 3] = socket.opens_along.into();
+            let [x, y, z]: [f64; 3] = point_on_side(&socket.opens_along, side).into();
             let message = format!(
                 "`opens_along` points away from the opening of the socket, which is along ({x:.3}, {y:.3}, {z:.3}); correct it, or \
                  remove it"

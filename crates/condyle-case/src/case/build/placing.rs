@@ -54,7 +54,7 @@ pub(super) struct Placing {
 }
 
 impl Placing {
-    fn new(
+    pub(super) fn new(
         unit: LengthUnit,
         axes: &Axes,
         (rotation_deg, origin_mm): Moved,
