@@ -402,7 +402,7 @@ impl<'a> Again<'a> {
         let weights = WornSurface::of(&march).weights();
         let shares = march.insert().surface().shares;
         let area_mm2: Vec<f64> = shares.iter().map(|share| share.area_mm2).collect();
-        let bottom_mm = mean_over_volume(&area_mm2, &weights, state.depths.wear_mm());
+        let bottom_mm = mean_over_volume(&area_mm2, &weights, &state.depths.wear_mm);
         let volume_mm3 = state
             .updates
             .last()
@@ -524,7 +524,7 @@ fn worn(step: &StepRecord, weights: &[f64]) -> [f64; 2] {
 fn mean_normal(march: &March) -> f64 {
     let surface = march.insert().surface();
     let (mut sum, mut volume_mm3) = (Vec3::zeros(), 0.0);
-    let shares = surface.shares.iter().zip(march.state().depths.wear_mm());
+    let shares = surface.shares.iter().zip(&march.state().depths.wear_mm);
     for (normal, (share, depth_mm)) in surface.normals.iter().zip(shares) {
         sum += normal * share.area_mm2 * *depth_mm;
         volume_mm3 += share.area_mm2 * depth_mm;
@@ -541,7 +541,7 @@ fn growth(state: &MarchState, worn_surface: &WornSurface) -> Option<[f64; 2]> {
     let (last, step) = (state.updates.last()?, state.last_step.as_ref()?);
     let weights = worn_surface.weights();
     let [volume_mm3, depth_mm] = worn(step, &weights);
-    let so_far_mm = mean_over_volume(&step.area_mm2, &weights, state.depths.wear_mm());
+    let so_far_mm = mean_over_volume(&step.area_mm2, &weights, &state.depths.wear_mm);
     Some([
         volume_mm3 * last.cycles / last.volume_loss_mm3,
         depth_mm * last.cycles / so_far_mm,

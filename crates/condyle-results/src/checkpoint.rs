@@ -5,7 +5,7 @@ use serde::{Deserialize, Serialize};
 use thiserror::Error;
 
 /// First bytes of a checkpoint; the last of them is the version of the format.
-const MAGIC: &[u8; 20] = b"condyle checkpoint \x0f";
+const MAGIC: &[u8; 20] = b"condyle checkpoint \x10";
 const HASH_LENGTH: usize = 32;
 
 /// A march in progress, with the hash of its inputs.

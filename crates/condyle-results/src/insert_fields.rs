@@ -58,7 +58,7 @@ described! {
     /// Thickness left.
     thickness_mm = |source| source.at_surface(&source.march.fields().thickness_mm);
     /// Depth of creep; of an insert that creeps.
-    creep_depth_mm = |source| source.of_creep(source.march.state().depths.creep_mm());
+    creep_depth_mm = |source| source.of_creep(source.march.state().depths.creep_mm.as_deref());
     /// Depth of creep that is left after a rest without load.
     creep_left_unloaded_mm = |source| {
         let law = source.march.test().creep.as_ref()?;

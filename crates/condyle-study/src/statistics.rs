@@ -4,7 +4,8 @@ pub(crate) use condyle::machine::extremes as extent;
 
 /// Returns the mean, or 0 for an empty sample.
 pub(crate) fn mean(values: &[f64]) -> f64 {
-    values.iter().sum::<f64>() / (values.len() as f64).max(1.0)
+    // An empty sum is -0.
+    (values.iter().sum::<f64>() + 0.0) / (values.len() as f64).max(1.0)
 }
 
 /// Returns the sample standard deviation, or 0 for fewer than two values.

@@ -42,7 +42,10 @@ peg::parser! {
         rule name() -> &'input str = $(['a'..='z' | 'A'..='Z' | '_'] ['a'..='z' | 'A'..='Z' | '0'..='9' | '_']*)
         rule inner(value: &dyn Fn(&str) -> f64) -> f64 = "(" _ inner:sum(value) _ ")" { inner }
         rule two(value: &dyn Fn(&str) -> f64) -> [f64; 2]
-            = "(" _ one:sum(value) _ "," _ other:sum(value) _ ")" { [one, other] }
+            = "(" _ one:sum(value) _ "," _ other:sum(value) _ ")" {
+                // An unknown number stays unknown.
+                if (one + other).is_nan() { [f64::NAN; 2] } else { [one, other] }
+            }
         rule sum(value: &dyn Fn(&str) -> f64) -> f64 = precedence! {
             one:(@) _ "+" _ other:@ { one + other }
             one:(@) _ "-" _ other:@ { one - other }

@@ -170,7 +170,7 @@ fn print_work(name: &str, case: &Case) {
     let state = solved(case);
     let updates = Updates::of(case, SECOND + 1, |_| ());
     let second = updates.gait(SECOND);
-    let cycles = state.counters.increments_solved as f64 / case.time.increments as f64;
+    let cycles = state.increments_solved as f64 / case.time.increments as f64;
     let per_cycle = |work: u64| work as f64 / cycles;
     let budgets = budgets::read();
     let budget = |work: &str| budgets.get(name).and_then(|of_case| of_case.get(work));

@@ -18,7 +18,7 @@ pub(super) struct WornSurface(Vec<([f64; 2], f64)>);
 impl WornSurface {
     /// Creates the worn surface of a march, each depth as a part of the largest.
     pub fn of(march: &March) -> Self {
-        let worn_mm = march.state().depths.wear_mm();
+        let worn_mm = &march.state().depths.wear_mm;
         let deepest = worn_mm.iter().copied().fold(f64::MIN_POSITIVE, f64::max);
         let depths = worn_mm.iter().map(|depth| depth / deepest);
         Self(places(march.insert()).zip(depths).collect())

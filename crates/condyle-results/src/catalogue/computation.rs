@@ -21,7 +21,7 @@ scalars! { "Computation";
         .continued();
 
     /// Updates, and the final cycle, whose motion did not become periodic within the tolerance.
-    CYCLES_NOT_REPEATING = Scalar::new("cycles_not_repeating", "updates and final cycle that do not repeat", 0, |run| run.state().counters.not_repeating as f64)
+    CYCLES_NOT_REPEATING = Scalar::new("cycles_not_repeating", "updates and final cycle that do not repeat", 0, |run| run.state().not_repeating as f64)
         .count()
         .listed();
 
@@ -83,7 +83,7 @@ scalars! { "Computation";
 }
 
 fn cycles_solved(run: &FinishedRun<'_>) -> f64 {
-    run.state().counters.increments_solved as f64 / run.march.test().time.increments as f64
+    run.state().increments_solved as f64 / run.march.test().time.increments as f64
 }
 
 /// Returns the counters of a run with the explicit integrator; `None` for other runs.

@@ -135,7 +135,9 @@ fn slices(sorted: &[(f64, f64)]) -> Vec<&[(f64, f64)]> {
     if by_value.len() <= SLICES {
         by_value
     } else {
-        sorted.chunks(sorted.len().div_ceil(SLICES)).collect()
+        let end = |slice: usize| slice * sorted.len() / SLICES;
+        let slice = |slice: usize| &sorted[end(slice)..end(slice + 1)];
+        (0..SLICES).map(slice).collect()
     }
 }
 

@@ -14,13 +14,17 @@ const BITS: usize = 32;
 /// Returns the coordinates of Sobol point `row`, with the directions of Joe and Kuo (2008), every axis scrambled
 /// independently by Owen's method (1995). Of the first 2^m points one lies in each of as many equal slices of every
 /// axis.
-pub(crate) fn sobol_places(row: u64, axes: usize, seed: u64) -> Vec<Place> {
-    let place = |axis: usize| {
+pub(crate) fn sobol_shares(row: u64, axes: usize, seed: u64) -> impl Iterator<Item = f64> {
+    (0..axes).map(move |axis| {
         let scrambled = scrambled(point(row, axis), Random::stream(seed, axis as u64).next());
         // The middle of its interval: neither 0 nor 1, whose quantiles may be infinite.
-        Place::Share((f64::from(scrambled) + 0.5) / (1_u64 << BITS) as f64)
-    };
-    (0..axes).map(place).collect()
+        (f64::from(scrambled) + 0.5) / (1_u64 << BITS) as f64
+    })
+}
+
+/// Returns these coordinates as places in the distributions of inputs.
+pub(crate) fn sobol_places(row: u64, axes: usize, seed: u64) -> Vec<Place> {
+    sobol_shares(row, axes, seed).map(Place::Share).collect()
 }
 
 /// Returns point `row` along `axis` as a binary fraction.

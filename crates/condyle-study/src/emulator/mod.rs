@@ -12,6 +12,7 @@ use serde::Serialize;
 use self::process::{Process, correlation, log_correlation_slope, parameters};
 use crate::{
     descent::minimum,
+    design::sobol::sobol_shares,
     distribution::normal_quantile,
     random::Random,
     statistics::{mean, standard_deviation},
@@ -32,6 +33,10 @@ const MAX_FITTED: usize = 128;
 
 /// Smallest nugget of many points together, which rounding of the covariance of several hundred close ones needs.
 const JOINT_NUGGET: f64 = 1e-7;
+
+/// Points over which interactions are averaged, and their seed.
+const SAMPLES: u64 = 512;
+const SAMPLES_SEED: u64 = 1;
 
 /// Groups of tests, each of which is predicted by an emulator fitted to the others.
 const FOLDS: usize = 5;
@@ -376,49 +381,68 @@ impl Emulator {
     /// Returns the first and the total Sobol index of every axis for the mean of the process, and its main effects: the mean of
     /// the output at each node of an axis over all nodes of the others, in the unit of the output.
     ///
-    /// `nodes` are equally likely places along each axis. The mean is a sum over the tests of products over the axes, w_i
-    /// c_1(x_1) c_2(x_2) ..., so that all variances are products of means over one axis (Oakley and O'Hagan 2004).
+    /// `nodes` are equally likely places along each axis, as many on all. The mean is a sum over the tests of products over the axes,
+    /// w_i c_1(x_1) c_2(x_2) ..., so that main effects are products of means over one axis (Oakley and O'Hagan 2004). What is left of
+    /// the output beyond them is averaged over Sobol points among the nodes. Its variance is a double sum over the tests as well,
+    /// but for a smooth output the weights are up to 1e8, and rounding of their products is as large as the variance.
     pub fn indices(&self, nodes: &[Vec<f64>]) -> (Vec<[f64; 2]>, Vec<Vec<f64>>) {
-        let with_nodes = nodes.iter().enumerate().map(|(axis, nodes)| {
-            let with_node = |test: usize, node: usize| {
-                let place = [self.points[test][axis]];
-                correlation(&[self.lengths[axis]], &place, &[nodes[node]])
-            };
-            DMatrix::from_fn(self.points.len(), nodes.len(), with_node)
+        let (axes, count, weights) = (nodes.len(), nodes[0].len(), &self.process.weights);
+        let with_nodes = (0..axes).map(|axis| {
+            let with_nodes = nodes[axis].iter();
+            let with_nodes = with_nodes.map(|node| self.with_tests(axis..axis + 1, &[*node]));
+            DMatrix::from_columns(&with_nodes.collect::<Vec<_>>())
         });
         let with_nodes: Vec<DMatrix<f64>> = with_nodes.collect();
-        let means: Vec<DVector<f64>> = with_nodes.iter().map(DMatrix::column_mean).collect();
-        let products = with_nodes.iter();
-        let products: Vec<DMatrix<f64>> = products
-            .map(|with| with * with.transpose() / with.ncols() as f64)
-            .collect();
-        let weights = &self.process.weights;
-        let others = |axis: usize| (0..nodes.len()).filter(move |other| *other != axis);
-        let mean = means
-            .iter()
-            .fold(weights.clone(), |all, one| all.component_mul(one))
-            .sum();
-        let all = (1..nodes.len()).fold(products[0].clone(), |all, axis| {
-            all.component_mul(&products[axis])
-        });
-        let square = mean * mean;
-        let variance = weights.dot(&(all * weights)) - square;
-        let of_axis = |axis: usize| {
-            let alone =
-                others(axis).fold(weights.clone(), |all, one| all.component_mul(&means[one]));
-            let effect = with_nodes[axis].tr_mul(&alone);
-            let effect = effect.iter().map(|one| self.in_unit(*one)).collect();
-            let alone = alone.dot(&(&products[axis] * &alone)) - square;
-            let rest = weights.component_mul(&means[axis]);
-            let count = self.points.len();
-            let of_rest = others(axis)
-                .fold(DMatrix::from_element(count, count, 1.0), |all, one| {
-                    all.component_mul(&products[one])
-                });
-            let of_rest = rest.dot(&(of_rest * &rest)) - square;
-            ([alone / variance, 1.0 - of_rest / variance], effect)
+        let others = |axis: usize| (0..axes).filter(move |other| *other != axis);
+        let product = |axis: usize, with: &dyn Fn(usize) -> DVector<f64>| {
+            others(axis).fold(weights.clone(), |all, one| all.component_mul(&with(one)))
         };
-        (0..nodes.len()).map(of_axis).unzip()
+        let effect = |axis: usize| -> DVector<f64> {
+            with_nodes[axis].tr_mul(&product(axis, &|other| with_nodes[other].column_mean()))
+        };
+        let mean = effect(0).mean();
+        // Less their mean, which all have: variances are differences otherwise.
+        let effect = |axis| effect(axis).add_scalar(-mean);
+        let effects: Vec<DVector<f64>> = (0..axes).map(effect).collect();
+        let own: Vec<f64> = effects
+            .iter()
+            .map(|one| one.norm_squared() / count as f64)
+            .collect();
+        let samples = (0..SAMPLES).map(|row| {
+            let shares = sobol_shares(row, axes, SAMPLES_SEED);
+            shares
+                .map(|share| (share * count as f64) as usize)
+                .collect()
+        });
+        let samples: Vec<Vec<usize>> = samples.collect();
+        // The variance of what is left, and the mean of its variance along the axis.
+        let left = |axis: usize| {
+            let along = |sample: &Vec<usize>| {
+                product(axis, &|other| {
+                    with_nodes[other].column(sample[other]).into_owned()
+                })
+            };
+            let along: Vec<DVector<f64>> = samples.iter().map(along).collect();
+            let mut left = DMatrix::from_columns(&along).transpose() * &with_nodes[axis];
+            for (sample, mut row) in samples.iter().zip(left.row_iter_mut()) {
+                let of_others = others(axis).map(|other| effects[other][sample[other]]);
+                let of_others: f64 = of_others.sum();
+                row -= effects[axis].transpose().add_scalar(mean + of_others);
+            }
+            let within = left.row_iter().map(|row| row.variance()).sum::<f64>();
+            let squares = left.norm_squared() / left.len() as f64;
+            [squares, within / SAMPLES as f64]
+        };
+        let left: Vec<[f64; 2]> = (0..axes).map(left).collect();
+        let squares = left.iter().map(|one| one[0]).sum::<f64>() / axes as f64;
+        let variance = own.iter().sum::<f64>() + squares;
+        let both = own.iter().zip(left);
+        let indices = both.map(|(own, [_, within])| [*own, own + within].map(|one| one / variance));
+        let in_unit = |effect: &DVector<f64>| {
+            let means = effect.iter().map(|one| self.in_unit(mean + one));
+            means.collect()
+        };
+        (indices.collect(), effects.iter().map(in_unit).collect())
     }
 
     /// Returns Q2, the share of the variance of the values that predictions from the other tests explain, without the optimism if

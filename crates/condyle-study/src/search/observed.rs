@@ -1,6 +1,6 @@
 //! The tests of a search in the unit cube.
 
-use crate::{design::sobol::sobol_places, distribution::Place, statistics::extent};
+use crate::{design::sobol::sobol_shares, statistics::extent};
 
 /// A search ends once another test is expected to improve the optimum by less than this part of the range of the
 /// minimised output within the limits.
@@ -12,16 +12,7 @@ pub(super) fn space_filling(
     axes: usize,
     seed: u64,
 ) -> impl Iterator<Item = Vec<f64>> {
-    let share = |place| match place {
-        Place::Share(share) | Place::Along(share) => share,
-        Place::OfCase => 0.5,
-    };
-    rows.map(move |row| {
-        sobol_places(row as u64, axes, seed)
-            .into_iter()
-            .map(share)
-            .collect()
-    })
+    rows.map(move |row| sobol_shares(row as u64, axes, seed).collect())
 }
 
 /// The same for a robust search, whose statistics are known less exactly than the outputs of a test.

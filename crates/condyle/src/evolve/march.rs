@@ -4,12 +4,11 @@
 use std::ops::ControlFlow;
 
 use super::{
-    Activity, CreepRecord, CreepState, CyclePeaks, DepthField, DepthFields, FamilyWear, MarchError,
-    MarchState, NodeFields, PlacementError, Progress, Snapshot, SolvedCycle, UnderSurfaceRecord,
-    UpdateRecord, WearTest,
+    Activity, CreepRecord, CreepState, CyclePeaks, Depths, FamilyWear, MarchError, MarchState,
+    NodeFields, PlacementError, Progress, Snapshot, SolvedCycle, UnderSurfaceRecord, UpdateRecord,
+    WearTest,
     comparison_laws::{ComparisonLaw, outside_mm3, sum, wear_of_each},
     creep::{CreepContact, CreepStep},
-    depth::sum_mm,
     next_step::next_step,
     placement::{place, start_of},
     rates::{Rates, SolvedStep, StepStart, WearStep, mean_cycles, volume_mm3, worn},
@@ -46,7 +45,7 @@ pub struct March {
 /// The insert before a step, and the quality of the mesh after it.
 struct Lowered {
     mesh_nodes: Vec<Vec3>,
-    depths: DepthFields,
+    depths: Depths,
     worst_quality: f64,
 }
 
@@ -77,7 +76,7 @@ impl March {
             settled,
             ..MarchState::before(
                 test.insert.mesh().nodes.clone(),
-                DepthFields::none(test.insert.surface_nodes().len()),
+                Depths::by_wear(vec![0.0; test.insert.surface_nodes().len()]),
                 ContactState::default(),
                 starts,
                 zero_mm,
@@ -284,9 +283,9 @@ impl March {
         let step_error = settled_error.with_last(start, &step);
 
         // The new surface. Creep is computed on a copy: an update that fails leaves the state as it was.
-        let (creep, crept) = self.creep(&solved, &step).unzip();
-        let mut taken = vec![DepthField::wear(step.depth_mm.clone())];
-        taken.extend(crept);
+        let (creep, creep_mm) = self.creep(&solved, &step).unzip();
+        let wear_mm = step.depth_mm.clone();
+        let taken = Depths { wear_mm, creep_mm };
         let (under_surface, stress) = self.under_surface(&solved).unzip();
         let before = self.lower(&solved.surface, &taken)?;
 
@@ -408,7 +407,7 @@ impl March {
         StepStart {
             rates,
             last: self.state.last_step.as_ref(),
-            worn_mm: self.state.depths.wear_mm(),
+            worn_mm: &self.state.depths.wear_mm,
             cycles: self.cycles(),
             updates: self.state.updates.len(),
             creeps: self.test.creep.is_some(),
@@ -416,7 +415,7 @@ impl March {
     }
 
     /// Returns the creep by the end of a step, and its memory then, if the insert creeps.
-    fn creep(&self, solved: &SolvedCycles, wear: &WearStep) -> Option<(CreepState, DepthField)> {
+    fn creep(&self, solved: &SolvedCycles, wear: &WearStep) -> Option<(CreepState, Vec<f64>)> {
         const SECONDS_PER_MINUTE: f64 = 60.0;
         let law = self.test.creep.as_ref()?;
         let mut creep = self.state.creep.clone();
@@ -427,7 +426,7 @@ impl March {
             contact: &CreepContact::new(&self.test, &self.insert, &solved.surface, &solved.cycles),
             end_min: wear.cycles_after * self.test.cycle_seconds() / SECONDS_PER_MINUTE,
         });
-        Some((creep, DepthField::creep(crept_mm)))
+        Some((creep, crept_mm))
     }
 
     /// Returns the stress below the surface at the increment with the highest pressure, if the insert is a solid.
@@ -445,21 +444,17 @@ impl March {
     fn lower(
         &mut self,
         surface: &ArticulatingSurface,
-        taken: &[DepthField],
+        taken: &Depths,
     ) -> Result<Lowered, MarchError> {
         let update = self.state.updates.len() + 1;
-        let down_mm = sum_mm(taken, surface.positions.len());
+        let down_mm = taken.total_mm();
         let mut nodes = down_mm.iter().zip(self.insert.thickness_mm());
         if let Some(node) = nodes.position(|(depth, thickness)| depth >= thickness) {
             // Wear and creep there, if the insert creeps.
-            let (before, at) = (&self.state.depths, |depths_mm: &[f64]| depths_mm[node]);
-            let wear_and_creep_mm = taken.get(1).map(|crept| {
-                let wear_mm = at(before.wear_mm()) + at(&taken[0].depth_mm);
-                [
-                    wear_mm,
-                    before.creep_mm().map_or(0.0, at) + at(&crept.depth_mm),
-                ]
-            });
+            let mut depths = self.state.depths.clone();
+            depths.add(taken);
+            let creep_mm = depths.creep_mm.map(|creep_mm| creep_mm[node]);
+            let wear_and_creep_mm = creep_mm.map(|creep_mm| [depths.wear_mm[node], creep_mm]);
             return Err(MarchError::WornThrough {
                 update,
                 place_mm: surface.positions[node],
@@ -488,17 +483,16 @@ impl March {
     fn record(
         &self,
         &SolvedStep { rates, step, .. }: &SolvedStep<'_>,
-        taken: &[DepthField],
+        taken: &Depths,
         worst_quality: f64,
         peaks: CyclePeaks,
     ) -> UpdateRecord {
         let (area_mm2, last) = (&rates.area_mm2, self.state.updates.last());
-        let lost = taken.iter().filter(|field| field.loses_mass);
-        let lost_mm3 = volume_mm3(area_mm2, &sum_mm(lost, area_mm2.len()));
+        let lost_mm3 = volume_mm3(area_mm2, &taken.wear_mm);
         let volume_loss_mm3 = lost_mm3 + last.map_or(0.0, |last| last.volume_loss_mm3);
         let creep = self.creep_record(taken, area_mm2);
         let creep_mm3 = creep.map_or(0.0, |creep| creep.volume_mm3);
-        let wear_mm = self.state.depths.wear_mm().iter();
+        let wear_mm = self.state.depths.wear_mm.iter();
         UpdateRecord {
             cycles: step.cycles_after,
             volume_loss_mm3,
@@ -514,15 +508,15 @@ impl March {
     }
 
     /// Creep after a step that took these depths.
-    fn creep_record(&self, taken: &[DepthField], area_mm2: &[f64]) -> Option<CreepRecord> {
+    fn creep_record(&self, taken: &Depths, area_mm2: &[f64]) -> Option<CreepRecord> {
         let law = self.test.creep.as_ref()?;
-        let crept = taken.get(1)?;
+        let crept_mm = taken.creep_mm.as_ref()?;
         let last = self.state.updates.last().and_then(|last| last.creep);
         let before_mm3 = last.map_or(0.0, |last| last.volume_mm3);
         Some(CreepRecord::new(
-            before_mm3 + volume_mm3(area_mm2, &crept.depth_mm),
-            self.state.depths.wear_mm(),
-            self.state.depths.creep_mm()?,
+            before_mm3 + volume_mm3(area_mm2, crept_mm),
+            &self.state.depths.wear_mm,
+            self.state.depths.creep_mm.as_ref()?,
             &self.state.creep.left_mm(law),
         ))
     }
@@ -584,15 +578,14 @@ impl March {
     }
 
     /// Keeps the cycles solved after `cycles` as the last.
-    fn keep(&mut self, cycles: f64, mut solved: SolvedCycles) {
-        let (kept, counters) = (&solved.cycles, &mut solved.counters);
-        let increments = kept.iter().map(|cycle| cycle.increments_solved as u64);
-        counters.increments_solved += increments.sum::<u64>();
-        counters.not_repeating += u64::from(!kept.iter().all(|cycle| cycle.repeats));
-        for (activity, cycle) in self.state.activities.iter_mut().zip(&solved.cycles) {
+    fn keep(&mut self, cycles: f64, solved: SolvedCycles) {
+        let (state, kept) = (&mut self.state, &solved.cycles);
+        for (activity, cycle) in state.activities.iter_mut().zip(kept) {
             activity.keep(cycles, cycle);
+            state.increments_solved += cycle.increments_solved as u64;
         }
-        self.state.counters = solved.counters;
+        state.not_repeating += u64::from(!kept.iter().all(|cycle| cycle.repeats));
+        state.counters = solved.counters;
         self.last = Some(solved);
     }
 }

@@ -30,7 +30,7 @@ mod wear_test;
 
 pub use comparison_laws::{ActivityWear, ComparisonLaw};
 pub use creep::CreepState;
-pub use depth::{DepthField, DepthFields};
+pub use depth::Depths;
 pub use error::{MarchError, PlacementError};
 pub use law_family::FamilyWear;
 pub use march::March;

@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::{DepthFields, rates::Rates};
+use super::{Depths, rates::Rates};
 use crate::{
     Vec3,
     contact::{BacksideAtRest, PlasticUnderSurface, Regime, UnderSurface},
@@ -87,10 +87,10 @@ pub struct NodeFields {
 
 impl NodeFields {
     /// Creates the fields before the first update.
-    pub(super) fn unworn(insert: &Insert, depths: &DepthFields) -> Self {
+    pub(super) fn unworn(insert: &Insert, depths: &Depths) -> Self {
         let none = vec![0.0; insert.surface_nodes().len()];
         Self {
-            wear_depth_mm: depths.wear_mm().to_vec(),
+            wear_depth_mm: depths.wear_mm.clone(),
             depth_per_cycle_mm: none.clone(),
             peak_pressure_mpa: none.clone(),
             sliding_distance_mm: none.clone(),
@@ -105,12 +105,12 @@ impl NodeFields {
         surface: &ArticulatingSurface,
         rates: &Rates,
         insert: &Insert,
-        depths: &DepthFields,
+        depths: &Depths,
     ) -> Self {
         let each = |value: fn(&MeanCycle<'_>) -> f64| cycles.iter().map(value).collect();
         let direction = |(node, cycle)| principal_direction(surface, node, cycle);
         Self {
-            wear_depth_mm: depths.wear_mm().to_vec(),
+            wear_depth_mm: depths.wear_mm.clone(),
             depth_per_cycle_mm: rates.depth_per_cycle_mm.clone(),
             peak_pressure_mpa: each(|cycle| cycle.peak_pressure_mpa),
             sliding_distance_mm: each(|cycle| cycle.pressed_distance_mm),

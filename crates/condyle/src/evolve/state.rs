@@ -3,8 +3,8 @@
 use serde::{Deserialize, Serialize};
 
 use super::{
-    AccumulatedError, ActivityWear, ComparisonLaw, CreepState, CyclePeaks, CycleRecord, DepthField,
-    DepthFields, FamilyWear, NodeFields, StepRecord, UpdateRecord,
+    AccumulatedError, ActivityWear, ComparisonLaw, CreepState, CyclePeaks, CycleRecord, Depths,
+    FamilyWear, NodeFields, StepRecord, UpdateRecord,
 };
 use crate::{
     Vec3,
@@ -27,7 +27,7 @@ pub struct Snapshot {
     /// Nodes of the mesh before it.
     pub mesh_nodes: Vec<Vec3>,
     /// Depth of the surface before it.
-    pub depths: DepthFields,
+    pub depths: Depths,
     /// The history of the contact before it.
     pub contact: ContactState,
     /// The machine of every activity at the end of its cycle.
@@ -44,13 +44,13 @@ impl Snapshot {
 
     /// Returns the snapshot on another insert, lowered from unworn by `down_mm` at once.
     pub fn on(&self, unworn: &Insert, down_mm: Vec<f64>) -> Self {
-        let depths = DepthFields::none(down_mm.len());
+        let depths = Depths::by_wear(vec![0.0; down_mm.len()]);
         self.worn_on(unworn.clone(), depths, down_mm)
     }
 
-    fn worn_on(&self, mut insert: Insert, mut depths: DepthFields, down_mm: Vec<f64>) -> Self {
+    fn worn_on(&self, mut insert: Insert, mut depths: Depths, down_mm: Vec<f64>) -> Self {
         insert.wear_down(&insert.surface(), &down_mm);
-        depths.add(&[DepthField::wear(down_mm)]);
+        depths.add(&Depths::by_wear(down_mm));
         Self {
             mesh_nodes: insert.mesh().nodes.clone(),
             depths,
@@ -112,8 +112,8 @@ pub struct MarchState {
     pub first_pressure_mpa: Vec<f64>,
     /// Nodes of the mesh as worn.
     pub mesh_nodes: Vec<Vec3>,
-    /// Depth of the surface by cause.
-    pub depths: DepthFields,
+    /// Depth of the surface.
+    pub depths: Depths,
     /// The load history of creep.
     pub creep: CreepState,
     /// Part of the worn volume outside the range to which the wear law was fitted, mm3; none if that is unknown.
@@ -136,6 +136,10 @@ pub struct MarchState {
     pub settled: [f64; 6],
     /// Counts of the work done.
     pub counters: SolverCounters,
+    /// Increments of the cycles of the updates and of the final cycle.
+    pub increments_solved: u64,
+    /// Updates, and the final cycle, in which an activity did not repeat itself.
+    pub not_repeating: u64,
     /// The first step, on the unworn insert, and the machines at the end of its cycles.
     pub first_step: Option<(StepRecord, Vec<MachineState>)>,
     /// The last steps that began before each of [`SNAPSHOT_PARTS`]; none before the first.
@@ -151,7 +155,7 @@ pub struct MarchState {
 impl MarchState {
     pub(super) fn before(
         mesh_nodes: Vec<Vec3>,
-        depths: DepthFields,
+        depths: Depths,
         contact: ContactState,
         machines: impl IntoIterator<Item = MachineState>,
         zero_mm: Vec3,

@@ -114,10 +114,6 @@ fn coasted(from: &Kinematics, step_s: f64) -> [f64; 6] {
 /// Counts of the solver's work.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct SolverCounters {
-    /// Increments of the cycles of a march, of its updates and of the final cycle.
-    pub increments_solved: u64,
-    /// Updates, and the final cycle of a march, in which an activity did not repeat itself.
-    pub not_repeating: u64,
     /// Newton iterations: corrections of the positions.
     pub newton_iterations: u64,
     /// Contact evaluations; those of implicit steps include the tangent.
