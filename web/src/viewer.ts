@@ -1,6 +1,6 @@
 // The stage with its controls: update or instant, field, colours, sections and views.
 
-import { barMarks, ColourMap, type Range } from "./colours";
+import { colourBar, ColourMap, type Range } from "./colours";
 import { button, choice, element, labelled, Slider } from "./dom";
 import type { FlatStage } from "./flat_stage";
 import { forces, shares } from "./forces";
@@ -78,9 +78,7 @@ export class Viewer {
   private statusAt = 0;
   private readonly status = element("output", { class: "status" });
   private readonly picked = element("div", { class: "picked", "aria-live": "polite" });
-  private readonly bar = element("div", { class: "bar" });
-  private readonly barEnds = element("div", { class: "ends" });
-  private readonly barTitle = element("span", { class: "bar-title" });
+  private readonly legend = element("div", { class: "legend" });
   private ranges = new Map<string, Range>();
   private readonly maps = new Map<string, ColourMap>();
   private readonly fields: HTMLSelectElement;
@@ -108,7 +106,7 @@ export class Viewer {
     const percent = (instant: number) => `${inDigits(this.cycle?.percents[instant] ?? 0)} %`;
     this.instants = new Slider("Through the cycle", [0, last, 1], percent, (instant) => this.chooseInstant(instant));
     this.instants.value = 0;
-    this.box.append(host, this.legend(), this.status, this.controls(), this.picked);
+    this.box.append(host, this.legend, this.status, this.controls(), this.picked);
     this.listen(host);
     this.showUpdate(this.update);
   }
@@ -240,9 +238,7 @@ export class Viewer {
     const shown = [this.field, ...range].join();
     if (shown === this.legendShown) return;
     this.legendShown = shown;
-    this.bar.style.background = this.map().gradient;
-    this.barEnds.replaceChildren(...barMarks(range));
-    this.barTitle.textContent = this.fieldInWords();
+    this.legend.replaceChildren(...colourBar(this.map(), range, this.fieldInWords()));
   }
 
   private fieldInWords(): string {
@@ -322,10 +318,6 @@ export class Viewer {
     const options = this.scene.facts.fields.map(({ name, label, unit }): [string, string] => [name, withUnit({ title: label, unit })]);
     if (this.cycles.some(({ facts }) => facts.has_pressure)) options.push([IN_CYCLE, "Pressure through the cycle, MPa"]);
     return options;
-  }
-
-  private legend(): HTMLElement {
-    return element("div", { class: "legend" }, this.barTitle, this.bar, this.barEnds);
   }
 
   private controls(): HTMLElement {
