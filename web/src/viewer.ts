@@ -9,8 +9,8 @@ import { withUnit } from "./plots";
 import { glb } from "./glb";
 import { save, savePicture } from "./save";
 import { newSlide, slide } from "./slide";
-import { hasVideo, video } from "./video";
-import { matrixOf, stageOf, type Axis, type Force, type Stage, type View } from "./stage";
+import { typeOfVideo, video } from "./video";
+import { matrixOf, stageOf, VIEWS, type Axis, type Force, type Stage, type View } from "./stage";
 import type { CycleFacts, Field, Pressed, Scene } from "./scene";
 
 // The pressure through the cycle, by which the surface can be coloured besides the fields of an update.
@@ -27,13 +27,6 @@ const SLIDE_PX = 850;
 const VIDEO_PX = 600;
 // A point farther than this from every node is outside of the surface, mm.
 const REACH_MM = 3;
-
-const VIEWS: [View, string][] = [
-  ["oblique", "Oblique"],
-  ["above", "From above"],
-  ["front", "From the front"],
-  ["side", "From the side"],
-];
 
 // What is shown; absent parts stay as they are.
 export interface Chosen {
@@ -349,9 +342,9 @@ export class Viewer {
   }
 
   private viewButtons(): HTMLElement[] {
-    const views = this.stage.isFlat ? [] : VIEWS.map(([view, words]) => button(words, () => this.stage.look(view)));
+    const views = this.stage.isFlat ? [] : (Object.keys(VIEWS) as View[]).map((view) => button(view, () => this.stage.look(view)));
     const saves = [button("Save picture", () => this.savePicture())];
-    if (this.cycles.length && hasVideo()) saves.push(button("Save video", () => void this.saveVideo()));
+    if (this.cycles.length && typeOfVideo()) saves.push(button("Save video", () => void this.saveVideo()));
     if (!this.stage.isFlat) saves.push(button("Save bodies", () => this.saveBodies()));
     return [...views, button("Pick the highest", () => this.pickHighest()), ...saves];
   }
