@@ -2,7 +2,8 @@
 
 import { element, Slider } from "../dom";
 import { inDigits } from "../digits";
-import { numberIn, unquoted, valuesOf, withValue, type Place } from "./case_text";
+import { numberIn, valuesOf, withValue, type Place } from "./case_text";
+import { unquoted } from "./toml_places";
 
 export interface Limits {
   label: string;
