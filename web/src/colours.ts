@@ -1,5 +1,6 @@
-// Colour maps, whose colours come with the scene, and round marks of their bars.
+// Colour maps, whose colours come with the scene, and their bars with round marks.
 
+import { Color, LinearSRGBColorSpace } from "three";
 import { inDigits } from "./digits";
 import { element } from "./dom";
 
@@ -9,45 +10,34 @@ const BARE = "#f2f0ea";
 
 export type Range = [low: number, high: number];
 
-type Rgb = [number, number, number];
-
-function parts(colour: string): Rgb {
-  const all = Number.parseInt(colour.slice(1), 16);
-  return [(all >> 16) & 255, (all >> 8) & 255, all & 255];
-}
-
-// Converts a part of an sRGB colour to linear light (IEC 61966-2-1).
-function linear(part: number): number {
-  const share = part / 255;
-  return share <= 0.04045 ? share / 12.92 : ((share + 0.055) / 1.055) ** 2.4;
-}
-
 export class ColourMap {
-  private readonly levels: Rgb[];
-  // For each level its red, green and blue in linear light.
-  private readonly light: Float32Array;
+  // In linear red, green and blue.
+  private readonly levels: Color[];
 
-  // `colours`: at even distances from little to much, as #rrggbb.
-  constructor(private readonly colours: string[]) {
-    const stops = colours.map(parts);
-    this.levels = Array.from({ length: LEVELS }, (_, level) => between(stops, level / (LEVELS - 1)));
-    this.levels[0] = parts(BARE);
-    this.light = Float32Array.from(this.levels.flat(), linear);
+  // `colours`: at even distances from little to much, as #rrggbb; `least`: that of the least value.
+  constructor(
+    private readonly colours: string[],
+    least = BARE,
+  ) {
+    // Without conversion: the parts of sRGB are interpolated.
+    const stops = colours.map((colour) => new Color().setStyle(colour, LinearSRGBColorSpace));
+    this.levels = Array.from({ length: LEVELS }, (_, level) => between(stops, level / (LEVELS - 1)).convertSRGBToLinear());
+    this.levels[0] = new Color(least);
   }
 
   // Colours values between two ends, in linear red, green and blue.
   paint(values: ArrayLike<number>, range: Range, into: Float32Array): void {
-    for (let i = 0; i < values.length; i++) {
-      const from = 3 * level(values[i]!, range);
-      into[3 * i] = this.light[from]!;
-      into[3 * i + 1] = this.light[from + 1]!;
-      into[3 * i + 2] = this.light[from + 2]!;
-    }
+    for (let i = 0; i < values.length; i++) this.level(values[i]!, range).toArray(into, 3 * i);
   }
 
   // The colour of a value as CSS.
   css(value: number, range: Range): string {
-    return `rgb(${this.levels[level(value, range)]!.map(Math.round).join(" ")})`;
+    return this.level(value, range).getStyle();
+  }
+
+  // Red, green and blue of a value in sRGB, from 0 to 255.
+  bytes(value: number, range: Range): number[] {
+    return this.level(value, range).clone().convertLinearToSRGB().multiplyScalar(255).toArray();
   }
 
   // The map as a CSS gradient from left to right.
@@ -60,18 +50,21 @@ export class ColourMap {
     this.colours.forEach((colour, at) => filled.addColorStop(at / (this.colours.length - 1), colour));
     return filled;
   }
+
+  private level(value: number, range: Range): Color {
+    return this.levels[Math.max(0, Math.min(LEVELS - 1, Math.round(partOf(value, range) * (LEVELS - 1))))]!;
+  }
 }
 
-function between(stops: Rgb[], share: number): Rgb {
-  const place = share * (stops.length - 1);
+function between(stops: Color[], part: number): Color {
+  const place = part * (stops.length - 1);
   const below = Math.min(Math.floor(place), stops.length - 2);
-  const [from, to] = [stops[below]!, stops[below + 1]!];
-  return from.map((part, index) => part + (to[index]! - part) * (place - below)) as Rgb;
+  return new Color().lerpColors(stops[below]!, stops[below + 1]!, place - below);
 }
 
-function level(value: number, [low, high]: Range): number {
-  const share = (value - low) / (high > low ? high - low : 1);
-  return Math.max(0, Math.min(LEVELS - 1, Math.round(share * (LEVELS - 1))));
+// The place of a value between two ends, from 0 to 1.
+export function partOf(value: number, [low, high]: Range): number {
+  return (value - low) / (high > low ? high - low : 1);
 }
 
 // Round numbers between two ends, up to a third more than `count`.
@@ -86,11 +79,14 @@ export function roundMarks([low, high]: Range, count = 5): number[] {
   return Array.from({ length: last - first + 1 }, (_, at) => Number(((first + at) * step).toPrecision(12)));
 }
 
-// Round marks at their places along a bar.
-export function barMarks([low, high]: Range): HTMLElement[] {
-  return roundMarks([low, high]).map((mark) => {
+// The title of a bar, the bar, and round marks at their places along it.
+export function colourBar(map: ColourMap, range: Range, title: string): HTMLElement[] {
+  const bar = element("div", { class: "bar" });
+  bar.style.background = map.gradient;
+  const marks = roundMarks(range).map((mark) => {
     const made = element("span", {}, inDigits(mark));
-    made.style.left = `${high > low ? (100 * (mark - low)) / (high - low) : 0}%`;
+    made.style.left = `${100 * partOf(mark, range)}%`;
     return made;
   });
+  return [element("span", { class: "bar-title" }, title), bar, element("div", { class: "ends" }, ...marks)];
 }

@@ -1,19 +1,15 @@
 // The difference of a field between two runs, seen from above; their meshes may differ.
 
-import { barMarks } from "./colours";
+import { Box3 } from "three";
+import { colourBar, ColourMap, type Range } from "./colours";
 import { inDigits } from "./digits";
 import { element } from "./dom";
 import type { Field, Scene } from "./scene";
 
 // Squares of the picture for each millimetre.
 const SQUARES_A_MM = 4;
-type Rgb = [number, number, number];
 // The colours where the first has more, where both are equal, and where the second has more.
-const [FIRST, EQUAL, SECOND]: [Rgb, Rgb, Rgb] = [
-  [33, 102, 172],
-  [242, 240, 234],
-  [178, 24, 43],
-];
+const COLOURS = ["#2166ac", "#f2f0ea", "#b2182b"];
 
 // Values in squares; NaN beyond the surface.
 interface Grid {
@@ -44,35 +40,26 @@ export function differenceMap(first: Scene, second: Scene, { name, label, unit }
   const differences = after.values.map((value, square) => value - before.values[square]!);
   const largest = differences.reduce((most, value) => Math.max(most, Math.abs(value) || 0), 0);
   const canvas = element("canvas", { width: frame.width, height: frame.height, role: "img", "aria-label": `Difference of ${label} seen from above` });
+  const map = new ColourMap(COLOURS, COLOURS[0]);
+  // Runs that are equal have the colour in the middle.
+  const range: Range = [-(largest || 1), largest || 1];
   const picture = new ImageData(frame.width, frame.height);
   differences.forEach((value, square) => {
-    if (Number.isFinite(value)) picture.data.set([...colour(largest ? value / largest : 0), 255], 4 * square);
+    if (Number.isFinite(value)) picture.data.set([...map.bytes(value, range), 255], 4 * square);
   });
   canvas.getContext("2d")!.putImageData(picture, 0, 0);
   const [front, back, left, right] = first.facts.directions;
   const around = (words: string | undefined, side: string) => element("span", { class: `side ${side}` }, words ?? "");
   const box = element("div", { class: "flat" }, around(front, "front"), around(left, "left"), canvas, around(right, "right"), around(back, "back"));
-  const bar = element("div", { class: "bar" });
-  bar.style.background = `linear-gradient(to right, ${[FIRST, EQUAL, SECOND].map((rgb) => `rgb(${rgb.join(" ")})`).join(", ")})`;
-  const ends = element("div", { class: "ends" }, ...(largest ? barMarks([-largest, largest]) : []));
-  const title = element("span", { class: "bar-title" }, `Difference of ${label.toLowerCase()}, ${unit}`);
+  const legend = element("div", { class: "legend" }, ...colourBar(map, range, `Difference of ${label.toLowerCase()}, ${unit}`));
   const most = element("p", { class: "note" }, `Red: more in this run; blue: more in the kept one. At most ${inDigits(largest)} ${unit}.`);
-  return element("figure", { class: "difference" }, element("div", { class: "legend" }, title, bar, ends), box, most);
-}
-
-function colour(part: number): Rgb {
-  const end = part < 0 ? FIRST : SECOND;
-  return EQUAL.map((from, index) => from + (end[index]! - from) * Math.abs(part)) as Rgb;
+  return element("figure", { class: "difference" }, legend, box, most);
 }
 
 // The rectangle around both surfaces.
 function frameOf(scenes: Scene[]): Frame {
-  const [x, z] = [0, 2].map((axis) => {
-    const all = scenes.map((scene) => scene.values("surface.nodes").filter((_, index) => index % 3 === axis));
-    return [all.flatMap((one) => one.reduce((a, b) => Math.min(a, b), Infinity)), all.flatMap((one) => one.reduce((a, b) => Math.max(a, b), -Infinity))];
-  }) as [[number[], number[]], [number[], number[]]];
-  const [xLow, xHigh, zLow, zHigh] = [Math.min(...x[0]), Math.max(...x[1]), Math.min(...z[0]), Math.max(...z[1])];
-  return { zLow, xHigh, width: Math.ceil((zHigh - zLow) * SQUARES_A_MM), height: Math.ceil((xHigh - xLow) * SQUARES_A_MM) };
+  const { min, max } = scenes.map((scene) => new Box3().setFromArray(scene.values("surface.nodes"))).reduce((one, other) => one.union(other));
+  return { zLow: min.z, xHigh: max.x, width: Math.ceil((max.z - min.z) * SQUARES_A_MM), height: Math.ceil((max.x - min.x) * SQUARES_A_MM) };
 }
 
 function sampled(scene: Scene, name: string, frame: Frame): Grid {

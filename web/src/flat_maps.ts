@@ -2,8 +2,8 @@
 
 interface FlatMap {
   svg: SVGSVGElement;
-  // From the picture itself: x at its top and z at its left, mm; their positions in it, px; its scale.
-  place: { xHigh: number; zLow: number; left: number; top: number; perMm: number };
+  // From z and x, mm, to the picture, px.
+  placing: DOMMatrix;
   ring?: SVGCircleElement;
 }
 
@@ -14,9 +14,10 @@ export class FlatMaps {
     this.maps = [...root.querySelectorAll<SVGSVGElement>("svg[data-map]")].map(mapOf);
     for (const map of this.maps) {
       map.svg.style.cursor = "crosshair";
-      map.svg.addEventListener("click", (event) => {
-        const place = placeOf(map, event);
-        if (place) picked(...place);
+      map.svg.addEventListener("click", ({ clientX, clientY }) => {
+        const toScreen = DOMMatrix.fromMatrix(map.svg.getScreenCTM() ?? undefined).multiply(map.placing);
+        const { x: z, y: x } = new DOMPoint(clientX, clientY).matrixTransform(toScreen.inverse());
+        picked(x, z);
       });
     }
   }
@@ -24,24 +25,18 @@ export class FlatMaps {
   // Marks the place x, z, mm, on every map.
   mark(x: number, z: number): void {
     for (const map of this.maps) {
-      const { xHigh, zLow, left, top, perMm } = map.place;
+      const at = new DOMPoint(z, x).matrixTransform(map.placing);
       map.ring ??= map.svg.appendChild(newRing());
-      map.ring.setAttribute("cx", String(left + (z - zLow) * perMm));
-      map.ring.setAttribute("cy", String(top + (xHigh - x) * perMm));
+      map.ring.setAttribute("cx", String(at.x));
+      map.ring.setAttribute("cy", String(at.y));
     }
   }
 }
 
+// The picture says x at its top and z at its left, mm, their positions in it, px, and its scale.
 function mapOf(svg: SVGSVGElement): FlatMap {
-  const [xHigh, zLow, left, top, perMm] = svg.dataset["map"]!.split(" ").map(Number);
-  return { svg, place: { xHigh: xHigh!, zLow: zLow!, left: left!, top: top!, perMm: perMm! } };
-}
-
-function placeOf({ svg, place }: FlatMap, event: MouseEvent): [number, number] | undefined {
-  const drawn = svg.getScreenCTM();
-  if (!drawn) return undefined;
-  const { x, y } = new DOMPoint(event.clientX, event.clientY).matrixTransform(drawn.inverse());
-  return [place.xHigh - (y - place.top) / place.perMm, place.zLow + (x - place.left) / place.perMm];
+  const [xHigh, zLow, left, top, perMm] = svg.dataset["map"]!.split(" ").map(Number) as [number, number, number, number, number];
+  return { svg, placing: new DOMMatrix([perMm, 0, 0, -perMm, left - zLow * perMm, top + xHigh * perMm]) };
 }
 
 function newRing(): SVGCircleElement {

@@ -1,5 +1,6 @@
 // The surface from above, for browsers without WebGL.
 
+import { Box3 } from "three";
 import type { ColourMap, Range } from "./colours";
 import { element } from "./dom";
 import type { Scene } from "./scene";
@@ -94,12 +95,10 @@ export class FlatStage {
 
   // Maps x and z, mm, to the picture, px: +x is up, +z to the right.
   private placing(): (x: number, z: number) => [number, number] {
-    const axis = (first: number) => this.unworn.filter((_, index) => index % 3 === first);
-    const ends = (values: Float32Array) => [Math.min(...values), Math.max(...values)] as const;
-    const [[lowX, highX], [lowZ, highZ]] = [ends(axis(0)), ends(axis(2))];
+    const { min, max } = new Box3().setFromArray(this.unworn);
     const { clientWidth: width, clientHeight: height } = this.host;
-    const scale = Math.min((width - 2 * MARGIN_PX) / (highZ - lowZ), (height - 2 * MARGIN_PX) / (highX - lowX));
-    return (x, z) => [width / 2 + (z - (lowZ + highZ) / 2) * scale, height / 2 - (x - (lowX + highX) / 2) * scale];
+    const scale = Math.min((width - 2 * MARGIN_PX) / (max.z - min.z), (height - 2 * MARGIN_PX) / (max.x - min.x));
+    return (x, z) => [width / 2 + (z - (min.z + max.z) / 2) * scale, height / 2 - (x - (min.x + max.x) / 2) * scale];
   }
 
   private drawWith(dots: number, width: number, height: number): void {

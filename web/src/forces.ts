@@ -23,24 +23,14 @@ export function shares(places: Float32Array, quads: ArrayLike<number>): Float32A
 
 // The force of each side at its centre of pressure, left (z below 0) and right, or that of the whole surface; MPa times mm² is N.
 export function forces({ nodes, pressures }: Pressed, places: Float32Array, share: Float32Array, hasSides: boolean): Force[] {
-  const sides = [new Side(), new Side()];
+  const sides = [0, 1].map((): Force => ({ newtons: 0, at: new Vector3() }));
   nodes.forEach((node, index) => {
     const side = sides[hasSides && places[3 * node + 2]! < 0 ? 0 : 1]!;
-    side.add(pressures[index]! * share[node]!, new Vector3().fromArray(places, 3 * node));
+    const newtons = pressures[index]! * share[node]!;
+    side.newtons += newtons;
+    side.at.addScaledVector(new Vector3().fromArray(places, 3 * node), newtons);
   });
-  return sides.filter((side) => side.newtons > 0).map((side) => side.force());
-}
-
-class Side {
-  newtons = 0;
-  private readonly moment = new Vector3();
-
-  add(newtons: number, at: Vector3): void {
-    this.newtons += newtons;
-    this.moment.addScaledVector(at, newtons);
-  }
-
-  force(): Force {
-    return { newtons: this.newtons, at: this.moment.clone().divideScalar(this.newtons) };
-  }
+  const pressed = sides.filter(({ newtons }) => newtons > 0);
+  for (const { at, newtons } of pressed) at.divideScalar(newtons);
+  return pressed;
 }

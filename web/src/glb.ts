@@ -1,6 +1,6 @@
 // Bodies as a file for other programs: binary glTF 2.0 (Khronos Group, ISO/IEC 12113), in metres with y upwards.
 
-import type { Mesh } from "three";
+import { Box3, type Mesh } from "three";
 
 const [MAGIC, VERSION, JSON_CHUNK, BINARY_CHUNK] = [0x46546c67, 2, 0x4e4f534a, 0x004e4942];
 const [ARRAY, ELEMENTS] = [34962, 34963];
@@ -65,20 +65,13 @@ class Data {
   add(values: Float32Array | Uint32Array, type: "VEC3" | "SCALAR", hasBounds = false): number {
     const isFloat = values instanceof Float32Array;
     this.bufferViews.push({ buffer: 0, byteOffset: this.bytes, byteLength: values.byteLength, target: isFloat ? ARRAY : ELEMENTS });
-    const bounds = hasBounds ? { min: ends(values, Math.min), max: ends(values, Math.max) } : {};
+    const box = hasBounds ? new Box3().setFromArray(values) : undefined;
+    const bounds = box && { min: box.min.toArray(), max: box.max.toArray() };
     const count = type === "VEC3" ? values.length / 3 : values.length;
     this.parts.push(values);
     this.bytes += values.byteLength;
     return this.accessors.push({ bufferView: this.bufferViews.length - 1, componentType: isFloat ? FLOAT : UNSIGNED_INT, count, type, ...bounds }) - 1;
   }
-}
-
-function ends(values: Float32Array | Uint32Array, of: (a: number, b: number) => number): number[] {
-  const found = Array.from(values.subarray(0, 3));
-  values.forEach((value, index) => {
-    found[index % 3] = of(found[index % 3]!, value);
-  });
-  return found;
 }
 
 function packed(head: object, parts: ArrayBufferView[], bytes: number): Blob {

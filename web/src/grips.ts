@@ -1,7 +1,8 @@
 // Points of the bodies that can be dragged along lines.
 
-import { Mesh, MeshBasicMaterial, SphereGeometry, type Object3D, type Raycaster, type Vector3 } from "three";
+import { Mesh, MeshBasicMaterial, SphereGeometry, type Object3D, type Vector3 } from "three";
 import { element } from "./dom";
+import type { Stage } from "./stage";
 
 // Radius of a grip, and of the place around it where it is taken, mm.
 const GRIP_MM = 1.3;
@@ -18,19 +19,6 @@ export interface Grip {
   dropped: (mm: number) => void;
 }
 
-// The picture in which the grips are.
-interface Picture {
-  host: HTMLElement;
-  canvas: HTMLCanvasElement;
-  world: Object3D;
-  femur: Object3D | undefined;
-  rayTo: (event: PointerEvent) => Raycaster;
-  // The place of a point on the host, px.
-  placeOf: (point: Vector3) => { x: number; y: number };
-  moved: () => void;
-  signal: AbortSignal;
-}
-
 // A motion has words next to it, and takes effect when the grip is dropped.
 export class Grips {
   private readonly balls: Mesh[] = [];
@@ -38,7 +26,7 @@ export class Grips {
 
   constructor(
     private readonly grips: Grip[],
-    private readonly picture: Picture,
+    private readonly stage: Stage,
   ) {
     for (const grip of grips) {
       const ball = new Mesh(new SphereGeometry(GRIP_MM, 16, 12), new MeshBasicMaterial({ color: 0x2f6db5, depthTest: false }));
@@ -47,13 +35,14 @@ export class Grips {
       this.bodyOf(grip).add(ball);
       this.balls.push(ball);
     }
-    const { host, signal } = picture;
+    const { host } = stage;
+    const { signal } = stage.end;
     host.append(this.words);
     // Before the canvas has the event, which would turn the view.
     host.addEventListener("pointerdown", (event) => this.take(event), { capture: true, signal });
     host.addEventListener("pointermove", (event) => this.hover(event), { signal });
     signal.addEventListener("abort", () => this.words.remove());
-    picture.moved();
+    stage.ask();
   }
 
   show(isShown: boolean): void {
@@ -61,7 +50,7 @@ export class Grips {
   }
 
   private bodyOf({ isOfFemur }: Grip): Object3D {
-    return (isOfFemur && this.picture.femur) || this.picture.world;
+    return (isOfFemur && this.stage.femur) || this.stage.world;
   }
 
   // The point and its line where the body is now.
@@ -73,7 +62,7 @@ export class Grips {
   private hover(event: PointerEvent): void {
     if (event.buttons) return;
     const grip = this.near(event);
-    this.picture.canvas.style.cursor = grip ? "grab" : "";
+    this.stage.canvas.style.cursor = grip ? "grab" : "";
     this.say(grip, 0);
   }
 
@@ -81,7 +70,7 @@ export class Grips {
     const grip = this.near(event);
     if (!grip || event.button !== 0) return;
     event.stopPropagation();
-    const { canvas } = this.picture;
+    const { canvas } = this.stage;
     canvas.setPointerCapture(event.pointerId);
     const ball = this.balls[this.grips.indexOf(grip)]!;
     const [start, drag] = [this.along(event, grip), new AbortController()];
@@ -90,7 +79,7 @@ export class Grips {
       mm = this.along(next, grip) - start;
       ball.position.copy(grip.at).addScaledVector(grip.along, mm);
       this.say(grip, mm);
-      this.picture.moved();
+      this.stage.ask();
     };
     const drop = () => {
       drag.abort();
@@ -103,7 +92,7 @@ export class Grips {
   }
 
   private near(event: PointerEvent): Grip | undefined {
-    const { ray } = this.picture.rayTo(event);
+    const { ray } = this.stage.rayTo(event);
     const away = (grip: Grip) => ray.distanceToPoint(this.now(grip).at);
     const near = this.grips.filter((grip) => this.bodyOf(grip).visible && away(grip) < GRASP_MM);
     return near.sort((one, two) => away(one) - away(two))[0];
@@ -112,7 +101,7 @@ export class Grips {
   // The place on the line of a grip that is nearest to a point on the screen, mm from the grip.
   private along(event: PointerEvent, grip: Grip): number {
     const { at, along } = this.now(grip);
-    const { origin, direction } = this.picture.rayTo(event).ray;
+    const { origin, direction } = this.stage.rayTo(event).ray;
     const [apart, across] = [at.sub(origin), along.dot(direction)];
     // Where the eye looks along the line, both are parallel.
     return (across * apart.dot(direction) - apart.dot(along)) / Math.max(1 - across * across, 1e-3);
@@ -122,7 +111,7 @@ export class Grips {
     this.words.textContent = grip?.words(mm) ?? "";
     if (!grip) return;
     const { at, along } = this.now(grip);
-    const { x, y } = this.picture.placeOf(at.addScaledVector(along, mm));
+    const { x, y } = this.stage.placeOf(at.addScaledVector(along, mm));
     this.words.style.transform = `translate(-50%,-220%) translate(${x.toFixed(1)}px,${y.toFixed(1)}px)`;
   }
 }

@@ -16,10 +16,10 @@ const COLOURS: Record<string, string> = { specimen: "--soft" };
 
 export interface PlotOptions {
   // Called with the horizontal value of a click.
-  chosen?: (x: number) => void;
+  chosen?: (x: number, chart: Chart) => void;
   height?: number;
   // The picture that is saved as SVG.
-  svg?: () => string;
+  svg?: (chart: Chart) => string;
 }
 
 export class Plot {
@@ -77,7 +77,7 @@ export class Plot {
     const { chosen } = this.options;
     const choose = () => {
       const x = plot.cursor.idx == null ? undefined : plot.data[0][plot.cursor.idx];
-      if (x !== undefined) chosen?.(x);
+      if (x !== undefined) chosen?.(x, this.chart);
     };
     if (chosen) plot.over.addEventListener("click", choose);
     return (this.plot = plot);
@@ -90,13 +90,13 @@ export class Plot {
   private saves(): HTMLElement {
     const { chart } = this;
     const name = slug(`${chart.title} ${activityOf(chart)}`.trim());
-    const svg = this.options.svg ?? (() => chartSvg(chart));
+    const { svg = chartSvg } = this.options;
     return element(
       "div",
       { class: "saves" },
       button("CSV", () => saveText(`${name}.csv`, csv(chart), "text/csv")),
       button("PNG", () => savePicture(`${name}.png`, this.drawn().ctx.canvas)),
-      button("SVG", () => saveText(`${name}.svg`, svg(), "image/svg+xml")),
+      button("SVG", () => saveText(`${name}.svg`, svg(chart), "image/svg+xml")),
     );
   }
 }

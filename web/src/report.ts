@@ -1,5 +1,6 @@
 // The interactive part of a report, and of several runs side by side; the scenes stand in the page, compressed.
 
+import { chartSvg } from "./chart_svg";
 import { element } from "./dom";
 import { offerPictures, standalone } from "./figures";
 import { linked } from "./linked";
@@ -17,18 +18,16 @@ async function sceneOf(host: HTMLElement): Promise<Scene> {
 }
 
 // The still picture of a chart, which the interactive one replaces on the screen.
-function stillOf({ id }: Chart): SVGSVGElement | undefined {
-  const all = [...document.querySelectorAll<SVGSVGElement>("svg[data-chart]")];
-  return all.find(({ dataset }) => dataset["chart"] === id);
+function stillOf({ id }: Chart): SVGSVGElement | null {
+  return document.querySelector(`svg[data-chart="${CSS.escape(id)}"]`);
 }
 
 function showRun(host: HTMLElement, scene: Scene): void {
-  const svgOf = (chart: Chart) => {
-    const still = stillOf(chart);
-    return still && (() => standalone(still));
-  };
   const view = new RunView(scene);
-  view.draw(svgOf);
+  view.draw((chart) => {
+    const still = stillOf(chart);
+    return still ? standalone(still) : chartSvg(chart);
+  });
   for (const plot of view.plots) {
     const still = stillOf(plot.chart);
     still?.classList.add("still");

@@ -33,23 +33,15 @@ export class RunView {
     if (viewer) viewer.onPick = (node) => this.pick(viewer, node);
   }
 
-  // Draws the charts, after the bodies so that the page responds in between; `svgOf` is the picture of a chart that is saved.
-  draw(svgOf?: (chart: Chart) => (() => string) | undefined): void {
+  // Draws the charts, after the bodies so that the page responds in between; `svg` is the picture of a chart that is saved.
+  draw(svg?: (chart: Chart) => string): void {
     const { scene, viewer } = this;
     // Other activities have motions of their own, which the bodies do not show.
-    const chosen: Record<string, (chart: Chart) => (x: number) => void> = {
-      wear:
-        ({ cycles_per_x }) =>
-        (x) =>
-          viewer?.showUpdate(updateAfter(scene, cycles_per_x * x)),
-      cycle: () => (percent) => viewer?.showPercent(percent),
+    const chosen: Record<string, PlotOptions["chosen"]> = {
+      wear: (x, { cycles_per_x }) => viewer?.showUpdate(updateAfter(scene, cycles_per_x * x)),
+      cycle: (percent) => viewer?.showPercent(percent),
     };
-    this.plots = scene.charts().map((chart) => {
-      const options: PlotOptions = { height: 160 };
-      options.chosen = chosen[chart.group]?.(chart);
-      options.svg = svgOf?.(chart);
-      return new Plot(chart, options);
-    });
+    this.plots = scene.charts().map((chart) => new Plot(chart, { height: 160, chosen: chosen[chart.group], svg }));
     const moved = this.plots.filter(({ chart }) => chart.group === "cycle");
     if (viewer) viewer.onPercent = (percent) => moved.forEach((plot) => plot.point(percent));
   }

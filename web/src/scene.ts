@@ -58,13 +58,7 @@ interface ChartFacts {
   curves: { name: string; style: string; has_dots: boolean }[];
 }
 
-export interface Curve {
-  name: string;
-  style: string;
-  has_dots: boolean;
-  x: ArrayLike<number>;
-  y: ArrayLike<number>;
-}
+export type Curve = ChartFacts["curves"][number] & { x: ArrayLike<number>; y: ArrayLike<number> };
 
 export interface Chart extends ChartFacts {
   curves: Curve[];

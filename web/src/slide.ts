@@ -1,6 +1,6 @@
 // A picture of the bodies as a slide: with title, names of the directions, scale and colour bar.
 
-import { roundMarks, type ColourMap, type Range } from "./colours";
+import { partOf, roundMarks, type ColourMap, type Range } from "./colours";
 import { inDigits } from "./digits";
 import { element } from "./dom";
 import type { Shot } from "./stage";
@@ -49,7 +49,6 @@ export function slide({ canvas, names, scale }: Shot, legend: Legend, made = new
   }
   pen.textAlign = "center";
   for (const { words, x, y } of names) write(words, left + x * width, top + y * height, 26, SOFT);
-  pen.textAlign = "left";
   // A long name ends at the edge of the slide.
   pen.textAlign = "right";
   write(legend.field, WIDTH - BODIES.left, BAR.top - 40, 28);
@@ -59,11 +58,10 @@ export function slide({ canvas, names, scale }: Shot, legend: Legend, made = new
 }
 
 function drawBar(pen: CanvasRenderingContext2D, { range, map }: Legend, write: (words: string, x: number, y: number, px: number) => void): void {
-  const [low, high] = range;
   pen.fillStyle = map.fill(pen, [0, BAR.top + BAR.height], [0, BAR.top]);
   pen.fillRect(BAR.left, BAR.top, BAR.width, BAR.height);
   for (const mark of roundMarks(range)) {
-    const y = BAR.top + BAR.height * (1 - (high > low ? (mark - low) / (high - low) : 0));
+    const y = BAR.top + BAR.height * (1 - partOf(mark, range));
     write(inDigits(mark), BAR.left + BAR.width + 18, y + 9, 26);
     pen.fillRect(BAR.left + BAR.width, y - 1, 10, 2);
   }

@@ -6,7 +6,6 @@ import {
   Box3,
   BufferAttribute,
   BufferGeometry,
-  Color,
   DoubleSide,
   FrontSide,
   Matrix4,
@@ -33,14 +32,15 @@ import { Matter } from "./matter";
 import type { Pose, Scene } from "./scene";
 
 export type Axis = "x" | "z";
-export type View = "above" | "front" | "side" | "oblique";
+// From where the bodies are seen, by the names of the views.
+export const VIEWS = {
+  Oblique: [0.75, 0.85, 0.6],
+  "From above": [-0.001, 1, 0],
+  "From the front": [1, 0.12, 0],
+  "From the side": [0, 0.12, 1],
+} as const;
 
-const DIRECTIONS: Record<View, [number, number, number]> = {
-  above: [-0.001, 1, 0],
-  front: [1, 0.12, 0],
-  side: [0, 0.12, 1],
-  oblique: [0.75, 0.85, 0.6],
-};
+export type View = keyof typeof VIEWS;
 
 // Drawn by the processor: pixels for each point of the screen, for a picture that moves and for one at rest.
 const COARSE_IN_MOTION = 0.75;
@@ -81,14 +81,16 @@ export class Stage {
   readonly canvas: HTMLCanvasElement;
   // Called when the view has changed.
   onTurn: () => void = () => {};
+  // Bodies that grips can be of, and the end of everything that listens.
+  readonly world = new World();
+  readonly femur?: Mesh<BufferGeometry, Matter>;
+  readonly end = new AbortController();
   private readonly renderer: WebGLRenderer;
-  private readonly world = new World();
   private readonly camera = new PerspectiveCamera(28, 4 / 3, 1, 2000);
   private readonly controls: OrbitControls;
   private readonly surface: Mesh<BufferGeometry, Matter>;
   private readonly skin: Mesh<BufferGeometry, Matter>;
   private readonly colours: Float32Array;
-  private readonly femur?: Mesh<BufferGeometry, Matter>;
   private readonly marker: Mesh;
   private readonly sections: Partial<Record<Axis, number>> = {};
   // The inside of the insert has one colour: seen through a section, it is the cut face.
@@ -98,21 +100,20 @@ export class Stage {
   private readonly scale = element("div", { class: "scale" });
   private readonly names: { box: HTMLElement; at: Vector3 }[];
   private readonly bounds = new Box3();
-  private readonly arrows: ArrowHelper[] = [];
+  // One for the force of each side.
+  private readonly arrows = [0, 1].map(() => new ArrowHelper(new Vector3(0, -1, 0), new Vector3(), 1, 0xd8382c));
   private grips: Grips | undefined;
   private readonly unworn: Float32Array;
   // Vertices of the skin, and the nodes of the surface that they follow.
   private readonly shared: [vertex: number, node: number][];
   private readonly neutral = new Matrix4();
   private readonly isSlow: boolean;
-  private paper = new Color();
-  private readonly end = new AbortController();
   private isAsked = false;
   private isNew = true;
   private resting = 0;
 
   constructor(
-    private readonly host: HTMLElement,
+    readonly host: HTMLElement,
     scene: Scene,
     // A stage that ends: its renderer goes on, since a new one takes a tenth of a second.
     previous?: Stage,
@@ -143,7 +144,7 @@ export class Stage {
     if (scene.facts.neutral_pose) this.neutral.copy(matrix(scene.facts.neutral_pose)).invert();
     this.marker = new Mesh(new SphereGeometry(0.5, 16, 12), new MeshBasicMaterial({ color: 0xd8382c }));
     this.marker.visible = false;
-    this.world.add(this.marker, this.camera);
+    this.world.add(this.marker, this.camera, ...this.arrows);
 
     this.controls = new OrbitControls(this.camera, this.canvas);
     this.controls.addEventListener("change", () => {
@@ -152,7 +153,7 @@ export class Stage {
     });
     this.canvas.addEventListener("keydown", (event) => this.key(event), { signal: this.end.signal });
     this.showFemur(0.3);
-    this.look("oblique");
+    this.look("Oblique");
     new ResizeObserver(() => this.fit()).observe(host);
     matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => this.choosePaper(), { signal: this.end.signal });
     this.choosePaper();
@@ -210,20 +211,21 @@ export class Stage {
 
   // Arrows down onto the surface, with lengths in proportion to the forces.
   press(forces: Force[]): void {
-    forces.forEach(({ at, newtons }, index) => {
+    this.arrows.forEach((arrow, index) => {
+      const force = forces[index];
+      arrow.visible = force !== undefined;
+      if (!force) return;
+      const { at, newtons } = force;
       const length = Math.max(newtons * MM_A_NEWTON, 1);
-      const arrow = this.arrow(index);
-      arrow.visible = true;
       arrow.position.set(at.x, at.y + length, at.z);
       arrow.setLength(length, Math.min(4, length), 2.4);
     });
-    for (const arrow of this.arrows.slice(forces.length)) arrow.visible = false;
     this.ask();
   }
 
   look(view: View): void {
     const { center, radius } = this.bounds.getBoundingSphere(new Sphere());
-    const direction = new Vector3(...DIRECTIONS[view]).normalize();
+    const direction = new Vector3(...VIEWS[view]).normalize();
     this.controls.target.copy(center);
     this.camera.position.copy(center).addScaledVector(direction, RADII_AWAY * radius);
     this.controls.update();
@@ -235,7 +237,7 @@ export class Stage {
     const turns: Record<string, [number, number]> = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, -1], ArrowDown: [0, 1] };
     const zooms: Record<string, number> = { "+": 1 / KEY_ZOOM, "=": 1 / KEY_ZOOM, "-": KEY_ZOOM };
     const [turn, zoom] = [turns[event.key], zooms[event.key]];
-    if (event.key === "Home") this.look("oblique");
+    if (event.key === "Home") this.look("Oblique");
     else if (!turn && !zoom) return;
     event.preventDefault();
     const { target } = this.controls;
@@ -249,19 +251,10 @@ export class Stage {
 
   // Shows points that can be dragged.
   grip(grips: Grip[]): void {
-    this.grips = new Grips(grips, {
-      host: this.host,
-      canvas: this.canvas,
-      world: this.world,
-      femur: this.femur,
-      rayTo: (event) => this.rayTo(event),
-      placeOf: (at) => this.placeOf(at),
-      moved: () => this.ask(),
-      signal: this.end.signal,
-    });
+    this.grips = new Grips(grips, this);
   }
 
-  private rayTo(event: PointerEvent): Raycaster {
+  rayTo(event: PointerEvent): Raycaster {
     const { left, top, width, height } = this.canvas.getBoundingClientRect();
     const place = new Vector2((2 * (event.clientX - left)) / width - 1, 1 - (2 * (event.clientY - top)) / height);
     const ray = new Raycaster();
@@ -351,25 +344,14 @@ export class Stage {
     this.world.traverse((body) => body instanceof Mesh && (body.geometry as BufferGeometry).dispose());
   }
 
-  private arrow(index: number): ArrowHelper {
-    return (this.arrows[index] ??= this.newArrow());
-  }
-
-  private newArrow(): ArrowHelper {
-    const arrow = new ArrowHelper(new Vector3(0, -1, 0), new Vector3(), 1, 0xd8382c);
-    this.world.add(arrow);
-    return arrow;
-  }
-
   private choosePaper(): void {
     const paper = getComputedStyle(this.host).getPropertyValue("--panel").trim();
-    this.paper = new Color(paper || "#f4f3ef");
+    this.renderer.setClearColor(paper || "#f4f3ef");
     this.ask();
   }
 
   private drawWith(dots: number): void {
     if (this.renderer.getPixelRatio() !== dots) this.renderer.setPixelRatio(dots);
-    this.renderer.setClearColor(this.paper);
     this.renderer.render(this.world, this.camera);
     this.drawScale();
     for (const { box, at } of this.names) {
@@ -379,7 +361,7 @@ export class Stage {
   }
 
   // The place of a point on the stage, px.
-  private placeOf(point: Vector3): { x: number; y: number } {
+  placeOf(point: Vector3): { x: number; y: number } {
     const seen = point.clone().project(this.camera);
     return { x: ((1 + seen.x) / 2) * this.host.clientWidth, y: ((1 - seen.y) / 2) * this.host.clientHeight };
   }
@@ -394,7 +376,7 @@ export class Stage {
     if (this.scale.textContent !== words) this.scale.textContent = words;
   }
 
-  private ask(): void {
+  ask(): void {
     delete this.canvas.dataset["still"];
     if (this.isAsked) return;
     this.isAsked = true;

@@ -5,12 +5,9 @@ const TYPES = ["video/mp4;codecs=avc1.640028", "video/webm;codecs=vp9", "video/w
 const FRAMES_A_SECOND = 25;
 const BITS_A_SECOND = 8e6;
 
-function typeOfVideo(): string | undefined {
+// The type of the videos; undefined if the browser makes none.
+export function typeOfVideo(): string | undefined {
   return typeof MediaRecorder === "undefined" ? undefined : TYPES.find((type) => MediaRecorder.isTypeSupported(type));
-}
-
-export function hasVideo(): boolean {
-  return typeOfVideo() !== undefined;
 }
 
 // Paints for a number of seconds; `paint` gets the part of them that has passed. A slow machine paints fewer frames.

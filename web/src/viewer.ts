@@ -1,6 +1,6 @@
 // The stage with its controls: update or instant, field, colours, sections and views.
 
-import { barMarks, ColourMap, type Range } from "./colours";
+import { colourBar, ColourMap, type Range } from "./colours";
 import { button, choice, element, labelled, Slider } from "./dom";
 import type { FlatStage } from "./flat_stage";
 import { forces, shares } from "./forces";
@@ -9,9 +9,9 @@ import { withUnit } from "./plots";
 import { glb } from "./glb";
 import { save, savePicture } from "./save";
 import { newSlide, slide } from "./slide";
-import { hasVideo, video } from "./video";
-import { matrixOf, stageOf, type Axis, type Force, type Stage, type View } from "./stage";
-import type { CycleFacts, Field, Pressed, Scene } from "./scene";
+import { typeOfVideo, video } from "./video";
+import { matrixOf, stageOf, VIEWS, type Axis, type Force, type Stage, type View } from "./stage";
+import type { CycleFacts, Pressed, Scene } from "./scene";
 
 // The pressure through the cycle, by which the surface can be coloured besides the fields of an update.
 const IN_CYCLE = "pressure_mpa";
@@ -27,13 +27,6 @@ const SLIDE_PX = 850;
 const VIDEO_PX = 600;
 // A point farther than this from every node is outside of the surface, mm.
 const REACH_MM = 3;
-
-const VIEWS: [View, string][] = [
-  ["oblique", "Oblique"],
-  ["above", "From above"],
-  ["front", "From the front"],
-  ["side", "From the side"],
-];
 
 // What is shown; absent parts stay as they are.
 export interface Chosen {
@@ -74,13 +67,10 @@ export class Viewer {
   private share = new Float32Array();
   private node: number | undefined;
   private legendShown = "";
-  private values: Float32Array = new Float32Array();
   private statusAt = 0;
   private readonly status = element("output", { class: "status" });
   private readonly picked = element("div", { class: "picked", "aria-live": "polite" });
-  private readonly bar = element("div", { class: "bar" });
-  private readonly barEnds = element("div", { class: "ends" });
-  private readonly barTitle = element("span", { class: "bar-title" });
+  private readonly legend = element("div", { class: "legend" });
   private ranges = new Map<string, Range>();
   private readonly maps = new Map<string, ColourMap>();
   private readonly fields: HTMLSelectElement;
@@ -108,7 +98,7 @@ export class Viewer {
     const percent = (instant: number) => `${inDigits(this.cycle?.percents[instant] ?? 0)} %`;
     this.instants = new Slider("Through the cycle", [0, last, 1], percent, (instant) => this.chooseInstant(instant));
     this.instants.value = 0;
-    this.box.append(host, this.legend(), this.status, this.controls(), this.picked);
+    this.box.append(host, this.legend, this.status, this.controls(), this.picked);
     this.listen(host);
     this.showUpdate(this.update);
   }
@@ -146,14 +136,7 @@ export class Viewer {
 
   // Shows the instant nearest to a percent of the cycle.
   showPercent(percent: number): void {
-    const away = Array.from(this.cycle?.percents ?? [], (at) => Math.abs(at - percent));
-    if (away.length) this.showInstant(away.indexOf(Math.min(...away)));
-  }
-
-  // Values of all fields at a node, at the update that is shown.
-  valuesAt(node: number): [Field, number][] {
-    const { fields } = this.scene.facts;
-    return fields.map((field) => [field, this.scene.field(field.name, this.update)[node]!]);
+    if (this.cycle) this.showInstant(nearest(this.cycle.percents, percent));
   }
 
   get shownField(): string {
@@ -163,9 +146,7 @@ export class Viewer {
   // Takes the view and the field of another viewer.
   lookAs(other: Viewer): void {
     this.stage.lookAs(other.stage);
-    if (!this.scene.facts.fields.some(({ name }) => name === other.field)) return;
-    this.fields.value = other.field;
-    this.colourBy(other.field);
+    if (other.field !== IN_CYCLE) this.choose({ field: other.field });
   }
 
   // Takes what was chosen in another viewer.
@@ -240,9 +221,7 @@ export class Viewer {
     const shown = [this.field, ...range].join();
     if (shown === this.legendShown) return;
     this.legendShown = shown;
-    this.bar.style.background = this.map().gradient;
-    this.barEnds.replaceChildren(...barMarks(range));
-    this.barTitle.textContent = this.fieldInWords();
+    this.legend.replaceChildren(...colourBar(this.map(), range, this.fieldInWords()));
   }
 
   private fieldInWords(): string {
@@ -261,8 +240,7 @@ export class Viewer {
 
   private shownValues(): Float32Array {
     if (this.field !== IN_CYCLE) return this.scene.field(this.field, this.isInCycle ? this.cycle!.update : this.update);
-    if (this.values.length !== this.surface.length / 3) this.values = new Float32Array(this.surface.length / 3);
-    const values = this.values.fill(0);
+    const values = new Float32Array(this.surface.length / 3);
     const pressed = this.cycle?.pressed?.[this.instant];
     pressed?.nodes.forEach((node, index) => (values[node] = pressed.pressures[index]!));
     return values;
@@ -324,10 +302,6 @@ export class Viewer {
     return options;
   }
 
-  private legend(): HTMLElement {
-    return element("div", { class: "legend" }, this.barTitle, this.bar, this.barEnds);
-  }
-
   private controls(): HTMLElement {
     const box = element("div", { class: "controls" });
     box.append(labelled("Colours show", this.fields), this.updates.box);
@@ -357,9 +331,9 @@ export class Viewer {
   }
 
   private viewButtons(): HTMLElement[] {
-    const views = this.stage.isFlat ? [] : VIEWS.map(([view, words]) => button(words, () => this.stage.look(view)));
-    const saves = [button("Save picture", () => this.savePicture())];
-    if (this.cycles.length && hasVideo()) saves.push(button("Save video", () => void this.saveVideo()));
+    const views = this.stage.isFlat ? [] : (Object.keys(VIEWS) as View[]).map((view) => button(view, () => this.stage.look(view)));
+    const saves = [button("Save picture", () => savePicture(`${this.field}.png`, this.slide(SLIDE_PX)))];
+    if (this.cycles.length && typeOfVideo()) saves.push(button("Save video", () => void this.saveVideo()));
     if (!this.stage.isFlat) saves.push(button("Save bodies", () => this.saveBodies()));
     return [...views, button("Pick the highest", () => this.pickHighest()), ...saves];
   }
@@ -407,10 +381,6 @@ export class Viewer {
     return slide(this.stage.shot(height), legend, made);
   }
 
-  private savePicture(): void {
-    savePicture(`${this.field}.png`, this.slide(SLIDE_PX));
-  }
-
   // A cycle of the gait as a video of slides.
   private async saveVideo(): Promise<void> {
     this.stop();
@@ -439,13 +409,10 @@ export class Viewer {
     host.addEventListener("pointerdown", (event) => (began = [event.clientX, event.clientY]));
     host.addEventListener("pointerup", (event) => {
       // A drag turns the bodies; a click picks a point.
-      if (Math.hypot(event.clientX - began[0]!, event.clientY - began[1]!) < 4) this.pick(event);
+      if (Math.hypot(event.clientX - began[0]!, event.clientY - began[1]!) >= 4) return;
+      const node = this.stage.pick(event);
+      if (node !== undefined) this.chooseNode(node);
     });
-  }
-
-  private pick(event: PointerEvent): void {
-    const node = this.stage.pick(event);
-    if (node !== undefined) this.chooseNode(node);
   }
 
   // Picks the node nearest to x, z, mm, seen from above, within a few millimetres.
@@ -477,9 +444,10 @@ export class Viewer {
     this.stage.mark(node);
     const [x, y, z] = this.placeOf(node);
     const place = `x ${inDigits(x)}, y ${inDigits(y)}, z ${inDigits(z)} mm`;
-    const rows = this.valuesAt(node).map(([{ label, unit }, value]) =>
-      element("div", {}, element("dt", {}, label), element("dd", {}, `${inDigits(value)} ${unit}`)),
-    );
+    const rows = this.scene.facts.fields.map(({ name, label, unit }) => {
+      const value = this.scene.field(name, this.update)[node]!;
+      return element("div", {}, element("dt", {}, label), element("dd", {}, `${inDigits(value)} ${unit}`));
+    });
     this.picked.replaceChildren(element("p", {}, `At ${place}:`), element("dl", { class: "facts" }, ...rows));
     this.onPick(node);
   }
@@ -496,6 +464,11 @@ function cyclesOf(scene: Scene): Cycle[] {
 
 // The available update nearest to a number of cycles.
 export function updateAfter(scene: Scene, cycles: number): number {
-  const away = scene.facts.updates.map((after) => (after === null ? Infinity : Math.abs(after - cycles)));
+  return nearest(scene.facts.updates, cycles);
+}
+
+// The index of the value nearest to a number; unknown values are far.
+function nearest(values: ArrayLike<number | null>, wanted: number): number {
+  const away = Array.from(values, (value) => Math.abs((value ?? Infinity) - wanted));
   return Math.max(0, away.indexOf(Math.min(...away)));
 }

@@ -1,6 +1,7 @@
 import assert from "node:assert/strict";
 import test from "node:test";
-import { numberIn, tableAt, unquoted, valuesOf, withValue, type Place } from "../src/page/case_text";
+import { numberIn, tableAtEnd, valuesOf, withValue, type Place } from "../src/page/case_text";
+import { unquoted } from "../src/page/toml_places";
 
 const CASE = `side = "left" # of the patient
 
@@ -34,7 +35,14 @@ test("values are found by table and key", () => {
   assert.equal(numberOf(CASE, scale), undefined);
   assert.equal(unquoted(valuesOf(CASE).get("side")!), "left");
   assert.equal(unquoted(valuesOf(CASE).get("insert.shape")!), "generic");
-  assert.equal(tableAt(CASE.split("\n"), 9), "machine.axial_force");
+});
+
+test("a line has the table of the heading above it", () => {
+  assert.equal(tableAtEnd("unit = 1\n[mach"), "");
+  assert.equal(tableAtEnd(CASE.slice(0, CASE.indexOf("  [50"))), "machine.axial_force");
+  for (const heading of ["[ joints . load ] # of all", "[[joints]]\n[[joints]]\n[joints.load]", '[joints.load]\na = 1\n[wear]\n["joints".load]']) {
+    assert.equal(tableAtEnd(`${heading}\nscale = `), "joints.load", heading);
+  }
 });
 
 test("only the number changes, and a remark stays in its column", () => {

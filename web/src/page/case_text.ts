@@ -8,24 +8,9 @@ export interface Place {
   key: string;
 }
 
-// The heading of a table or of an item of a list of tables; rows of numbers over several lines are none.
-const HEADING = /^\s*\[\[?\s*([A-Za-z_][\w.-]*)\s*\]\]?\s*(#.*)?$/;
-
-export function headingOf(line: string): string | undefined {
-  return HEADING.exec(line)?.[1];
-}
-
-// The table of a line; empty before the first heading.
-export function tableAt(lines: string[], line: number): string {
-  for (let i = line; i >= 0; i--) {
-    const heading = headingOf(lines[i]!);
-    if (heading !== undefined) return heading;
-  }
-  return "";
-}
-
-export function unquoted(value: string): string {
-  return value.replace(/^(["'])(.*)\1$/, "$2");
+// The table that a text ends in, without the numbers of lists; empty before the first heading.
+export function tableAtEnd(text: string): string {
+  return placesOf(text).headings.at(-1)?.table.replaceAll(/ \d+/g, "") ?? "";
 }
 
 export function numberIn(words: string | undefined): number | undefined {
@@ -48,7 +33,7 @@ export function withValue(text: string, { table, key }: Place, value: string): s
   // The last value of the table, below its heading or with dotted keys below that of an outer one.
   const isOfTable = (entry: Entry) => !entry.isInBraces && entry.path.startsWith(`${table}.`) && path.startsWith(joined(entry.section, ""));
   const last = places.entries.filter(isOfTable).at(-1);
-  const from = last?.to ?? places.headings.get(table);
+  const from = last?.to ?? places.headings.findLast((heading) => heading.table === table)?.end;
   if (from === undefined) return `${text.trimEnd()}\n\n[${table}]\n${key} = ${value}\n`;
   const end = text.indexOf("\n", from);
   const at = end < 0 ? text.length : end;
@@ -83,8 +68,4 @@ function replaced(text: string, { from, to }: Entry, value: string): string {
   // A comment after it stays in its column.
   const after = text.slice(to).replace(/^[ \t]+(?=#)/, (gap) => " ".repeat(Math.max(1, gap.length + to - from - value.length)));
   return text.slice(0, from) + value + after;
-}
-
-export function keyOf(line: string): string | undefined {
-  return /^\s*([A-Za-z0-9_-]+)\s*=/.exec(line)?.[1];
 }

@@ -5,9 +5,10 @@ import { inDigits } from "../digits";
 import type { Grip } from "../grips";
 import type { Scene } from "../scene";
 import { matrix } from "../stage";
-import { numberIn, unquoted, valuesOf, type Place } from "./case_text";
+import { numberIn, valuesOf, type Place } from "./case_text";
 import type { Found } from "./shown_run";
 import { type Limits, movedAt } from "./sliders";
+import { unquoted } from "./toml_places";
 
 // Sets the keys at some places to a number.
 type Change = (places: Place[], value: number) => void;

@@ -1,6 +1,6 @@
 // Files that are dropped on the page or chosen: two meshes, a case with the files that it names, or such files alone.
 
-import { button, element } from "../dom";
+import { element } from "../dom";
 import type { Files } from "./wasi";
 
 export interface Bodies {
@@ -16,10 +16,8 @@ const CASE = /\.toml$/i;
 const MACHINE = /^\s*\[\[joint\]\]/m;
 const WANTED =
   "error: give two meshes (STL, OBJ, PLY or VTP), one of the femoral component and one of the insert, or one case (.toml) with the files that it names, or waveforms (.csv)";
-const NAMED: [body: "femur" | "insert", words: RegExp][] = [
-  ["femur", /fem/i],
-  ["insert", /insert|inlay|tib|poly|pe\b/i],
-];
+const FEMUR = /fem/i;
+const INSERT = /insert|inlay|tib|poly|pe\b/i;
 
 export interface Listener {
   bodies(bodies: Bodies): void;
@@ -69,7 +67,7 @@ async function read(files: File[]): Promise<Files> {
 
 // The femur among two files, if exactly one assignment fits their names.
 export function femurByName<Named extends { name: string }>(one: Named, other: Named): Named | undefined {
-  const fits = (femur: Named, insert: Named) => NAMED.some(([body, words]) => words.test((body === "femur" ? femur : insert).name));
+  const fits = (femur: Named, insert: Named) => FEMUR.test(femur.name) || INSERT.test(insert.name);
   const [first, second] = [fits(one, other), fits(other, one)];
   if (first === second) return undefined;
   return first ? one : other;
@@ -78,17 +76,15 @@ export function femurByName<Named extends { name: string }>(one: Named, other: N
 // Shows a dialog to choose which of two files is the femur; undefined if the dialog is closed.
 function askFemur(one: File, other: File): Promise<File | undefined> {
   return new Promise((done) => {
-    const dialog = element("dialog", { "aria-label": "Which file is the femoral component?" });
-    const answer = (femur?: File) => {
+    // A button of the form closes the dialog.
+    const names = [one, other].map(({ name }) => element("button", { value: name }, name));
+    const words = element("p", {}, "Which file is the femoral component? The file names do not identify it.");
+    const form = element("form", { method: "dialog" }, words, ...names, element("button", {}, "Neither"));
+    const dialog = element("dialog", { "aria-label": "Which file is the femoral component?" }, form);
+    dialog.addEventListener("close", () => {
       dialog.remove();
-      done(femur);
-    };
-    dialog.append(
-      element("p", {}, "Which file is the femoral component? The file names do not identify it."),
-      ...[one, other].map((file) => button(file.name, () => answer(file))),
-      button("Neither", () => answer()),
-    );
-    dialog.addEventListener("close", () => answer());
+      done([one, other].find(({ name }) => name === dialog.returnValue));
+    });
     document.body.append(dialog);
     dialog.showModal();
   });

@@ -1,7 +1,7 @@
 // The case as text: line numbers, errors at their lines, completion of tables, keys and words.
 
 import { element } from "../dom";
-import { headingOf, keyOf, tableAt } from "./case_text";
+import { tableAtEnd } from "./case_text";
 import type { Failure, Wrong } from "./program";
 import type { CaseSchema, Offer } from "./schema";
 
@@ -89,27 +89,28 @@ export class Editor {
     this.gutter.scrollTop = this.input.scrollTop;
   }
 
-  private caret(): { lines: string[]; line: number; before: string } {
-    const upTo = this.text.slice(0, this.input.selectionStart).split("\n");
-    return { lines: this.text.split("\n"), line: upTo.length - 1, before: upTo.at(-1)! };
+  // The lines above that of the caret, and what stands before it in its own.
+  private caret(): { above: string[]; before: string } {
+    const above = this.text.slice(0, this.input.selectionStart).split("\n");
+    return { before: above.pop()!, above };
   }
 
   private tellAbout(): void {
-    const { lines, line } = this.caret();
-    const key = keyOf(lines[line]!);
-    this.help.textContent = (key && this.schema.about(tableAt(lines, line), key)) ?? "";
+    const { above } = this.caret();
+    const key = /^\s*([\w-]+)\s*=/.exec(this.text.split("\n")[above.length]!)?.[1];
+    this.help.textContent = (key && this.schema.about(tableAtEnd(above.join("\n")), key)) ?? "";
   }
 
   // Offers words for the caret; without a request, only once a word has begun.
   private offer(isAsked: boolean): void {
-    const { lines, line, before } = this.caret();
-    const table = tableAt(lines, headingOf(lines[line]!) === undefined ? line : line - 1);
+    const { above, before } = this.caret();
+    const table = tableAtEnd(above.join("\n"));
     const [all, begun] = this.atCaret(table, before);
     const isOffered = begun !== undefined && (isAsked || begun.length > 0);
     const fitting = isOffered ? all.filter(({ word }) => word.startsWith(begun) && word !== begun) : [];
     this.offers = fitting.slice(0, MAX_OFFERS);
     this.chosen = 0;
-    this.list.style.top = `${(line + 1) * LINE_PX - this.input.scrollTop + 6}px`;
+    this.list.style.top = `${(above.length + 1) * LINE_PX - this.input.scrollTop + 6}px`;
     this.showOffers();
   }
 

@@ -63,7 +63,8 @@ export class Laboratory {
   async run(): Promise<void> {
     if (this.text.trim() === "") return this.listener.failed({ message: EMPTY, problems: [] });
     this.listener.busy(true);
-    const files = this.files();
+    // A worker gets copies of them.
+    const files = { ...this.named, [CASE]: new TextEncoder().encode(this.text) };
     const preview = await this.solver.call({ words: ["preview", CASE, RESULTS], files, outputs: [RESULTS] });
     if (!preview) return;
     if (!preview.failure) {
@@ -110,12 +111,6 @@ export class Laboratory {
       if (!program) this.listener.failed({ message: `error: ${PROGRAM} cannot be loaded: the saved report has no 3-D view`, problems: [] });
     }
     return this.folder[REPORT] && this.folder;
-  }
-
-  // The files of the case; a worker gets copies of them.
-  private files(): Files {
-    const text = new TextEncoder().encode(this.text);
-    return { ...this.named, [CASE]: text };
   }
 }
 

@@ -88,7 +88,7 @@ class Page {
   private buttons(): void {
     const pressed: Record<string, () => unknown> = {
       cancel: () => this.cancel(),
-      keep: () => this.keep(),
+      keep: () => this.now && this.compared.keep(this.now, this.shown.viewer),
       "save-case": () => saveText("case.toml", this.laboratory.text, "text/plain"),
       "save-results": () => this.saveResults(),
       "save-report": () => this.saveReport(),
@@ -224,10 +224,6 @@ class Page {
     this.say(
       isPreview ? "The run is stopped; the numbers are of a coarse run, the picture of the run before." : "The run is stopped; the previous run is shown.",
     );
-  }
-
-  private keep(): void {
-    if (this.now) this.compared.keep(this.now, this.shown.viewer);
   }
 
   private async saveResults(): Promise<void> {

@@ -2,7 +2,8 @@
 
 import { element, Slider } from "../dom";
 import { inDigits } from "../digits";
-import { numberIn, unquoted, valuesOf, withValue, type Place } from "./case_text";
+import { numberIn, valuesOf, withValue, type Place } from "./case_text";
+import { unquoted } from "./toml_places";
 
 export interface Limits {
   label: string;
@@ -28,44 +29,35 @@ function moved(path: string, label: string, [least, most, step]: [number, number
   return { table, key, label, least, most, step, unit, ...(shapes && { shapes }) };
 }
 
-const GROUPS: [heading: string, moved: Moved[]][] = [
-  [
-    "Femur",
-    [
-      moved("femur.distal_radius_mm", "Distal radius", [25, 60, 0.5], "mm", GENERIC),
-      moved("femur.posterior_radius_mm", "Posterior radius", [15, 30, 0.5], "mm", GENERIC),
-      moved("femur.coronal_radius_mm", "Coronal radius of the femur", [15, 29, 0.5], "mm", GENERIC),
-    ],
+// By their headings.
+const GROUPS: Record<string, Moved[]> = {
+  Femur: [
+    moved("femur.distal_radius_mm", "Distal radius", [25, 60, 0.5], "mm", GENERIC),
+    moved("femur.posterior_radius_mm", "Posterior radius", [15, 30, 0.5], "mm", GENERIC),
+    moved("femur.coronal_radius_mm", "Coronal radius of the femur", [15, 29, 0.5], "mm", GENERIC),
   ],
-  [
-    "Insert",
-    [
-      moved("insert.sagittal_radius_mm", "Sagittal radius of the dish", [42, 120, 1], "mm", GENERIC),
-      moved("insert.coronal_radius_mm", "Coronal radius of the dish", [25, 100, 1], "mm", GENERIC),
-      moved("insert.thickness_mm", "Thickness", [4, 15, 0.5], "mm", GENERIC),
-    ],
+  Insert: [
+    moved("insert.sagittal_radius_mm", "Sagittal radius of the dish", [42, 120, 1], "mm", GENERIC),
+    moved("insert.coronal_radius_mm", "Coronal radius of the dish", [25, 100, 1], "mm", GENERIC),
+    moved("insert.thickness_mm", "Thickness", [4, 15, 0.5], "mm", GENERIC),
   ],
-  [
-    "Placement",
-    [
-      moved("femur.varus_deg", "Varus of the femur", [-4, 4, 0.25], "°", OF_KNEES),
-      moved("femur.external_rotation_deg", "External rotation of the femur", [-8, 8, 0.5], "°", OF_KNEES),
-      moved("insert.posterior_slope_deg", "Posterior slope of the insert", [-4, 10, 0.5], "°", OF_KNEES),
-    ],
+  Placement: [
+    moved("femur.varus_deg", "Varus of the femur", [-4, 4, 0.25], "°", OF_KNEES),
+    moved("femur.external_rotation_deg", "External rotation of the femur", [-8, 8, 0.5], "°", OF_KNEES),
+    moved("insert.posterior_slope_deg", "Posterior slope of the insert", [-4, 10, 0.5], "°", OF_KNEES),
   ],
-  [
-    "Test",
-    [
-      moved("machine.load_scale", "Loads, relative to the waveforms", [0.4, 1.6, 0.05]),
-      moved("contact.friction", "Friction", [0, 0.2, 0.01]),
-      { ...moved("march.cycles", "Cycles", [0.5, 20, 0.5], "million"), times: 1e6 },
-    ],
+  Test: [
+    moved("machine.load_scale", "Loads, relative to the waveforms", [0.4, 1.6, 0.05]),
+    moved("contact.friction", "Friction", [0, 0.2, 0.01]),
+    { ...moved("march.cycles", "Cycles", [0.5, 20, 0.5], "million"), times: 1e6 },
   ],
-];
+};
 
 // The label and the range of the slider of a number.
 export function movedAt({ table, key }: Place): Limits {
-  const found = GROUPS.flatMap(([, all]) => all).find((one) => one.table === table && one.key === key);
+  const found = Object.values(GROUPS)
+    .flat()
+    .find((one) => one.table === table && one.key === key);
   if (!found) throw new Error(`no slider moves ${table}.${key}`);
   return found;
 }
@@ -97,7 +89,7 @@ export class Sliders {
     // Called with the changed text of the case.
     private readonly changed: (text: string) => void,
   ) {
-    for (const [heading, all] of GROUPS) {
+    for (const [heading, all] of Object.entries(GROUPS)) {
       const rows = all.map((moved) => this.row(moved));
       this.box.append(element("fieldset", {}, element("legend", {}, heading), ...rows));
     }

@@ -13,8 +13,7 @@ export interface Entry {
 
 export interface Places {
   entries: Entry[];
-  // The end of the heading of each table.
-  headings: Map<string, number>;
+  headings: { table: string; end: number }[];
 }
 
 const NAME = /[\w-]+|"[^"\n]*"|'[^'\n]*'/g;
@@ -27,7 +26,7 @@ const REST_OF_LINE = /.*/y;
 const TOKEN = /"""[\s\S]*?"""|'''[\s\S]*?'''|"(?:\\.|[^"\\\n])*"|'[^'\n]*'|#.*|[\s\S]/y;
 
 export function placesOf(text: string): Places {
-  const places: Places = { entries: [], headings: new Map() };
+  const places: Places = { entries: [], headings: [] };
   const counts = new Map<string, number>();
   let section = "";
   let at = 0;
@@ -42,7 +41,7 @@ export function placesOf(text: string): Places {
       const heading = !isInBraces && next(HEADING);
       if (heading) {
         section = table = numbered(namesIn(heading[2]!), heading[1] !== "", counts);
-        places.headings.set(section, at);
+        places.headings.push({ table: section, end: at });
         continue;
       }
       const key = next(ASSIGNED)?.[1];
@@ -69,7 +68,11 @@ export function joined(table: string, key: string): string {
 }
 
 function namesIn(key: string): string[] {
-  return key.match(NAME)!.map((name) => name.replace(/^(["'])(.*)\1$/, "$2"));
+  return key.match(NAME)!.map(unquoted);
+}
+
+export function unquoted(value: string): string {
+  return value.replace(/^(["'])(.*)\1$/, "$2");
 }
 
 // The path of a heading; that of a list begins another table of it.
