@@ -10,7 +10,7 @@ use serde::Serialize;
 
 use crate::{
     answers::{
-        emulated::MIN_Q2,
+        emulated::{MIN_Q2, min_tests},
         words::{chance_in_words, shown},
     },
     design::sobol::sobol_places,
@@ -84,7 +84,10 @@ fn standing(plan: &Plan, known: &[Known]) -> Option<(Aim, Option<Seen>)> {
     let before = before.take_while(|tests| *tests < known.len()).last();
     let seen = |tests: usize| Seen::new(plan, &known[..tests]);
     // The errors of an output are those of its tests; a probability is counted over predictions, which must be good.
-    let is_good = |seen: &Seen| goal.limit.is_none() || seen.emulator.q2() >= MIN_Q2;
+    let least = min_tests(plan.study().inputs.len());
+    let is_good = |seen: &Seen| {
+        goal.limit.is_none() || (seen.emulator.q2() >= MIN_Q2 && seen.points.len() >= least)
+    };
     let is_within = |seen: &Option<Seen>| {
         seen.as_ref()
             .is_some_and(|seen| seen.error <= goal.part && is_good(seen))

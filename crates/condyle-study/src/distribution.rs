@@ -110,10 +110,14 @@ pub(crate) fn normal_share(deviations: f64) -> f64 {
 
 fn truncated_normal(keys: &TruncatedKeys, share: f64) -> f64 {
     let mean = keys.mean.unwrap_or_default();
-    // Far above the mean, shares below a value round to 1; those above it are exact up to 38 deviations.
+    // Far above the mean, shares below a value round to 1; those above it are exact up to 38 deviations, and beyond, the values crowd
+    // at the end that is nearer to the mean.
     let sign = if keys.low > mean { -1.0 } else { 1.0 };
     let deviation = sign * keys.standard_deviation;
     let [from, to] = [keys.low, keys.high].map(|end| normal_share((end - mean) / deviation));
+    if from == to {
+        return if keys.low > mean { keys.low } else { keys.high };
+    }
     let value = mean + deviation * normal_quantile(from + share * (to - from));
     // Rounding may exceed the ends, and the case may reject such a value.
     value.clamp(keys.low, keys.high)

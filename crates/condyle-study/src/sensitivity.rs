@@ -45,6 +45,8 @@ struct Changed {
     found: Option<Results>,
     /// Changes of the results, %, in the order of the columns; none if a result was 0.
     above_percent: Option<Vec<Option<f64>>>,
+    /// The checks that the test fails, separated by spaces.
+    doubts: String,
     not_run: Option<String>,
 }
 
@@ -175,16 +177,14 @@ impl Changed {
         found: TestResult,
         as_given: &Results,
     ) -> Self {
-        let (found, not_run) = match found {
+        let (found, doubts, not_run) = match found {
             Ok(test) => {
                 let all = Outputs::default();
                 let value = |output: &'static Scalar| (output.key, all.value(&test.values, output));
-                (
-                    Some(outputs(as_given).map(value).collect::<Results>()),
-                    None,
-                )
+                let found: Results = outputs(as_given).map(value).collect();
+                (Some(found), test.doubts, None)
             }
-            Err(reason) => (None, Some(reason)),
+            Err(reason) => (None, String::new(), Some(reason)),
         };
         let above_percent = found.as_ref().map(|found| {
             let above = outputs(as_given).map(|output| {
@@ -199,6 +199,7 @@ impl Changed {
             set: set.iter().map(ToString::to_string).collect(),
             found,
             above_percent,
+            doubts,
             not_run,
         }
     }
@@ -233,8 +234,14 @@ impl Sensitivity {
             let reason = one.not_run.as_ref()?;
             Some(format!("{} ({reason})", name(one)))
         });
-        let lists: [(&str, Vec<String>); 3] = [
+        let as_given_doubts = self.doubts.join(" ");
+        let doubtful = self.changed.iter().filter_map(|one| {
+            let is_other = !one.doubts.is_empty() && one.doubts != as_given_doubts;
+            is_other.then(|| format!("{} ({})", name(one), one.doubts.replace(' ', ", ")))
+        });
+        let lists: [(&str, Vec<String>); 4] = [
             ("The case as given is doubtful", self.doubts.clone()),
+            ("Doubtful otherwise", doubtful.collect()),
             ("Without effect here", without_effect.map(name).collect()),
             ("Not run", not_run.collect()),
         ];
@@ -284,7 +291,7 @@ mod tests {
         let changed = |assumption, ran: Result<f64, &str>| {
             let outputs = |mass_loss_mg| TestOutputs {
                 values: values(mass_loss_mg),
-                doubts: String::new(),
+                doubts: "impact".to_owned(),
             };
             let found = ran.map(outputs).map_err(str::to_owned);
             Changed::new(assumption, "x 2".to_owned(), &[], found, &as_given)
@@ -305,7 +312,8 @@ mod tests {
         );
         assert!(text.contains("| 0.00 "), "no part of nothing: {text}");
         assert!(
-            text.contains("\nThe case as given is doubtful: single_update.\n\nWithout effect here: damping: x 2.\n"),
+            text.contains("\nThe case as given is doubtful: single_update.\n\nDoubtful otherwise: friction: x 2 (impact); damping: x 2 \
+                 (impact).\n\nWithout effect here: damping: x 2.\n"),
             "{text}"
         );
         assert!(

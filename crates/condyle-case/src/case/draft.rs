@@ -255,7 +255,7 @@ impl<'a> Concluded<'a> {
         let placed = self.mesh.clone().mapped(|vertex| rotation * vertex);
         checked(
             &self.file,
-            (&placed, false),
+            (&placed, &Vec3::clone),
             &placed,
             checks_of(self.body, None),
         )

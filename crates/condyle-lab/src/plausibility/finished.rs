@@ -1,6 +1,6 @@
 //! The run that the checks examine.
 
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 
 use condyle::{
     evolve::{CycleRecord, March},
@@ -39,7 +39,7 @@ pub(crate) struct Finished<'a> {
     pub surface: ArticulatingSurface,
     /// The surface of the first cycle, which is unworn.
     pub unworn: ArticulatingSurface,
-    /// Ends of the edges at which the articulating surface ends.
+    /// Ends of the edges at which the articulating surface ends, and of the edges of a socket.
     rim: Vec<[u32; 2]>,
     rim_nodes: BTreeSet<u32>,
 }
@@ -71,7 +71,12 @@ impl<'a> Finished<'a> {
         of_build: &'a [BuildWarning],
     ) -> Self {
         let surface = march.surface();
-        let rim = rim_of(march.insert());
+        let unworn = march.test().contact.surface(&march.test().insert);
+        let mut rim = rim_of(march.insert());
+        // A head rides on the edge of the socket, from which a chamfer may go on to the rim.
+        if march.test().start_height_mm.is_some() {
+            rim.extend(convex_edges(march.insert(), &unworn));
+        }
         Self {
             rim_nodes: rim.iter().flatten().copied().collect(),
             rim,
@@ -79,7 +84,7 @@ impl<'a> Finished<'a> {
             summary,
             side,
             of_build,
-            unworn: march.test().contact.surface(&march.test().insert),
+            unworn,
             surface,
         }
     }
@@ -148,6 +153,37 @@ impl<'a> Finished<'a> {
 pub(crate) fn rim_of(insert: &Insert) -> Vec<[u32; 2]> {
     let sides = border_sides(insert.surface_faces()).into_iter();
     sides.map(|(ends, ..)| ends).collect()
+}
+
+/// Cosine of 10 degrees, by which two faces of a surface differ at an edge: those of a socket are concave, and noise of scans turns
+/// them by a degree or two.
+const EDGE_COSINE: f64 = 0.985;
+
+/// Returns the convex edges between two faces of a surface.
+fn convex_edges(insert: &Insert, surface: &ArticulatingSurface) -> Vec<[u32; 2]> {
+    let faces = insert.surface_faces();
+    let plane = |face: usize| {
+        let [a, b, c, d] = faces[face].map(|node| surface.positions[node as usize]);
+        let normal = (c - a).cross(&(d - b));
+        ((a + b + c + d) / 4.0, normal.normalize())
+    };
+    let mut first_face = BTreeMap::new();
+    let mut edges = Vec::new();
+    for (face, corners) in faces.iter().enumerate() {
+        for side in 0..4 {
+            let (from, to) = (corners[side], corners[(side + 1) % 4]);
+            let ends = [from.min(to), from.max(to)];
+            let Some(other) = first_face.insert(ends, face) else {
+                continue;
+            };
+            let ((place, normal), (other_place, other_normal)) = (plane(face), plane(other));
+            let is_convex = (other_place - place).dot(&normal) < 0.0;
+            if is_convex && normal.dot(&other_normal) < EDGE_COSINE {
+                edges.push(ends);
+            }
+        }
+    }
+    edges
 }
 
 /// Returns a part of a whole in %; 0 of nothing.

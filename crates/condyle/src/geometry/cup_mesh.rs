@@ -22,6 +22,8 @@ pub struct UnrolledCup {
     /// The triangles, unrolled.
     pub mesh: TriangleMesh,
     radius_mm: f64,
+    centre_mm: Vec3,
+    up: Rotation3<f64>,
 }
 
 impl UnrolledCup {
@@ -61,7 +63,25 @@ impl UnrolledCup {
             };
             Vec3::new(point.x * stretch, -point.norm(), point.z * stretch)
         });
-        Self { mesh, radius_mm }
+        Self {
+            mesh,
+            radius_mm,
+            centre_mm: socket.centre_mm,
+            up,
+        }
+    }
+
+    /// Returns the place of the cup that was unrolled to `point`.
+    pub fn rolled(&self, point: &Vec3) -> Vec3 {
+        self.centre_mm + self.up.inverse() * self.around_centre(point)
+    }
+
+    /// Returns the place that was unrolled to `point`, from the centre of the socket, whose pole is down.
+    fn around_centre(&self, point: &Vec3) -> Vec3 {
+        let along = point.x.hypot(point.z);
+        let (sine, cosine) = (along / self.radius_mm).sin_cos();
+        let around = if along > 0.0 { sine / along } else { 0.0 };
+        Vec3::new(point.x * around, -cosine, point.z * around) * -point.y
     }
 
     /// Returns the cup in hexahedra, its centre at the origin, mounted as by
@@ -80,10 +100,7 @@ impl UnrolledCup {
             return Err(ColumnError::Holes { holes }.into());
         }
         for node in &mut columns.mesh.nodes {
-            let along = node.x.hypot(node.z);
-            let (sine, cosine) = (along / self.radius_mm).sin_cos();
-            let around = if along > 0.0 { sine / along } else { 0.0 };
-            *node = mounting * (Vec3::new(node.x * around, -cosine, node.z * around) * -node.y);
+            *node = mounting * self.around_centre(node);
         }
         let insert = Insert::new(columns.mesh, &columns.articulating, &columns.backside)?;
         let insert = insert.compared_with_mesh(columns.mesh_error_mm, columns.void_mm);

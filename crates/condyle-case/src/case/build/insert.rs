@@ -13,7 +13,6 @@ use condyle_mesh::columns::listed_holes;
 use condyle_mesh::formats::{HexFile, read_hexahedra, read_surface};
 use condyle_mesh::repair::{CheckedMesh, RepairError};
 use condyle_mesh::{FittedSphere, Roundness};
-use condyle_results::point_on_side;
 
 use super::checks::off_centre;
 use super::error::{Body, BuildError, BuildWarning, Finding};
@@ -178,8 +177,8 @@ impl Case {
         warnings: &mut Vec<BuildWarning>,
     ) -> Result<geometry::Insert, BuildError> {
         let (file, path) = (&cup.file, cup.file.path());
-        let side = self.side_in_frame();
-        let placing = Placing::new(cup.length_unit, &Axes::ISB, (None, None), side)?;
+        let (unit, side) = (cup.length_unit, self.side_in_frame());
+        let placing = Placing::new(unit, &Axes::ISB, (None, None), side)?;
         let mesh = placing.mesh(read_surface(file.files(), path)?);
         check_triangles(path, &mesh, cup.length_unit)?;
         let Some(socket) = FittedSphere::new(&mesh, Roundness::Concave) else {
@@ -198,7 +197,7 @@ impl Case {
             return Err(BuildError::mesh(path, &["opens_along"], message));
         }
         if opens_along.normalize().dot(&socket.opens_along) < MIN_COSINE_TO_SOCKET {
-            let [x, y, z]: [f64; 3] = point_on_side(&socket.opens_along, side).into();
+            let [x, y, z]: [f64; 3] = placing.mirrored(&socket.opens_along).into();
             let message = format!(
                 "`opens_along` points away from the opening of the socket, which is along ({x:.3}, {y:.3}, {z:.3}); correct it, or \
                  remove it"
@@ -208,8 +207,8 @@ impl Case {
         let unrolled = UnrolledCup::new(mesh.clone(), &socket, opens_along, cup.edge_mm);
         // Unrolled, its sides are divided: only the vertices of the file scatter.
         let checks = checks_of(Body::Insert, None);
-        // An unrolled socket is in a frame of its own.
-        let shell = checked(path, (&unrolled.mesh, false), &mesh, checks)?;
+        let in_file = |place: &Vec3| placing.mirrored(&unrolled.rolled(place));
+        let shell = checked(path, (&unrolled.mesh, &in_file), &mesh, checks)?;
         if !shell.closed {
             let message = "the cup is open, so its thickness is unknown; give its closed surface";
             return Err(BuildError::mesh(path, &["file"], message));

@@ -95,6 +95,11 @@ impl Placing {
         self.origin_mm.map_or(point, |origin| point - origin)
     }
 
+    /// Returns a place of the computed frame in the frame of the results.
+    pub(super) fn mirrored(&self, place: &Vec3) -> Vec3 {
+        mirror(self.mirrors) * place
+    }
+
     pub(super) fn mesh(&self, mesh: TriangleMesh) -> TriangleMesh {
         let mut placed = mesh.mapped(|vertex| self.point(vertex));
         if self.mirrors {
@@ -159,7 +164,12 @@ pub(super) fn parsed_shell(
         );
         return Err(BuildError::mesh(file, &["clip_below_mm"], message));
     }
-    let mut shell = checked(file, (&mesh, placing.mirrors), &mesh, checks)?;
+    let mut shell = checked(
+        file,
+        (&mesh, &|place| placing.mirrored(place)),
+        &mesh,
+        checks,
+    )?;
     // A closed shell shows its inside; an open one must face the other body.
     let must_face_up = checks.touching == Touching::FromAbove;
     if !shell.closed && faces_up(&shell.mesh) != must_face_up {
@@ -169,25 +179,23 @@ pub(super) fn parsed_shell(
     Ok(shell)
 }
 
-/// Checks a mesh in place; the noise of the scan from which it was made is named before the crossings that it causes. The places of a
-/// mesh that is mirrored are those of the results, mirrored back.
+/// Checks a mesh in place; the noise of the scan from which it was made is named before the crossings that it causes. `in_results`
+/// returns a place of the mesh in the frame of the results, or of its file.
 pub(in crate::case) fn checked(
     file: &Path,
-    (mesh, is_mirrored): (&TriangleMesh, bool),
+    (mesh, in_results): (&TriangleMesh, &dyn Fn(&Vec3) -> Vec3),
     scan: &TriangleMesh,
     checks: Checks,
 ) -> Result<CheckedMesh, BuildError> {
     let mut checked = checks.check(mesh.clone());
-    if is_mirrored {
-        let (defects, left_out) = match &mut checked {
-            Ok(shell) => (&mut shell.defects[..], &mut shell.left_out[..]),
-            Err(RepairError::Defects { defects }) => (&mut defects[..], &mut [][..]),
-            Err(RepairError::Empty) => (&mut [][..], &mut [][..]),
-        };
-        let defects = defects.iter_mut().flat_map(|defect| &mut defect.places_mm);
-        let places = defects.chain(left_out.iter_mut().map(|part| &mut part.at_mm));
-        places.for_each(|place| place.z = -place.z);
-    }
+    let (defects, left_out) = match &mut checked {
+        Ok(shell) => (&mut shell.defects[..], &mut shell.left_out[..]),
+        Err(RepairError::Defects { defects }) => (&mut defects[..], &mut [][..]),
+        Err(RepairError::Empty) => (&mut [][..], &mut [][..]),
+    };
+    let defects = defects.iter_mut().flat_map(|defect| &mut defect.places_mm);
+    let places = defects.chain(left_out.iter_mut().map(|part| &mut part.at_mm));
+    places.for_each(|place| *place = in_results(place));
     checked.map_err(|error| match noise(scan) {
         Some((_, noise)) => {
             BuildError::mesh(file, &["file"], format_args!("{noise}; as it is, {error}"))
