@@ -83,10 +83,12 @@ fn standing(plan: &Plan, known: &[Known]) -> Option<(Aim, Option<Seen>)> {
     let before = batches(plan.study().inputs.len());
     let before = before.take_while(|tests| *tests < known.len()).last();
     let seen = |tests: usize| Seen::new(plan, &known[..tests]);
-    // The errors of an output are those of its tests; a probability is counted over predictions, which must be good.
+    // The errors of an output are those of its tests, and too few may be good by chance; a probability is counted over predictions,
+    // which must be good.
     let least = min_tests(plan.study().inputs.len());
     let is_good = |seen: &Seen| {
-        goal.limit.is_none() || (seen.emulator.q2() >= MIN_Q2 && seen.points.len() >= least)
+        let is_exact = goal.limit.is_none() || seen.emulator.q2() >= MIN_Q2;
+        is_exact && seen.points.len() >= least
     };
     let is_within = |seen: &Option<Seen>| {
         seen.as_ref()

@@ -22,10 +22,10 @@ use crate::{
 /// unexplained, and indices may be wrong by that much.
 pub(crate) const MIN_Q2: f64 = 0.9;
 /// Returns the smallest number of tests from whose emulator answers are computed: ten for each input (Loeppky et al. 2009), but no
-/// more than 30 for up to six, and five for each of more, of which few matter. The Q2 of fewer tests exceeds [`MIN_Q2`] by chance:
+/// more than 30 for up to ten, and three for each of more, of which few matter. The Q2 of fewer tests exceeds [`MIN_Q2`] by chance:
 /// of a peak pressure with a kink, three inputs and 12 tests, Q2 was 0.97 where other tests had 0.26.
 pub(crate) fn min_tests(inputs: usize) -> usize {
-    (10 * inputs).min(30).max(5 * inputs)
+    (10 * inputs).min(30).max(3 * inputs)
 }
 
 /// Largest share of failed tests, about which an emulator knows nothing, up to which answers are computed from it.
