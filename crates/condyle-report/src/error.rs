@@ -3,6 +3,7 @@
 use std::path::{Path, PathBuf};
 
 /// A report could not be made.
+#[expect(missing_docs, reason = "the messages describe the fields")]
 #[derive(Debug, thiserror::Error)]
 pub enum ReportError {
     /// There is no such folder, or it lacks what the report needs; the text includes the remedy.
@@ -11,17 +12,13 @@ pub enum ReportError {
     /// The system refuses to read or write a file.
     #[error("The file {path} cannot be {action}: {source}.")]
     Inaccessible {
-        /// The file.
         path: PathBuf,
-        /// The refused action: "read" or "written".
         action: &'static str,
-        /// Error of the system.
         source: std::io::Error,
     },
     /// A file does not hold what a run writes into it.
     #[error("{} {problem}.", place(path, *line))]
     Content {
-        /// The file.
         path: PathBuf,
         /// Line in the file, from 1, where the problem is in one line.
         line: Option<usize>,

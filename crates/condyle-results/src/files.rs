@@ -76,30 +76,21 @@ pub(super) const CHECKSUMS: &str = "checksums";
 const GAP: &str = "  ";
 
 /// A mesh of a run that has changed since the run wrote it.
+#[expect(missing_docs, reason = "the messages describe the variants and fields")]
 #[derive(Debug, Error)]
 pub enum DamagedFile {
-    /// The bytes have changed.
     #[error(
         "{}: the file is damaged: its bytes are not those that the run wrote (its hash is in {CHECKSUMS}); restore it \
          from a copy, or run the case again with --force",
         file.display()
     )]
-    Changed {
-        /// The file.
-        file: PathBuf,
-    },
-    /// The file is missing or cannot be read.
+    Changed { file: PathBuf },
     #[error(
         "{}: the run wrote this file, and it cannot be read: {source}; restore it from a copy, or run the case again with \
          --force",
         file.display()
     )]
-    Unreadable {
-        /// The file.
-        file: PathBuf,
-        /// The cause.
-        source: io::Error,
-    },
+    Unreadable { file: PathBuf, source: io::Error },
 }
 
 /// Checks that a file has the bytes that the run wrote; accepts a file without a hash in its folder.

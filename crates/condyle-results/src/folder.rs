@@ -32,32 +32,21 @@ use condyle_mesh::formats::MeshFileError;
 const MAX_KEYS_NAMED: usize = 3;
 
 /// A reason why a results folder cannot be used.
+#[expect(missing_docs, reason = "the messages describe the fields")]
 #[derive(Debug, Error)]
 pub enum ResultsError {
     /// A folder whose state does not permit the run.
     #[error("{}: {problem}", folder.display())]
-    Folder {
-        /// The folder.
-        folder: PathBuf,
-        /// Its state and the remedy.
-        problem: String,
-    },
+    Folder { folder: PathBuf, problem: String },
     /// A checkpoint that cannot be read.
     #[error("{}: the checkpoint cannot be used: {source}", file.display())]
     Checkpoint {
-        /// The file.
         file: PathBuf,
-        /// The cause.
         source: CheckpointError,
     },
     /// The system refused to read or write.
     #[error("{}: {source}; check that the folder can be written and the disk is not full", file.display())]
-    Refused {
-        /// The file or folder.
-        file: PathBuf,
-        /// The cause.
-        source: io::Error,
-    },
+    Refused { file: PathBuf, source: io::Error },
     /// A mesh of the run that has changed since the run wrote it.
     #[error(transparent)]
     Damaged(#[from] DamagedFile),

@@ -11,6 +11,7 @@ use condyle_report::ReportError;
 use condyle_results::ResultsError;
 
 /// The reason why a study fails.
+#[expect(missing_docs, reason = "the messages describe the fields")]
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum StudyError {
@@ -29,9 +30,7 @@ pub enum StudyError {
     /// The system or the database refused to read or write.
     #[error("{}: {source}; check that the folder can be written and the disk is not full", path.display())]
     Refused {
-        /// The file or folder.
         path: PathBuf,
-        /// The reason.
         source: Box<dyn Error + Send + Sync>,
     },
     /// The folder is in use.
@@ -48,7 +47,6 @@ pub enum StudyError {
     RunWith {
         /// The key and its value, such as `march.updates = 1`.
         number: String,
-        /// The reason.
         source: Box<RunError>,
     },
 }

@@ -141,6 +141,7 @@ fn note(case: &Case, row: &CycleRow) -> String {
 }
 
 /// A case that cannot be exported.
+#[expect(missing_docs, reason = "the messages describe the variants and fields")]
 #[derive(Debug, Error)]
 pub enum ExportError {
     /// The case does not build.
@@ -149,29 +150,17 @@ pub enum ExportError {
     /// The femur cannot be placed on the insert.
     #[error(transparent)]
     Placement(#[from] PlacementError),
-    /// A choice of the case that the exported model does not have.
     #[error("the export supports {supported}, but this case has {found}; write {remedy}")]
     Unsupported {
-        /// The model that is exported.
         supported: &'static str,
-        /// The setting of the case.
         found: String,
-        /// The setting that can be exported.
         remedy: &'static str,
     },
-    /// The bodies do not touch at this place of the cycle.
     #[error("the bodies are not in contact at {percent} % of the cycle; choose another percentage")]
-    Apart {
-        /// Place in the cycle, %.
-        percent: f64,
-    },
+    Apart { percent: f64 },
     /// The first cycle could not be solved.
     #[error(transparent)]
     Cycle(Box<MarchError>),
-    /// The file cannot be written.
     #[error("the exported file cannot be written: {source}; check the disk and the folder")]
-    Write {
-        /// The error of the writer.
-        source: io::Error,
-    },
+    Write { source: io::Error },
 }

@@ -474,6 +474,7 @@ fn recognised_alone(mesh: &TriangleMesh) -> Option<Recognition> {
 }
 
 /// A draft that cannot be made.
+#[expect(missing_docs, reason = "the messages describe the fields")]
 #[derive(Debug, Error)]
 pub enum DraftError {
     /// A file that cannot be read or used.
@@ -485,12 +486,7 @@ pub enum DraftError {
         femur.display(),
         insert.display()
     )]
-    Exchanged {
-        /// The file named as the femur.
-        femur: PathBuf,
-        /// The file named as the insert.
-        insert: PathBuf,
-    },
+    Exchanged { femur: PathBuf, insert: PathBuf },
     /// A machine for another joint than the knee.
     #[error(
         "unit, axes and start of a femur and an insert are derived for knees only\n\nFor a hip give --head and --cup. For another joint \

@@ -19,24 +19,18 @@ pub struct Wear {
 }
 
 /// A constant that a wear law cannot have.
+#[expect(missing_docs, reason = "the messages describe the variants and fields")]
 #[derive(Clone, Copy, Debug, PartialEq, Error)]
 pub enum ConstantError {
-    /// The law has no constant with that name.
     #[error("the wear law \"{law}\" has no `{name}`; use a case whose law has it")]
     Unknown {
-        /// Word of the law.
         law: &'static str,
-        /// The requested constant.
         name: &'static str,
     },
-    /// A value outside its range.
     #[error("`{name}` is {value:e}; it must be {limits}")]
     OutOfRange {
-        /// The constant.
         name: &'static str,
-        /// The value.
         value: f64,
-        /// Its range.
         limits: Limits,
     },
 }

@@ -14,6 +14,7 @@ use condyle_results::ResultsError;
 use thiserror::Error;
 
 /// A failed run.
+#[expect(missing_docs, reason = "the messages describe the fields")]
 #[derive(Debug, Error)]
 pub enum RunError {
     /// The case file has problems, its bodies cannot be built, or a run would need more memory than it allows.
@@ -34,7 +35,6 @@ pub enum RunError {
     /// Bodies that do not settle on each other.
     #[error("{shown}")]
     Placement {
-        /// The cause.
         source: PlacementError,
         /// The same at the key of the case that causes it.
         shown: Problems,
@@ -42,9 +42,7 @@ pub enum RunError {
     /// The physics could not be solved.
     #[error("{source}{}", kept_in(out.as_deref()))]
     March {
-        /// The cause.
         source: MarchError,
-        /// The folder of the results so far, if any.
         out: Option<PathBuf>,
     },
 }
