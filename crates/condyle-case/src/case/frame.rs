@@ -102,8 +102,7 @@ impl Setting for Axes {
 
     fn read(value: &Spanned<DeValue<'_>>, key: &Key, log: &mut Log<'_>) -> Option<Self> {
         let Some(list) = value.get_ref().as_array().filter(|list| list.len() == 3) else {
-            wrong_type(value, key, log);
-            return None;
+            return wrong_type(value, key, log);
         };
         let words: Vec<Option<&str>> = list
             .iter()

@@ -102,8 +102,7 @@ impl Setting for DataFile {
 
     fn read(value: &Spanned<DeValue<'_>>, key: &Key, log: &mut Log<'_>) -> Option<Self> {
         let Some(written) = value.get_ref().as_str() else {
-            wrong_type(value, key, log);
-            return None;
+            return wrong_type(value, key, log);
         };
         let base = log.base;
         match Self::find(base.files, written, base.folder) {

@@ -31,8 +31,7 @@ pub(crate) trait Setting: Sized {
 /// Reads a number within the limits of its key, or reports why it cannot be used.
 fn limited(value: &Spanned<DeValue<'_>>, key: &Key, log: &mut Log<'_>) -> Option<f64> {
     let Some(number) = number(value.get_ref()) else {
-        wrong_type(value, key, log);
-        return None;
+        return wrong_type(value, key, log);
     };
     match key.limits {
         Some(limits) if !limits.allow(number) => {
@@ -56,10 +55,7 @@ macro_rules! plain_values {
             fn read(value: &Spanned<DeValue<'_>>, key: &Key, log: &mut Log<'_>) -> Option<Self> {
                 let $value = value.get_ref();
                 let read = $read;
-                if read.is_none() {
-                    wrong_type(value, key, log);
-                }
-                read
+                read.or_else(|| wrong_type(value, key, log))
             }
 
             fn text(&self) -> Option<String> {
@@ -119,8 +115,7 @@ impl Setting for u64 {
     fn read(value: &Spanned<DeValue<'_>>, key: &Key, log: &mut Log<'_>) -> Option<Self> {
         let number = limited(value, key, log)?;
         if number.fract() != 0.0 {
-            wrong_type(value, key, log);
-            return None;
+            return wrong_type(value, key, log);
         }
         Some(number as Self)
     }
@@ -139,8 +134,7 @@ impl<const N: usize> Setting for [f64; N] {
     fn read(value: &Spanned<DeValue<'_>>, key: &Key, log: &mut Log<'_>) -> Option<Self> {
         let list = value.get_ref().as_array().filter(|list| list.len() == N);
         let Some(list) = list else {
-            wrong_type(value, key, log);
-            return None;
+            return wrong_type(value, key, log);
         };
         let numbers: Vec<Option<f64>> = list.iter().map(|item| limited(item, key, log)).collect();
         let numbers: Option<Vec<f64>> = numbers.into_iter().collect();
@@ -179,10 +173,15 @@ pub(crate) fn is_name(text: &str) -> bool {
     !text.is_empty() && text.chars().all(is_part)
 }
 
-pub(crate) fn wrong_type(value: &Spanned<DeValue<'_>>, key: &Key, log: &mut Log<'_>) {
+/// Reports a value of another type than its key takes, in place of a value.
+pub(crate) fn wrong_type<T>(
+    value: &Spanned<DeValue<'_>>,
+    key: &Key,
+    log: &mut Log<'_>,
+) -> Option<T> {
     let found = type_name(value.get_ref());
     let fault = type_fault(key.name, &key.kind.to_string(), found);
-    log.problem(value.span(), fault);
+    log.reject(value.span(), fault)
 }
 
 pub(crate) fn read_word<'w>(
@@ -192,14 +191,10 @@ pub(crate) fn read_word<'w>(
     log: &mut Log<'_>,
 ) -> Option<&'w str> {
     let Some(written) = value.get_ref().as_str() else {
-        wrong_type(value, key, log);
-        return None;
+        return wrong_type(value, key, log);
     };
-    let known = words.iter().find(|word| **word == written);
-    if known.is_none() {
-        log.problem(value.span(), unknown_word(key.name, written, words));
-    }
-    known.copied()
+    let known = words.iter().find(|word| **word == written).copied();
+    known.or_else(|| log.reject(value.span(), unknown_word(key.name, written, words)))
 }
 
 /// A factor of 1 or -1.
