@@ -3,7 +3,7 @@
 use condyle::machine::{Waveform, knee};
 
 use super::machine::{Freedoms, Machine, Waveforms, report_keys_of_knee};
-use super::rig::{Rig, report_idle, report_keys_of_rig};
+use super::rig::{Rig, report_keys_of_rig};
 use super::waveform::waveform_items;
 use crate::config::*;
 
@@ -102,7 +102,7 @@ impl Activity {
         log: &mut Log<'_>,
     ) -> Option<Self> {
         report_keys_of_rig(&["frequency_hz"], section, log);
-        report_idle(["file"], "a machine by joints", section, log);
+        section.report_idle(["file"], "a machine by joints", log);
         let keys = ActivityKeys::read(section, log);
         let name = keys.as_ref().map_or("", |keys| keys.name.as_str());
         let waveforms = freedoms.and_then(|freedoms| {

@@ -112,11 +112,8 @@ impl Femur {
     fn check(&self, section: &Section<'_>, log: &mut Log<'_>) {
         let has_placement = matches!(self.shape, FemurShape::Generic(_) | FemurShape::Mesh(_));
         if !has_placement && self.placement.is_moved() {
-            section.report_idle(
-                &FemurPlacement::keys(),
-                "shape = \"generic\" or \"mesh\"",
-                log,
-            );
+            let needs = "shape = \"generic\" or \"mesh\"";
+            section.report_idle(names(&FemurPlacement::keys()), needs, log);
         }
     }
 }

@@ -229,7 +229,7 @@ impl Insert {
         );
         if !has_placement && self.placement.is_turned() {
             let needs = "shape = \"generic\", \"mesh\" or \"hexahedra\"";
-            section.report_idle(&InsertPlacement::keys(), needs, log);
+            section.report_idle(names(&InsertPlacement::keys()), needs, log);
         }
     }
 }

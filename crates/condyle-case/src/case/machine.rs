@@ -9,7 +9,7 @@ use toml::de::DeTable;
 
 use super::drive::DriveWord;
 use super::ligament::Ligament;
-use super::rig::{Rig, report_idle, report_keys_of_rig};
+use super::rig::{Rig, report_keys_of_rig};
 use super::waveform::{self, waveform_items};
 use crate::config::*;
 
@@ -424,7 +424,7 @@ impl Machine {
 pub(super) fn report_keys_of_knee(section: &Section<'_>, keys: &[&'static str], log: &mut Log<'_>) {
     let channels = KNEE.channels.iter().map(|channel| channel.name);
     let needs = "a knee simulator, such as preset = \"stanmore-force\"";
-    report_idle(keys.iter().copied().chain(channels), needs, section, log);
+    section.report_idle(keys.iter().copied().chain(channels), needs, log);
 }
 
 impl Settings for Machine {

@@ -82,18 +82,6 @@ fn replace_by_name<T>(all: &mut Vec<T>, changes: Vec<T>, name: impl Fn(&T) -> &s
     }
 }
 
-/// Reports each of `keys` that `section` has: without what they need, they have no effect.
-pub(super) fn report_idle(
-    keys: impl IntoIterator<Item = &'static str>,
-    needs: &str,
-    section: &Section<'_>,
-    log: &mut Log<'_>,
-) {
-    for key in keys.into_iter().filter(|key| section.value(key).is_some()) {
-        log.problem(section.key_span(key), idle(key, needs));
-    }
-}
-
 /// Reports the keys of a machine by joints that `section` of a knee simulator has, except those in `own`.
 pub(super) fn report_keys_of_rig(own: &[&str], section: &Section<'_>, log: &mut Log<'_>) {
     let items = Rig::items();
@@ -101,12 +89,7 @@ pub(super) fn report_keys_of_rig(own: &[&str], section: &Section<'_>, log: &mut 
         .iter()
         .filter_map(Item::name)
         .filter(|key| !own.contains(key));
-    report_idle(
-        others,
-        "a machine by joints, such as that of a hip",
-        section,
-        log,
-    );
+    section.report_idle(others, "a machine by joints, such as that of a hip", log);
 }
 
 impl Rig {

@@ -8,7 +8,7 @@ use toml::Spanned;
 use toml::de::{DeString, DeTable, DeValue};
 
 use super::fault::{Fault, explain, idle, missing_key, syntax, type_fault};
-use super::key::{Key, names, type_name};
+use super::key::{Key, type_name};
 use super::problem::{Base, Log, Problems, Source};
 use super::render::steers;
 use super::setting::Setting;
@@ -196,8 +196,13 @@ impl<'a> Section<'a> {
     }
 
     /// Reports each of `keys` that is given, because it has an effect only with `needs`.
-    pub(crate) fn report_idle(&self, keys: &[Key], needs: &str, log: &mut Log<'_>) {
-        for key in names(keys).filter(|key| self.value(key).is_some()) {
+    pub(crate) fn report_idle(
+        &self,
+        keys: impl IntoIterator<Item = &'static str>,
+        needs: &str,
+        log: &mut Log<'_>,
+    ) {
+        for key in keys.into_iter().filter(|key| self.value(key).is_some()) {
             log.problem(self.key_span(key), idle(key, needs));
         }
     }
