@@ -72,11 +72,15 @@ impl Case {
 
     fn check(&self, root: &Section<'_>, log: &mut Log<'_>) {
         let side = self.side_in_frame();
-        if let FemurShape::Mesh(mesh) = &self.femur.shape {
-            check_axes(&mesh.axes, side, root.part("femur").value_span("axes"), log);
-        }
-        if let Some(axes) = self.insert.axes() {
-            check_axes(axes, side, root.part("insert").value_span("axes"), log);
+        let of_femur = match &self.femur.shape {
+            FemurShape::Mesh(mesh) => Some(&mesh.frame),
+            _ => None,
+        };
+        for (table, frame) in [("femur", of_femur), ("insert", self.insert.frame())] {
+            if let Some(frame) = frame {
+                let place = root.part(table).value_span("axes");
+                check_axes(&frame.axes, side, place, log);
+            }
         }
         self.check_round_bearing(&root.part("insert"), log);
         let rig = self.machine.rig.as_ref();

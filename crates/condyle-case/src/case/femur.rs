@@ -2,7 +2,7 @@
 
 use condyle::geometry::GenericFemurShape;
 
-use super::frame::{Axes, LengthUnit};
+use super::frame::FileFrame;
 use crate::config::*;
 
 settings! {
@@ -42,12 +42,8 @@ settings! {
     MeshFemur {
         /// STL, OBJ, PLY or VTP file, relative to the case file.
         file: DataFile;
-        /// Unit of length of the file.
-        length_unit: LengthUnit = LengthUnit::Millimetre;
-        /// Anatomical directions of x, y and z of the file.
-        axes: Axes = Axes::ISB;
-        /// Rotation of the body after `axes`, about z, then x, then y of the frame; given as [x, y, z].
-        rotation_deg: Option<[f64; 3]> = None, in within(-180.0, 180.0);
+        /// The frame of the file.
+        [flat] frame: FileFrame;
         /// Point of the file that is the origin of the femoral frame, along its axes after `axes` and `rotation_deg`; the file's own if not given.
         origin_mm: Option<[f64; 3]> = None, in within(-100_000.0, 100_000.0);
         /// Flexion axis [x, y] in the femoral frame; if not given, fitted to the posterior condyles of a knee, to the dome of a talus,

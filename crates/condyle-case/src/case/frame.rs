@@ -25,6 +25,18 @@ settings! {
     }
 }
 
+settings! {
+    /// The frame of a file and its place on the body.
+    FileFrame {
+        /// Unit of length of the file.
+        length_unit: LengthUnit = LengthUnit::Millimetre;
+        /// Anatomical directions of x, y and z of the file.
+        axes: Axes = Axes::ISB;
+        /// Rotation of the body after `axes`, about z, then x, then y of the frame; given as [x, y, z].
+        rotation_deg: Option<[f64; 3]> = None, in within(-180.0, 180.0);
+    }
+}
+
 /// Directions of x, y and z of a file, in anatomical words.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Axes {

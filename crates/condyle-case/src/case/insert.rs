@@ -2,7 +2,7 @@
 
 use condyle::geometry::{CupShape, GenericInsertShape, Meshing, TroughShape};
 
-use super::frame::{Axes, LengthUnit};
+use super::frame::{FileFrame, LengthUnit};
 use crate::config::*;
 
 settings! {
@@ -28,12 +28,8 @@ settings! {
     MeshInsert {
         /// STL, OBJ, PLY or VTP file, relative to the case file.
         file: DataFile;
-        /// Unit of length of the file.
-        length_unit: LengthUnit = LengthUnit::Millimetre;
-        /// Anatomical directions of x, y and z of the file.
-        axes: Axes = Axes::ISB;
-        /// Rotation of the body after `axes`, about z, then x, then y of the frame; given as [x, y, z].
-        rotation_deg: Option<[f64; 3]> = None, in within(-180.0, 180.0);
+        /// The frame of the file.
+        [flat] frame: FileFrame;
         /// Edge of a hexahedron, seen from above.
         edge_mm: f64 = Meshing::default().edge_mm, in within(0.1, 10.0);
         /// Hexahedra through the thickness. With enough of them, the top one is as thick as an edge is long, and the others are thicker downwards.
@@ -48,12 +44,8 @@ settings! {
     HexahedralInsert {
         /// Abaqus .inp, Gmsh .msh or .vtu file, relative to the case file.
         file: DataFile;
-        /// Unit of length of the file.
-        length_unit: LengthUnit = LengthUnit::Millimetre;
-        /// Anatomical directions of x, y and z of the file.
-        axes: Axes = Axes::ISB;
-        /// Rotation of the body after `axes`, about z, then x, then y of the frame; given as [x, y, z].
-        rotation_deg: Option<[f64; 3]> = None, in within(-180.0, 180.0);
+        /// The frame of the file.
+        [flat] frame: FileFrame;
         /// Name of the articulating surface in the file; by default the surface visible from above.
         articulating_surface: Option<String> = None;
         /// Name of the backside in the file; by default the surface visible from below.
@@ -194,10 +186,10 @@ impl InsertShape {
 }
 
 impl Insert {
-    pub(super) fn axes(&self) -> Option<&Axes> {
+    pub(super) fn frame(&self) -> Option<&FileFrame> {
         match &self.shape {
-            InsertShape::Mesh(mesh) => Some(&mesh.axes),
-            InsertShape::Hexahedra(mesh) => Some(&mesh.axes),
+            InsertShape::Mesh(MeshInsert { frame, .. })
+            | InsertShape::Hexahedra(HexahedralInsert { frame, .. }) => Some(frame),
             _ => None,
         }
     }

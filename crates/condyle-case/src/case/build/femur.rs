@@ -106,7 +106,7 @@ impl Case {
         warnings: &mut Vec<BuildWarning>,
     ) -> Result<BuiltFemur, BuildError> {
         let (side, placement) = (self.side_in_frame(), &self.femur.placement);
-        let placing = femur.placing(side)?;
+        let placing = Placing::new(&femur.frame, femur.origin_mm, side)?;
         let PreparedFemur { shell, field } =
             femur.prepared((joint, placement), &placing, &self.limits, threads, keep)?;
         let (file, mesh) = (&femur.file, &shell.mesh);
@@ -328,7 +328,7 @@ impl Case {
     pub fn femur_triangles(&self, test: &WearTest, about: f64) -> Result<TriangleMesh, BuildError> {
         match (&self.femur.shape, test.counterface.as_ref()) {
             (FemurShape::Mesh(femur), _) => {
-                let placing = femur.placing(self.side_in_frame())?;
+                let placing = Placing::new(&femur.frame, femur.origin_mm, self.side_in_frame())?;
                 let checks = checks_of(Body::Femur, None);
                 let shell = shell(&femur.file, &placing, checks, &mut Vec::new())?;
                 let joint = test.machine().mechanism.tests;

@@ -19,7 +19,7 @@ use super::error::{Body, BuildError, BuildWarning, Finding};
 use super::placing::{Placing, checked, checks_of, middle_of_mesh, middle_of_points, shell, warn};
 use super::size::{check_points, check_triangles};
 use crate::case::contents::Case;
-use crate::case::frame::Axes;
+use crate::case::frame::{Axes, FileFrame};
 use crate::case::insert::{
     CupMeshInsert, GenericInsert, HexahedralInsert, Insert, InsertShape, MeshInsert,
 };
@@ -63,7 +63,7 @@ impl Case {
         let InsertShape::Mesh(insert) = &self.insert.shape else {
             return None;
         };
-        let placing = insert.placing(self.side_in_frame()).ok()?;
+        let placing = Placing::new(&insert.frame, None, self.side_in_frame()).ok()?;
         Some(placing.mesh(read_surface(insert.file.files(), insert.file.path()).ok()?))
     }
 
@@ -132,7 +132,7 @@ impl Case {
         warnings: &mut Vec<BuildWarning>,
     ) -> Result<geometry::Insert, BuildError> {
         let file = &insert.file;
-        let placing = insert.placing(self.side_in_frame())?;
+        let placing = Placing::new(&insert.frame, None, self.side_in_frame())?;
         let checks = checks_of(Body::Insert, insert.clip_below_mm);
         let mut shell = shell(file, &placing, checks, warnings)?;
         if shell.closed && insert.thickness_mm.is_some() {
@@ -177,8 +177,12 @@ impl Case {
         warnings: &mut Vec<BuildWarning>,
     ) -> Result<geometry::Insert, BuildError> {
         let (file, path) = (&cup.file, cup.file.path());
-        let (unit, side) = (cup.length_unit, self.side_in_frame());
-        let placing = Placing::new(unit, &Axes::ISB, (None, None), side)?;
+        let frame = FileFrame {
+            length_unit: cup.length_unit,
+            axes: Axes::ISB,
+            rotation_deg: None,
+        };
+        let placing = Placing::new(&frame, None, self.side_in_frame())?;
         let mesh = placing.mesh(read_surface(file.files(), path)?);
         check_triangles(path, &mesh, cup.length_unit)?;
         let Some(socket) = FittedSphere::new(&mesh, Roundness::Concave) else {
@@ -224,7 +228,7 @@ impl Case {
         &self,
         insert: &HexahedralInsert,
     ) -> Result<(HexFile, Placing), BuildError> {
-        let placing = insert.placing(self.side_in_frame())?;
+        let placing = Placing::new(&insert.frame, None, self.side_in_frame())?;
         let mut file = read_hexahedra(insert.file.files(), insert.file.path())?;
         for node in &mut file.mesh.nodes {
             *node = placing.point(node);
@@ -248,7 +252,7 @@ impl Case {
     ) -> Result<geometry::Insert, BuildError> {
         let path = insert.file.path();
         let (mut file, placing) = self.placed_hexahedra(insert)?;
-        check_points(path, &file.mesh.nodes, insert.length_unit)?;
+        check_points(path, &file.mesh.nodes, insert.frame.length_unit)?;
         check_nodes(file.mesh.nodes.len() as f64, &self.limits)?;
         let boundary = file.mesh_of_boundary();
         self.check_orientation(Body::Insert, &insert.file, &boundary, &placing, warnings)?;

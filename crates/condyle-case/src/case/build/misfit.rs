@@ -60,14 +60,14 @@ impl Case {
         let FemurShape::Mesh(femur) = &self.femur.shape else {
             return None;
         };
-        let placing = femur.placing(self.side_in_frame()).ok()?;
-        Placed::read(Body::Femur, &femur.file, placing)
+        let placing = Placing::new(&femur.frame, femur.origin_mm, self.side_in_frame());
+        Placed::read(Body::Femur, &femur.file, placing.ok()?)
     }
 
     fn placed_insert(&self) -> Option<Placed<'_>> {
         match &self.insert.shape {
             InsertShape::Mesh(insert) => {
-                let placing = insert.placing(self.side_in_frame()).ok()?;
+                let placing = Placing::new(&insert.frame, None, self.side_in_frame()).ok()?;
                 Placed::read(Body::Insert, &insert.file, placing)
             }
             InsertShape::Hexahedra(insert) => {

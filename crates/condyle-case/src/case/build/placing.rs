@@ -13,34 +13,10 @@ use condyle_mesh::repair::{
 
 use super::error::{Body, BuildError, BuildWarning, Finding};
 use super::size::{check_triangles, stray_piece};
-use crate::case::femur::{FemurPlacement, MeshFemur};
-use crate::case::frame::{Axes, LengthUnit, Side};
-use crate::case::insert::{HexahedralInsert, InsertOrigin, InsertPlacement, MeshInsert};
+use crate::case::femur::FemurPlacement;
+use crate::case::frame::{Axes, FileFrame, LengthUnit, Side};
+use crate::case::insert::{InsertOrigin, InsertPlacement};
 use crate::config::DataFile;
-
-/// The turn and the origin that a case adds to the axes of a file.
-type Moved = (Option<[f64; 3]>, Option<[f64; 3]>);
-
-impl MeshFemur {
-    pub(super) fn placing(&self, side: Side) -> Result<Placing, BuildError> {
-        let moved = (self.rotation_deg, self.origin_mm);
-        Placing::new(self.length_unit, &self.axes, moved, side)
-    }
-}
-
-impl MeshInsert {
-    pub(super) fn placing(&self, side: Side) -> Result<Placing, BuildError> {
-        let moved = (self.rotation_deg, None);
-        Placing::new(self.length_unit, &self.axes, moved, side)
-    }
-}
-
-impl HexahedralInsert {
-    pub(super) fn placing(&self, side: Side) -> Result<Placing, BuildError> {
-        let moved = (self.rotation_deg, None);
-        Placing::new(self.length_unit, &self.axes, moved, side)
-    }
-}
 
 /// Map from the unit and axes of a file to mm, x anterior, y superior, z to the right of a right knee.
 pub(super) struct Placing {
@@ -54,15 +30,15 @@ pub(super) struct Placing {
 }
 
 impl Placing {
+    /// Places a file with the point `origin_mm` at the origin, or with its own.
     pub(super) fn new(
-        unit: LengthUnit,
-        axes: &Axes,
-        (rotation_deg, origin_mm): Moved,
+        frame: &FileFrame,
+        origin_mm: Option<[f64; 3]>,
         side: Side,
     ) -> Result<Self, BuildError> {
-        let axes = axes.rotation(side);
+        let (unit, axes) = (frame.length_unit, frame.axes.rotation(side));
         let axes = axes.map_err(|why| BuildError::new(&["axes"], format!("`axes`: {why}")))?;
-        let axes = match rotation_deg {
+        let axes = match frame.rotation_deg {
             Some([x, y, z]) => rotation(z, x, y) * axes,
             None => axes,
         };
@@ -562,8 +538,12 @@ mod tests {
 
     #[test]
     fn verify_a_left_knee_becomes_its_mirror_image() {
-        let placing = Placing::new(LengthUnit::Metre, &Axes::ISB, (None, None), Side::Left);
-        let placing = placing.unwrap();
+        let frame = FileFrame {
+            length_unit: LengthUnit::Metre,
+            axes: Axes::ISB,
+            rotation_deg: None,
+        };
+        let placing = Placing::new(&frame, None, Side::Left).unwrap();
         let placed = placing.point(&Vec3::new(0.001, 0.002, 0.003));
         assert!((placed - Vec3::new(1.0, 2.0, -3.0)).norm() < 1e-12);
         let mesh = TriangleMesh {

@@ -11,7 +11,7 @@ use tempfile::TempDir;
 
 use super::assemble::Built;
 use super::error::{Body, BuildError};
-use super::placing::{checks_of, shell};
+use super::placing::{Placing, checks_of, shell};
 use crate::cache::Cache;
 use crate::case::tests::{cases, has_dm_data};
 use crate::case::{Case, FemurShape, InsertShape, SharedBodies, Side};
@@ -148,7 +148,7 @@ fn dm_cases_build_and_lie_the_right_way_round() {
     let FemurShape::Mesh(femur) = &case.femur.shape else {
         panic!("it is a mesh");
     };
-    let placing = femur.placing(Side::Right).unwrap();
+    let placing = Placing::new(&femur.frame, femur.origin_mm, Side::Right).unwrap();
     let shell = shell(
         &femur.file,
         &placing,

@@ -151,11 +151,11 @@ fn dm_cases_turn_the_meshes_half_round() {
     else {
         panic!("both are meshes");
     };
-    for axes in [femur.axes, insert.axes] {
+    for axes in [femur.frame.axes, insert.frame.axes] {
         let rotation = axes.rotation(Side::Right).unwrap();
         assert_eq!(rotation.diagonal().as_slice(), [-1.0, 1.0, -1.0]);
     }
-    assert_eq!(femur.length_unit.in_mm(), 1000.0);
+    assert_eq!(femur.frame.length_unit.in_mm(), 1000.0);
 }
 
 #[test]
