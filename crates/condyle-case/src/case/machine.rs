@@ -87,6 +87,29 @@ settings! {
     }
 }
 
+// No source gives the inertia and damping of a freedom: the book explains the defaults.
+settings! {
+    /// Keys of a freedom along a line, beside its drive.
+    TranslationKeys {
+        /// Position at which it is held when locked.
+        locked_at_mm: f64 = 0.0, in within(-100.0, 100.0);
+        /// Mass that moves with it.
+        inertia_kg: f64 = 1e3 * knee::MASS_TONNE, in within(0.0, 1000.0);
+        /// Viscous damping.
+        damping_n_s_per_mm: f64 = knee::DAMPING_N_S_PER_MM, in within(0.0, 1000.0);
+    }
+
+    /// Keys of a freedom about an axis, beside its drive. Files state SI units: 1 t mm2 is 1e-3 kg m2.
+    RotationKeys {
+        /// Position at which it is held when locked.
+        locked_at_deg: f64 = 0.0, in within(-180.0, 180.0);
+        /// Moment of inertia that moves with it.
+        inertia_kg_m2: f64 = 1e-3 * knee::MOMENT_OF_INERTIA_TONNE_MM2, in within(0.0, 100.0);
+        /// Viscous damping.
+        damping_nm_s_per_rad: f64 = 1e-3 * knee::DAMPING_NMM_S_PER_RAD, in within(0.0, 1000.0);
+    }
+}
+
 /// The simulator.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Machine {
@@ -109,12 +132,16 @@ pub struct Machine {
 pub struct Freedom {
     /// Its drive.
     pub drive: DriveWord,
-    /// Position at which it is held when locked, mm or degrees.
-    pub locked_at: f64,
-    /// Mass, kg, or moment of inertia, kg m2, that moves with it.
-    pub inertia: f64,
-    /// Viscous damping, N s/mm or N m s/rad.
-    pub damping: f64,
+    /// Its position when locked, inertia and damping.
+    pub keys: FreedomKeys,
+}
+
+/// The keys of a freedom of either kind.
+#[derive(Clone, Debug, PartialEq)]
+#[expect(missing_docs, reason = "the kinds of joints")]
+pub enum FreedomKeys {
+    Translation(TranslationKeys),
+    Rotation(RotationKeys),
 }
 
 /// The six freedoms, one per joint, each with its drive.
@@ -169,55 +196,9 @@ impl Preset {
 }
 
 impl Freedom {
-    /// Returns the keys of a freedom: its drive, and position when locked, inertia and damping, each with its default.
-    /// No source gives inertia and damping: the book explains the defaults.
-    pub(super) fn keys(kind: JointKind) -> (Key, [(Key, f64); 3]) {
-        let number = |name, doc: &'static str, default, least, most| {
-            (
-                Key::number(name, doc, default, within(least, most)),
-                default,
-            )
-        };
+    pub(super) fn drive_key() -> Key {
         let about = "Its drive; that of the preset if not given.";
-        let drive = Key::optional("drive", about, DriveWord::kind());
-        let (held, damping) = (
-            "Position at which it is held when locked.",
-            "Viscous damping.",
-        );
-        let numbers = match kind {
-            JointKind::Translation => {
-                let mass = "Mass that moves with it.";
-                [
-                    number("locked_at_mm", held, 0.0, -100.0, 100.0),
-                    number("inertia_kg", mass, 1e3 * knee::MASS_TONNE, 0.0, 1000.0),
-                    number(
-                        "damping_n_s_per_mm",
-                        damping,
-                        knee::DAMPING_N_S_PER_MM,
-                        0.0,
-                        1000.0,
-                    ),
-                ]
-            }
-            JointKind::Rotation => {
-                let moment = "Moment of inertia that moves with it.";
-                // Files state SI units; the library computes in t, mm and s, and 1 t mm2 is 1e-3 kg m2.
-                let inertia_kg_m2 = 1e-3 * knee::MOMENT_OF_INERTIA_TONNE_MM2;
-                let damping_nm_s_per_rad = 1e-3 * knee::DAMPING_NMM_S_PER_RAD;
-                [
-                    number("locked_at_deg", held, 0.0, -180.0, 180.0),
-                    number("inertia_kg_m2", moment, inertia_kg_m2, 0.0, 100.0),
-                    number(
-                        "damping_nm_s_per_rad",
-                        damping,
-                        damping_nm_s_per_rad,
-                        0.0,
-                        1000.0,
-                    ),
-                ]
-            }
-        };
-        (drive, numbers)
+        Key::optional("drive", about, DriveWord::kind())
     }
 
     fn read(
@@ -226,14 +207,8 @@ impl Freedom {
         section: &Section<'_>,
         log: &mut Log<'_>,
     ) -> Option<Self> {
-        let (drive, numbers) = Self::keys(joint.kind());
-        let drive: Option<Option<DriveWord>> = section.setting(&drive, Some(None), log);
-        let read = numbers
-            .each_ref()
-            .map(|(key, default)| section.setting(key, Some(*default), log));
-        let [Some(locked_at), Some(inertia), Some(damping)] = read else {
-            return None;
-        };
+        let drive: Option<Option<DriveWord>> = section.setting(&Self::drive_key(), Some(None), log);
+        let keys = FreedomKeys::read(joint.kind(), section, log)?;
         let drive = drive?.unwrap_or(preset.drive(joint.name));
         if !drive.fits(joint) {
             let (freedom, word) = (joint.name, drive.word());
@@ -243,37 +218,48 @@ impl Freedom {
             );
             log.problem(section.value_span("drive"), fault);
         }
+        let (key, locked_at) = match &keys {
+            FreedomKeys::Translation(keys) => ("locked_at_mm", keys.locked_at_mm),
+            FreedomKeys::Rotation(keys) => ("locked_at_deg", keys.locked_at_deg),
+        };
         if drive != DriveWord::Locked && locked_at != 0.0 {
-            let key = numbers[0].0.name;
             log.problem(section.key_span(key), idle(key, "`drive = \"locked\"`"));
         }
-        Some(Self {
-            drive,
-            locked_at,
-            inertia,
-            damping,
-        })
+        Some(Self { drive, keys })
     }
 
-    fn write(&self, joint: &JointDescription, out: &mut Writer) {
-        let (drive, numbers) = Self::keys(joint.kind());
-        self.drive.write(&drive, out);
-        let values = [self.locked_at, self.inertia, self.damping];
-        for ((key, _), value) in numbers.iter().zip(values) {
-            value.write(key, out);
+    fn write(&self, out: &mut Writer) {
+        self.drive.write(&Self::drive_key(), out);
+        match &self.keys {
+            FreedomKeys::Translation(keys) => keys.write(out),
+            FreedomKeys::Rotation(keys) => keys.write(out),
         }
     }
 
     fn item(joint: &'static JointDescription) -> Item {
-        let (mut drive, numbers) = Self::keys(joint.kind());
-        drive.kind = Kind::Word(DriveWord::words_for(joint));
-        let keys = [drive].into_iter().chain(numbers.map(|(key, _)| key));
+        let drive = Key {
+            kind: Kind::Word(DriveWord::words_for(joint)),
+            ..Self::drive_key()
+        };
+        let items = [vec![Item::Key(drive)], FreedomKeys::items(joint.kind())].concat();
         let about = format!("{}: + is {}.", joint.title, joint.positive);
-        Item::Table(TableItem::new(
-            joint.name,
-            &about,
-            keys.map(Item::Key).collect(),
-        ))
+        Item::Table(TableItem::new(joint.name, &about, items))
+    }
+}
+
+impl FreedomKeys {
+    pub(super) fn items(kind: JointKind) -> Vec<Item> {
+        match kind {
+            JointKind::Translation => TranslationKeys::items(),
+            JointKind::Rotation => RotationKeys::items(),
+        }
+    }
+
+    fn read(kind: JointKind, section: &Section<'_>, log: &mut Log<'_>) -> Option<Self> {
+        Some(match kind {
+            JointKind::Translation => Self::Translation(TranslationKeys::read(section, log)?),
+            JointKind::Rotation => Self::Rotation(RotationKeys::read(section, log)?),
+        })
     }
 }
 
@@ -487,7 +473,7 @@ impl Settings for Machine {
         self.waveforms.write(out);
         for (joint, freedom) in self.freedoms.in_files() {
             out.table(&format!("freedoms.{}", joint.name), |out| {
-                freedom.write(joint, out);
+                freedom.write(out);
             });
         }
         self.ligaments.write_in("ligaments", out);

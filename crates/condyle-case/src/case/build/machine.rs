@@ -3,12 +3,12 @@
 use condyle::Vec3;
 use condyle::evolve::Activity;
 use condyle::machine::knee::{self, KNEE};
-use condyle::machine::{Channel, Drive, JointIndex, JointKind, Machine, Waveform};
+use condyle::machine::{Channel, Drive, JointIndex, Machine, Waveform};
 
 use crate::case::activity::shares;
 use crate::case::contents::Case;
 use crate::case::machine as case;
-use crate::case::machine::{Freedom, Springs, StiffnessOf};
+use crate::case::machine::{Freedom, FreedomKeys, Springs, StiffnessOf};
 use crate::case::rig::Rig;
 use crate::case::rig_joint::RigJointKeys;
 use crate::case::rig_spring::OffsetSpring;
@@ -60,21 +60,18 @@ impl Freedom {
     /// Sets drive, inertia and damping of a joint.
     fn set(&self, keys: &mut RigJointKeys) {
         keys.drive = self.drive;
-        let (locked_at, inertia, damping) = match keys.kind {
-            JointKind::Translation => (
-                &mut keys.locked_at_mm,
-                &mut keys.inertia_kg,
-                &mut keys.damping_n_s_per_mm,
-            ),
-            JointKind::Rotation => (
-                &mut keys.locked_at_deg,
-                &mut keys.inertia_kg_m2,
-                &mut keys.damping_nm_s_per_rad,
-            ),
-        };
-        *locked_at = Some(self.locked_at);
-        *inertia = Some(self.inertia);
-        *damping = Some(self.damping);
+        match &self.keys {
+            FreedomKeys::Translation(own) => {
+                keys.locked_at_mm = Some(own.locked_at_mm);
+                keys.inertia_kg = Some(own.inertia_kg);
+                keys.damping_n_s_per_mm = Some(own.damping_n_s_per_mm);
+            }
+            FreedomKeys::Rotation(own) => {
+                keys.locked_at_deg = Some(own.locked_at_deg);
+                keys.inertia_kg_m2 = Some(own.inertia_kg_m2);
+                keys.damping_nm_s_per_rad = Some(own.damping_nm_s_per_rad);
+            }
+        }
     }
 }
 

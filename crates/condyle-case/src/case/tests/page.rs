@@ -9,7 +9,7 @@ use condyle::parameter::{Known, Parameter, unit_of};
 use condyle::wear::{WEAR_LAWS, WearLawKind};
 
 use super::cases;
-use crate::case::machine::{Freedom, joints_in_files};
+use crate::case::machine::{Freedom, FreedomKeys, joints_in_files};
 use crate::case::waveform::{WaveformSource, knots_key, words_of};
 use crate::case::{Case, WearLaws};
 use crate::config::*;
@@ -122,8 +122,8 @@ fn freedoms() -> String {
             .split_last()
             .expect("a machine has freedoms of each kind");
         let others = others.join(", .");
-        let (drive, [(held, _), (inertia, _), (damping, _)]) = Freedom::keys(kind);
-        let rows = rows(&[&drive, &held, &inertia, &damping]);
+        let (drive, numbers) = (Freedom::drive_key(), FreedomKeys::items(kind));
+        let rows = rows(&[vec![&drive], keys(&numbers)].concat());
         format!("\n## `[machine.freedoms.{others} and .{last}]`\n\n{rows}")
     });
     of_kind.concat()
