@@ -32,7 +32,7 @@ pub use pictures::{Picture, picture_svg, pictures, write_pictures};
 pub use plots::{Plot, plots_svg};
 #[cfg(feature = "png")]
 pub use png::png;
-pub use results::{Extreme, Region, Results, SurfaceFields, Table};
+pub use results::{Extreme, Region, Results, SurfaceFields, Table, unworn_surface};
 
 use std::path::{Path, PathBuf};
 

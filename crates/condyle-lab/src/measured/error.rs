@@ -3,9 +3,7 @@
 use std::path::Path;
 
 use condyle_case::{case::ConstantError, config::Problems};
-use condyle_mesh::formats::MeshFileError;
 use condyle_report::ReportError;
-use condyle_results::DamagedFile;
 use thiserror::Error;
 
 use crate::RunError;
@@ -19,12 +17,6 @@ pub enum CompareError {
     /// The results folder cannot be read.
     #[error(transparent)]
     Results(#[from] ReportError),
-    /// A mesh of the results folder that has changed since the run wrote it.
-    #[error(transparent)]
-    Damaged(#[from] DamagedFile),
-    /// A mesh of the results folder cannot be read.
-    #[error(transparent)]
-    Mesh(#[from] MeshFileError),
     /// Results or measurements that lack what the comparison needs, with the remedy.
     #[error("{0}")]
     NotComparable(String),
@@ -56,6 +48,7 @@ impl CompareError {
 }
 
 /// The reason why no constants of a wear law can be found.
+#[expect(missing_docs, reason = "the messages describe the fields")]
 #[derive(Debug, Error)]
 pub enum CalibrateError {
     /// The comparison with the weighings failed.
@@ -73,9 +66,7 @@ pub enum CalibrateError {
     /// A run with other constants failed.
     #[error("with {constants}: {source}")]
     Run {
-        /// The constants.
         constants: String,
-        /// The reason.
         source: Box<RunError>,
     },
 }

@@ -71,7 +71,7 @@ pub fn compare(results: &Path, measured: &Path) -> Result<Comparison, CompareErr
     let surface = measured
         .scan
         .as_ref()
-        .map(|scan| surface::compare(scan, results));
+        .map(|scan| surface::compare(scan, results, run.surface.clone()));
     let (kinematics, gravimetric) = (kinematics.transpose()?, gravimetric.transpose()?);
     let doubts = run.summary.iter().flat_map(|summary| &summary.plausibility);
     let doubts = doubts.map(|doubt| format!("the run is doubtful: {}", doubt.message));

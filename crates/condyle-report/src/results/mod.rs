@@ -172,7 +172,10 @@ pub(crate) fn without_folder(message: &str, folder: &Path) -> String {
 }
 
 /// Returns the articulating surface before the first cycle; none if it has no mesh.
-pub(crate) fn unworn_surface(folder: &Path) -> Result<Option<SurfaceFields>, ReportError> {
+///
+/// # Errors
+/// The folder cannot be read, or the mesh is damaged.
+pub fn unworn_surface(folder: &Path) -> Result<Option<SurfaceFields>, ReportError> {
     let first = meshes(folder)?.into_iter().find(|(update, _)| *update == 0);
     first.map(|(_, path)| surface_of(&path)).transpose()
 }

@@ -6,9 +6,8 @@ use std::{collections::HashSet, path::Path};
 
 use condyle::{Mat3, Vec3, geometry::bounds};
 use condyle_case::measured::{FitWord, Scan};
-use condyle_mesh::formats::read_vtu_points;
-use condyle_report::SurfaceFields;
-use condyle_results::{check_file, insert_file_name};
+use condyle_report::{SurfaceFields, unworn_surface};
+use condyle_results::insert_file_name;
 use rstar::{RTree, primitives::GeomWithData};
 use serde::Serialize;
 
@@ -26,9 +25,14 @@ const CREEP: &str = "creep_depth_mm";
 const CREEP_LEFT: &str = "creep_left_unloaded_mm";
 const PERMANENT_SET: &str = "permanent_set_mm";
 
-/// Registers a scan onto the worn insert of a results folder, and compares depths.
-pub(crate) fn compare(scan: &Scan, folder: &Path) -> Result<SurfaceComparison, CompareError> {
-    let (unworn, mut worn) = first_and_last(folder)?;
+/// Registers a scan onto the worn insert of a results folder, whose surface after the last update is `last`, and compares
+/// depths.
+pub(crate) fn compare(
+    scan: &Scan,
+    folder: &Path,
+    last: Option<SurfaceFields>,
+) -> Result<SurfaceComparison, CompareError> {
+    let (unworn, mut worn) = first_and_last(folder, last)?;
     let depth = unload(&unworn, &mut worn);
     let (unworn_mesh, worn_mesh) = (triangulated(&unworn), triangulated(&worn));
     let (unworn_sheet, worn_sheet) = (Sheet::new(&unworn_mesh), Sheet::new(&worn_mesh));
@@ -97,13 +101,14 @@ fn contents(worn: &SurfaceFields) -> String {
 }
 
 /// Returns the unworn surface and that of the last update, of one numbering.
-fn first_and_last(folder: &Path) -> Result<(SurfaceFields, SurfaceFields), CompareError> {
-    let unworn = surface(folder, 0)?;
-    let mut last = 0;
-    while folder.join(insert_file_name(last + 1)).is_file() {
-        last += 1;
-    }
-    let worn = surface(folder, last)?;
+fn first_and_last(
+    folder: &Path,
+    last: Option<SurfaceFields>,
+) -> Result<(SurfaceFields, SurfaceFields), CompareError> {
+    let (Some(unworn), Some(worn)) = (unworn_surface(folder)?, last) else {
+        let first = folder.join(insert_file_name(0));
+        return Err(CompareError::missing_file(&first, "surface"));
+    };
     if unworn.nodes.len() == worn.nodes.len() {
         Ok((unworn, worn))
     } else {
@@ -112,16 +117,6 @@ fn first_and_last(folder: &Path) -> Result<(SurfaceFields, SurfaceFields), Compa
             "the first and the last mesh of the results have {first} and {last} nodes on the surface; run the case again"
         )))
     }
-}
-
-fn surface(folder: &Path, update: usize) -> Result<SurfaceFields, CompareError> {
-    let path = folder.join(insert_file_name(update));
-    if !path.is_file() {
-        return Err(CompareError::missing_file(&path, "surface"));
-    }
-    check_file(&path)?;
-    let file = read_vtu_points(&path)?;
-    Ok(SurfaceFields::of_mesh(&file.mesh, &file.point_data, &path)?)
 }
 
 /// A place deeper than this share of the largest predicted depth is part of a scar.
