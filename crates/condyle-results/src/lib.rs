@@ -20,6 +20,7 @@ mod settings;
 mod side;
 #[cfg(feature = "file-system")]
 mod slip_paths;
+pub mod statistics;
 mod summary;
 mod tables;
 #[cfg(feature = "file-system")]

@@ -11,6 +11,7 @@ use serde::{Deserialize, Serialize};
 use super::{
     catalogue::{MASS_LOSS_MG, MAX_DEPTH_MM, Scalar},
     error_estimate::ErrorEstimate,
+    statistics::quantile,
 };
 
 /// Word of the law that is calibrated.
@@ -312,12 +313,7 @@ impl Interval {
 fn quantiles(values: &[f64]) -> [f64; 3] {
     let mut sorted = values.to_vec();
     sorted.sort_by(f64::total_cmp);
-    [0.05, 0.5, 0.95].map(|part| {
-        let place = part * (sorted.len() - 1) as f64;
-        let below = place.floor() as usize;
-        let above = (below + 1).min(sorted.len() - 1);
-        sorted[below] + (place - below as f64) * (sorted[above] - sorted[below])
-    })
+    [0.05, 0.5, 0.95].map(|share| quantile(&sorted, share))
 }
 
 /// Returns half the width of the 90 % interval of the logarithm.

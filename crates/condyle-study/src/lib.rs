@@ -20,9 +20,10 @@ mod population;
 mod random;
 mod search;
 mod sensitivity;
-mod statistics;
 mod store;
 mod uncertainty;
+
+use condyle_results::statistics;
 
 pub use crate::{
     answers::Answers,

@@ -2,6 +2,7 @@
 
 use condyle_case::measured::{Gravimetric, IntervalWord, Specimen};
 use condyle_report::Table;
+use condyle_results::statistics::mean;
 use serde::Serialize;
 use statrs::distribution::{ContinuousCDF, StudentsT};
 
@@ -374,11 +375,6 @@ pub(crate) fn mean_interval(values: &[f64], confidence: f64) -> Option<Interval>
     let squares: f64 = values.iter().map(|value| (value - middle).powi(2)).sum();
     let standard_error = (squares / freedom as f64 / values.len() as f64).sqrt();
     Some(Interval::around(middle, quantile * standard_error))
-}
-
-/// Returns the mean of values, or NaN if there are none.
-pub(crate) fn mean(values: &[f64]) -> f64 {
-    values.iter().sum::<f64>() / values.len() as f64
 }
 
 /// Returns half the width of a two-sided Student interval, in standard errors; none without a degree of freedom.

@@ -3,11 +3,12 @@
 use condyle::machine::extremes;
 use condyle_case::measured::{AlignWord, CycleWord, Kinematics, MeasuredCurve, Sample};
 use condyle_report::Table;
+use condyle_results::statistics::mean;
 use serde::Serialize;
 
 use crate::measured::{
     CompareError,
-    gravimetric::{OTHER_UNIT, is_alike, mean},
+    gravimetric::{OTHER_UNIT, is_alike},
 };
 
 /// A predicted and a measured cycle. Errors are predicted minus measured, in the unit of their column.

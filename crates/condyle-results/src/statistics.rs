@@ -1,22 +1,22 @@
 //! Statistics of samples.
 
-pub(crate) use condyle::machine::extremes as extent;
+pub use condyle::machine::extremes as extent;
 
 /// Returns the mean, or 0 for an empty sample.
-pub(crate) fn mean(values: &[f64]) -> f64 {
+pub fn mean(values: &[f64]) -> f64 {
     // An empty sum is -0.
     (values.iter().sum::<f64>() + 0.0) / (values.len() as f64).max(1.0)
 }
 
 /// Returns the sample standard deviation, or 0 for fewer than two values.
-pub(crate) fn standard_deviation(values: &[f64]) -> f64 {
+pub fn standard_deviation(values: &[f64]) -> f64 {
     let mean = mean(values);
     let squares: f64 = values.iter().map(|value| (value - mean).powi(2)).sum();
     (squares / (values.len() as f64 - 1.0).max(1.0)).sqrt()
 }
 
 /// Returns the quantile of sorted values, linear between neighbours; NaN for an empty sample.
-pub(crate) fn quantile(sorted: &[f64], share: f64) -> f64 {
+pub fn quantile(sorted: &[f64], share: f64) -> f64 {
     let Some(last) = sorted.len().checked_sub(1) else {
         return f64::NAN;
     };
@@ -26,16 +26,16 @@ pub(crate) fn quantile(sorted: &[f64], share: f64) -> f64 {
 }
 
 /// Returns the interval that holds the central 95 % of the values.
-pub(crate) fn central_interval(mut values: Vec<f64>) -> [f64; 2] {
+pub fn central_interval(mut values: Vec<f64>) -> [f64; 2] {
     values.sort_by(f64::total_cmp);
     [0.025, 0.975].map(|share| quantile(&values, share))
 }
 
 /// The two-sided 95 % quantile of the standard normal distribution.
-pub(crate) const NORMAL_95: f64 = 1.959_964;
+pub const NORMAL_95: f64 = 1.959_964;
 
 /// Returns the 95 % interval of a probability, observed `hits` times in `tests` (Wilson 1927); 0 to 1 without tests.
-pub(crate) fn wilson_interval(hits: f64, tests: f64) -> [f64; 2] {
+pub fn wilson_interval(hits: f64, tests: f64) -> [f64; 2] {
     if tests == 0.0 {
         return [0.0, 1.0];
     }
@@ -51,7 +51,7 @@ pub(crate) fn wilson_interval(hits: f64, tests: f64) -> [f64; 2] {
 }
 
 /// Returns Pearson's correlation; none for fewer than three pairs, or if either variable is constant.
-pub(crate) fn correlation(x: &[f64], y: &[f64]) -> Option<f64> {
+pub fn correlation(x: &[f64], y: &[f64]) -> Option<f64> {
     let (mean_x, mean_y) = (mean(x), mean(y));
     let [mut xy, mut xx, mut yy] = [0.0; 3];
     for (x, y) in x.iter().zip(y) {
@@ -64,7 +64,7 @@ pub(crate) fn correlation(x: &[f64], y: &[f64]) -> Option<f64> {
 }
 
 /// Returns Spearman's rank correlation; none in the same cases as [`correlation`].
-pub(crate) fn rank_correlation(pairs: &[(f64, f64)]) -> Option<f64> {
+pub fn rank_correlation(pairs: &[(f64, f64)]) -> Option<f64> {
     let (x, y): (Vec<f64>, Vec<f64>) = pairs.iter().copied().unzip();
     correlation(&ranks(&x), &ranks(&y))
 }
