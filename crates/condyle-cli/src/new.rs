@@ -77,7 +77,6 @@ fn settled(case: &Path, force: bool) -> Result<Option<PathBuf>, Failure> {
     }
 }
 
-/// Returns the folder of the case.
 fn folder(arguments: &New) -> &Path {
     let folder = arguments.case.parent();
     let folder = folder.filter(|folder| *folder != Path::new(""));

@@ -15,7 +15,6 @@ pub(crate) fn filled(page: &impl Template) -> String {
         .expect("a page is written to memory, and no part of it fails")
 }
 
-/// Writes a text and returns its path.
 pub(crate) fn write_text(path: PathBuf, text: &str) -> Result<PathBuf, ReportError> {
     match condyle_results::replace_file(&path, text.as_bytes()) {
         Ok(()) => Ok(path),

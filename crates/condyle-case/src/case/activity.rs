@@ -90,7 +90,6 @@ impl Settings for Activity {
 }
 
 impl Activity {
-    /// Returns its share, or its cycles in the sequence.
     fn part(&self) -> f64 {
         let cycles = self.keys.cycles_in_sequence.map(|cycles| cycles as f64);
         self.keys.share.or(cycles).unwrap_or_default()

@@ -46,7 +46,6 @@ const WHOLE_END: f64 = 0.95;
 /// Largest part of the contact on the eminence between the dishes, %; our choice: sound knees have none.
 const MAX_ON_EMINENCE_PERCENT: f64 = 5.0;
 
-/// Returns the joint that the machine tests.
 fn tests(finished: &Finished<'_>) -> TestedJoint {
     finished.march.test().machine().mechanism.tests
 }

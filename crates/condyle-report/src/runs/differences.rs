@@ -52,7 +52,6 @@ impl Run {
         })
     }
 
-    /// Returns the title of the case, if it has one.
     pub(super) fn title(&self) -> Option<String> {
         let facts = CaseFacts::of(self.results.case.as_deref()?);
         // A case without a title has this one.

@@ -352,7 +352,6 @@ fn without_empty_columns(rows: &[Vec<String>]) -> Rows {
     rows.iter().map(filled).collect()
 }
 
-/// Returns the head and a row for each of `all`.
 pub(crate) fn table<T>(head: &[&str], all: &[T], row: impl Fn(&T) -> Vec<String>) -> Rows {
     let head = head.iter().map(|&title| title.to_owned()).collect();
     once(head).chain(all.iter().map(row)).collect()

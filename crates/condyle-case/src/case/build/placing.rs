@@ -349,7 +349,6 @@ impl FemurPlacement {
     }
 }
 
-/// A rotation as a case writes it.
 pub(in crate::case) struct WrittenRotation {
     pub axes: Axes,
     /// None for a rotation that the axes describe.
@@ -382,7 +381,6 @@ impl WrittenRotation {
         }
     }
 
-    /// Returns the lines of a case.
     pub(in crate::case) fn lines(&self) -> String {
         let [x, y, z] = self.axes.words();
         let axes = format!("axes = [\"{x}\", \"{y}\", \"{z}\"]\n");

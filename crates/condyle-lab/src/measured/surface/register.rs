@@ -439,7 +439,6 @@ impl<'a> Sheet<'a> {
     }
 }
 
-/// Returns the triangles of a surface of quads.
 pub(crate) fn triangulated(surface: &SurfaceFields) -> TriangleMesh {
     TriangleMesh::of_quads(surface.nodes.clone(), surface.quads.iter().copied())
 }
