@@ -297,7 +297,9 @@ fn distributions(answers: &Answers) -> Option<Picture> {
         title: spread.name(),
         unit: with_powers(spread.unit),
         sorted: spread.sorted.clone(),
-        marks: [1, 3, 5].map(|place| spread.percentiles[place]).to_vec(),
+        marks: [1, 3, 5]
+            .map(|place| spread.distribution.percentiles[place])
+            .to_vec(),
         limits: spread
             .beyond
             .iter()

@@ -125,9 +125,27 @@ impl<'a> Data<'a> {
 /// An output with its value in each test, and the number of a design.
 pub(crate) type OutputOfDesign<'a> = (&'static Scalar, &'a [f64], usize);
 
-pub(crate) const PERCENTILES: [f64; 7] = [2.5, 5.0, 25.0, 50.0, 75.0, 95.0, 97.5];
+const PERCENTILES: [f64; 7] = [2.5, 5.0, 25.0, 50.0, 75.0, 95.0, 97.5];
 
-/// The distribution of an output of one design, in its unit.
+/// The distribution of an output, in its unit.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub(crate) struct Distribution {
+    pub mean: f64,
+    pub standard_deviation: f64,
+    pub percentiles: [f64; 7],
+}
+
+impl Distribution {
+    pub fn new(sorted: &[f64]) -> Self {
+        Self {
+            mean: mean(sorted),
+            standard_deviation: standard_deviation(sorted),
+            percentiles: PERCENTILES.map(|percent| quantile(sorted, percent / 100.0)),
+        }
+    }
+}
+
+/// The distribution of an output of one design over its tests, in its unit.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub(crate) struct Spread {
     pub output: &'static str,
@@ -143,9 +161,8 @@ pub(crate) struct Spread {
     pub is_sample: bool,
     pub least: f64,
     pub most: f64,
-    pub mean: f64,
-    pub standard_deviation: f64,
-    pub percentiles: [f64; 7],
+    #[serde(flatten)]
+    pub distribution: Distribution,
     pub beyond: Vec<Beyond>,
     #[serde(skip)]
     pub sorted: Vec<f64>,
@@ -181,9 +198,7 @@ impl Spread {
             is_sample: data.is_sample(),
             least: quantile(&sorted, 0.0),
             most: quantile(&sorted, 1.0),
-            mean: mean(&sorted),
-            standard_deviation: standard_deviation(&sorted),
-            percentiles: PERCENTILES.map(|percent| quantile(&sorted, percent / 100.0)),
+            distribution: Distribution::new(&sorted),
             beyond: own
                 .map(|bound| Beyond::new(bound, &sorted, unsolved))
                 .collect(),

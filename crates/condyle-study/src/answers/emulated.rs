@@ -8,14 +8,14 @@ use serde::Serialize;
 
 use crate::{
     answers::{
-        data::{Data, OutputOfDesign, PERCENTILES},
+        data::{Data, Distribution, OutputOfDesign},
         indices::Indices,
     },
     distribution::number_at_share,
     emulator::{Emulator, Model},
     population::{Axis, Population},
     search::Estimate,
-    statistics::{NORMAL_95, extent, mean, quantile, standard_deviation},
+    statistics::{NORMAL_95, extent, mean, standard_deviation},
 };
 
 /// Smallest Q2 of an emulator from which answers are computed: a tenth of the variance remains
@@ -52,7 +52,7 @@ pub(crate) struct Emulated {
     pub failed: f64,
     /// True if the tests are a sample of the inputs' distributions, or chosen for an emulator over them.
     pub is_sample: bool,
-    /// The distribution of the predictions; none if the emulator is not used.
+    /// The distribution of the predictions over the distributions of the inputs; none if the emulator is not used.
     pub distribution: Option<Distribution>,
     /// Probabilities of being beyond each limit; none if the emulator is not used.
     pub beyond: Vec<Chance>,
@@ -105,14 +105,6 @@ pub(crate) struct Chance {
     pub probability: f64,
     /// Its 95 % interval.
     pub interval: [f64; 2],
-}
-
-/// The distribution of an output over the distributions of the inputs, in its unit.
-#[derive(Clone, Debug, PartialEq, Serialize)]
-pub(crate) struct Distribution {
-    pub mean: f64,
-    pub standard_deviation: f64,
-    pub percentiles: [f64; 7],
 }
 
 /// Returns the emulators of all outputs, of each design by itself, and the Sobol indices from them; empty for inputs without
@@ -330,16 +322,6 @@ impl Chance {
             most: bound.most,
             probability: value,
             interval,
-        }
-    }
-}
-
-impl Distribution {
-    fn new(sorted: &[f64]) -> Self {
-        Self {
-            mean: mean(sorted),
-            standard_deviation: standard_deviation(sorted),
-            percentiles: PERCENTILES.map(|percent| quantile(sorted, percent / 100.0)),
         }
     }
 }

@@ -86,17 +86,9 @@ impl Answers {
             "known in",
         ];
         table(&head, &self.spreads, |spread| {
-            let [_, p5, _, p50, _, p95, _] = spread.percentiles;
-            let (least, most) = (spread.least, spread.most);
-            let numbers = [
-                least,
-                p5,
-                p50,
-                p95,
-                most,
-                spread.mean,
-                spread.standard_deviation,
-            ];
+            let (least, most, own) = (spread.least, spread.most, &spread.distribution);
+            let [_, p5, _, p50, _, p95, _] = own.percentiles;
+            let numbers = [least, p5, p50, p95, most, own.mean, own.standard_deviation];
             let known = || format!("{} of {}", spread.tests, spread.tests + spread.unsolved);
             let mut row = vec![spread.name(), spread.unit.to_owned()];
             row.extend(numbers.map(shown));
