@@ -159,6 +159,7 @@ fn excess_percent(values: &[f64]) -> f64 {
 }
 
 /// A check of waveforms, its limit, and what to do beyond it.
+#[derive(Clone, Copy)]
 struct Limit {
     check: &'static str,
     most_percent: f64,
