@@ -33,7 +33,7 @@ export class FlatMaps {
   }
 }
 
-// The picture says x at its top and z at its left, mm, their positions in it, px, and its scale.
+// The attribute of the picture holds x at its top and z at its left, mm, their positions in it, px, and its scale.
 function mapOf(svg: SVGSVGElement): FlatMap {
   const [xHigh, zLow, left, top, perMm] = svg.dataset["map"]!.split(" ").map(Number) as [number, number, number, number, number];
   return { svg, placing: new DOMMatrix([perMm, 0, 0, -perMm, left - zLow * perMm, top + xHigh * perMm]) };

@@ -83,6 +83,10 @@ test("a missing key is added in the form of its table", () => {
   }
 });
 
+test("a value that is not closed ends above the next heading", () => {
+  for (const open of ["a = { x = 1", "a = [[0, 1],\n  [1, 2]", "a = [ # [b]"]) assert.equal(tableAtEnd(`${open}\n[march]\n`), "march", open);
+});
+
 test("text that is no TOML is read to its end", () => {
   for (const text of ["[", "a = [1, 2", "= 3\nb = 4", '"', "x = {", "]]\n}}"]) valuesOf(text);
   assert.equal(numberOf("= 3\n[insert]\nthickness_mm = 4", thickness), 4);

@@ -45,9 +45,12 @@ pub(crate) struct Aim {
     pub error: Option<f64>,
     /// The probability of being beyond the limit.
     pub probability: Option<Estimate>,
-    /// True if the error was within the part before the last batch as well: with few tests it may be by chance.
+    /// True if there are enough tests, and the error was within the part before the last batch as well: with few tests it may be by
+    /// chance.
     pub is_known: bool,
     pub tests: usize,
+    /// The smallest number of tests after which the output may be known.
+    pub least_tests: usize,
 }
 
 /// Returns the next tests of an adaptive study after the `known` ones, which are rows 0, 1, 2 and so on; none at its end.
@@ -88,7 +91,7 @@ fn standing(plan: &Plan, known: &[Known]) -> Option<(Aim, Option<Seen>)> {
     let least = min_tests(plan.study().inputs.len());
     let is_good = |seen: &Seen| {
         let is_exact = goal.limit.is_none() || seen.emulator.q2() >= MIN_Q2;
-        is_exact && seen.points.len() >= least
+        is_exact && seen.tests() >= least
     };
     let is_within = |seen: &Option<Seen>| {
         seen.as_ref()
@@ -104,6 +107,7 @@ fn standing(plan: &Plan, known: &[Known]) -> Option<(Aim, Option<Seen>)> {
         probability: last.as_ref().and_then(|seen| seen.probability),
         is_known: is_within(&last) && before.is_some_and(|tests| is_within(&seen(tests))),
         tests: known.len(),
+        least_tests: least,
     };
     Some((aim, last))
 }
@@ -139,6 +143,11 @@ struct Seen {
 }
 
 impl Seen {
+    /// Returns the number of tests that are done.
+    fn tests(&self) -> usize {
+        self.points.len() - self.failed.len()
+    }
+
     /// Fits the emulator; none while fewer tests are done than it has lengths.
     fn new(plan: &Plan, known: &[Known]) -> Option<Self> {
         let study = plan.study();
@@ -302,7 +311,13 @@ impl Aim {
             true => ("", ""),
             false => ("not ", " Allow more tests by `size`."),
         };
-        format!("The {what} is {not}known to {accuracy} after {tests} tests: {error}.{advice}")
+        let least = match tests < self.least_tests && self.error.is_some() {
+            true => format!("; at least {} are needed", self.least_tests),
+            false => String::new(),
+        };
+        format!(
+            "The {what} is {not}known to {accuracy} after {tests} tests: {error}{least}.{advice}"
+        )
     }
 }
 
@@ -546,10 +561,10 @@ mod tests {
             said.contains("not known to 0.01 % after 40 tests"),
             "{said}"
         );
-        // A constant is known from the first tests on.
+        // A constant is known as soon as there are enough tests, twice.
         let mut known = Vec::new();
         run(&plan, |_| 3.0, &mut known);
-        assert!(known.len() == 11 && standing(&plan, &known).unwrap().0.is_known);
+        assert!(known.len() == 38 && standing(&plan, &known).unwrap().0.is_known);
         // Without a solved test, Sobol points follow to the end.
         let mut known = Vec::new();
         run(&plan, |_| f64::NAN, &mut known);

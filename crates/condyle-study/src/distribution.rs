@@ -116,7 +116,7 @@ fn truncated_normal(keys: &TruncatedKeys, share: f64) -> f64 {
     let deviation = sign * keys.standard_deviation;
     let [from, to] = [keys.low, keys.high].map(|end| normal_share((end - mean) / deviation));
     if from == to {
-        return if keys.low > mean { keys.low } else { keys.high };
+        return mean.clamp(keys.low, keys.high);
     }
     let value = mean + deviation * normal_quantile(from + share * (to - from));
     // Rounding may exceed the ends, and the case may reject such a value.
@@ -244,6 +244,11 @@ mod tests {
             high: 200.0,
             ..cut
         };
+        let beyond = TruncatedKeys {
+            standard_deviation: 0.05,
+            ..far.clone()
+        };
+        assert_eq!(truncated_normal(&beyond, 0.5), beyond.low);
         let median = (truncated_normal(&far, 0.5) - 19.0) / 2.0;
         assert!((median / (2_f64.ln() / 9.0) - 1.0).abs() < 0.02, "{median}");
         let normal = Variation::Normal(NormalKeys {

@@ -45,8 +45,8 @@ struct Changed {
     found: Option<Results>,
     /// Changes of the results, %, in the order of the columns; none if a result was 0.
     above_percent: Option<Vec<Option<f64>>>,
-    /// The checks that the test fails, separated by spaces.
-    doubts: String,
+    /// The checks that the test fails.
+    doubts: Vec<String>,
     not_run: Option<String>,
 }
 
@@ -182,9 +182,10 @@ impl Changed {
                 let all = Outputs::default();
                 let value = |output: &'static Scalar| (output.key, all.value(&test.values, output));
                 let found: Results = outputs(as_given).map(value).collect();
-                (Some(found), test.doubts, None)
+                let doubts = test.doubts.split_whitespace().map(str::to_owned);
+                (Some(found), doubts.collect(), None)
             }
-            Err(reason) => (None, String::new(), Some(reason)),
+            Err(reason) => (None, Vec::new(), Some(reason)),
         };
         let above_percent = found.as_ref().map(|found| {
             let above = outputs(as_given).map(|output| {
@@ -234,14 +235,17 @@ impl Sensitivity {
             let reason = one.not_run.as_ref()?;
             Some(format!("{} ({reason})", name(one)))
         });
-        let as_given_doubts = self.doubts.join(" ");
         let doubtful = self.changed.iter().filter_map(|one| {
-            let is_other = !one.doubts.is_empty() && one.doubts != as_given_doubts;
-            is_other.then(|| format!("{} ({})", name(one), one.doubts.replace(' ', ", ")))
+            let own = one
+                .doubts
+                .iter()
+                .filter(|check| !self.doubts.contains(check));
+            let own: Vec<&str> = own.map(String::as_str).collect();
+            (!own.is_empty()).then(|| format!("{} ({})", name(one), own.join(", ")))
         });
         let lists: [(&str, Vec<String>); 4] = [
             ("The case as given is doubtful", self.doubts.clone()),
-            ("Doubtful otherwise", doubtful.collect()),
+            ("Doubtful after the change", doubtful.collect()),
             ("Without effect here", without_effect.map(name).collect()),
             ("Not run", not_run.collect()),
         ];
@@ -312,7 +316,7 @@ mod tests {
         );
         assert!(text.contains("| 0.00 "), "no part of nothing: {text}");
         assert!(
-            text.contains("\nThe case as given is doubtful: single_update.\n\nDoubtful otherwise: friction: x 2 (impact); damping: x 2 \
+            text.contains("\nThe case as given is doubtful: single_update.\n\nDoubtful after the change: friction: x 2 (impact); damping: x 2 \
                  (impact).\n\nWithout effect here: damping: x 2.\n"),
             "{text}"
         );

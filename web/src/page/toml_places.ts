@@ -22,6 +22,8 @@ const GAP = /(?:[\s,]|#.*)*/y;
 const HEADING = new RegExp(String.raw`\[(\[?)[ \t]*(${KEY})[ \t]*\]\]?`, "y");
 const ASSIGNED = new RegExp(String.raw`(${KEY})[ \t]*=[ \t]*`, "y");
 const REST_OF_LINE = /.*/y;
+// The line below a value that is not closed yet.
+const HEADING_BELOW = /\n[ \t]*\[\[?[ \t]*[A-Za-z_]/y;
 // A string, a comment, or any other character.
 const TOKEN = /"""[\s\S]*?"""|'''[\s\S]*?'''|"(?:\\.|[^"\\\n])*"|'[^'\n]*'|#.*|[\s\S]/y;
 
@@ -92,6 +94,8 @@ function endOfValue(text: string, from: number): number {
   for (let found = TOKEN.exec(text); found; found = TOKEN.exec(text)) {
     const [token] = found;
     if (depth === 0 && /^[#\n,\]}]/.test(token)) break;
+    HEADING_BELOW.lastIndex = found.index;
+    if (HEADING_BELOW.test(text)) break;
     if (token === "[" || token === "{") depth++;
     if (token === "]" || token === "}") depth--;
     if (token.trim()) end = TOKEN.lastIndex;

@@ -173,7 +173,7 @@ pub(crate) fn is_name(text: &str) -> bool {
     !text.is_empty() && text.chars().all(is_part)
 }
 
-/// Reports a value of another type than its key takes, in place of a value.
+/// Reports a value whose type is not that of its key, and returns no value.
 pub(crate) fn wrong_type<T>(
     value: &Spanned<DeValue<'_>>,
     key: &Key,

@@ -44,7 +44,7 @@ peg::parser! {
         rule two(value: &dyn Fn(&str) -> f64) -> [f64; 2]
             = "(" _ one:sum(value) _ "," _ other:sum(value) _ ")" {
                 // An unknown number stays unknown.
-                if (one + other).is_nan() { [f64::NAN; 2] } else { [one, other] }
+                if one.is_nan() || other.is_nan() { [f64::NAN; 2] } else { [one, other] }
             }
         rule sum(value: &dyn Fn(&str) -> f64) -> f64 = precedence! {
             one:(@) _ "+" _ other:@ { one + other }
@@ -265,6 +265,12 @@ mod tests {
         ] {
             let error = arithmetic::formula(text, &number).unwrap_err();
             assert_eq!(error.location.column, column, "{text}");
+        }
+        for text in ["a / unknown", "min(1, unknown)", "max(unknown, 1)"] {
+            assert!(
+                arithmetic::formula(text, &number).unwrap().is_nan(),
+                "{text}"
+            );
         }
         assert!(
             arithmetic::formula("a / unknown", &number)

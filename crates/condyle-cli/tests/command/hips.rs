@@ -270,6 +270,32 @@ fn a_cup_and_its_mirror_image_wear_alike_on_both_sides() {
 }
 
 #[test]
+fn a_head_on_the_edge_of_a_chamfered_socket_is_doubtful() {
+    let bench = Bench::new();
+    let outside = arc(22.1, 1e-6, 90.0).chain([(16.5, 0.0)]);
+    let profile: Vec<(f64, f64)> = outside.chain(arc(14.1, 78.0, 1e-6)).collect();
+    let mut stl = Vec::new();
+    write_stl(&mut stl, &TriangleMesh::revolved(&profile, 72)).unwrap();
+    std::fs::write(bench.path("cup.stl"), stl).unwrap();
+    for (preset, inclination_deg, rides) in [
+        ("iso-14242-4-like", 45, true),
+        ("iso-14242-1-like", 30, false),
+    ] {
+        let case = format!(
+            "[femur]\nshape = \"sphere\"\nradius_mm = 14.0\n[insert]\nshape = \"cup-mesh\"\nfile = \"cup.stl\"\n\
+             inclination_deg = {inclination_deg}\nedge_mm = 1.5\nlayers = 1\n[machine]\npreset = \"{preset}\"\n[march]\n\
+             updates = 1\n[accuracy]\nestimate = false\n"
+        );
+        std::fs::write(bench.path("hip.toml"), case).unwrap();
+        let said = bench.say(&["run", "hip.toml", "--out", preset]);
+        assert_eq!(said.code, Some(0), "{}", said.err);
+        let doubts = bench.summary(preset).plausibility;
+        let at_rim = doubts.iter().any(|doubt| doubt.check == "pressure_at_rim");
+        assert_eq!(at_rim, rides, "{doubts:?}");
+    }
+}
+
+#[test]
 fn the_largest_usual_clearance_is_usual_after_rounding() {
     let bench = Bench::new();
     write(&bench, "head.stl", head());

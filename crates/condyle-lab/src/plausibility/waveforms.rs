@@ -166,7 +166,8 @@ struct Limit {
     advice: &'static str,
 }
 
-/// Returns the first warning of each joint from its machine, its index, the increments of the cycle and its name in words.
+/// Returns the first warning of each joint; `percent_and_message` gets its machine, its index, the number of increments of the cycle,
+/// and its name in words.
 fn of_each_joint(
     finished: &Finished<'_>,
     limit: Limit,

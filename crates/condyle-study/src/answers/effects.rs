@@ -293,6 +293,14 @@ mod tests {
             all(&[(1.0, 2.0), (1.0, 4.0), (2.0, 5.0)]),
             [(1.0, 3.0), (2.0, 5.0)]
         );
+        let counts = |tests: u32| {
+            let tests: Vec<(f64, f64)> = (0..tests).map(|x| (f64::from(x), 0.0)).collect();
+            slices(&tests)
+                .iter()
+                .map(|slice| slice.len())
+                .collect::<Vec<_>>()
+        };
+        assert_eq!(counts(64), [6, 6, 7, 6, 7, 6, 6, 7, 6, 7]);
         let line: Vec<(f64, f64)> = (0..100)
             .map(|x| (f64::from(x), 2.0 * f64::from(x)))
             .collect();

@@ -11,6 +11,7 @@ use crate::{
         data::{Data, Distribution, OutputOfDesign},
         indices::Indices,
     },
+    design::sobol::MAX_AXES,
     distribution::number_at_share,
     emulator::{Emulator, Model},
     population::{Axis, Population},
@@ -21,13 +22,6 @@ use crate::{
 /// Smallest Q2 of an emulator from which answers are computed: a tenth of the variance remains
 /// unexplained, and indices may be wrong by that much.
 pub(crate) const MIN_Q2: f64 = 0.9;
-/// Returns the smallest number of tests from whose emulator answers are computed: ten for each input (Loeppky et al. 2009), but no
-/// more than 30 for up to ten, and three for each of more, of which few matter. The Q2 of fewer tests exceeds [`MIN_Q2`] by chance:
-/// of a peak pressure with a kink, three inputs and 12 tests, Q2 was 0.97 where other tests had 0.26.
-pub(crate) fn min_tests(inputs: usize) -> usize {
-    (10 * inputs).min(30).max(3 * inputs)
-}
-
 /// Largest share of failed tests, about which an emulator knows nothing, up to which answers are computed from it.
 const MAX_FAILED: f64 = 0.01;
 /// Largest number of tests that condition an emulator.
@@ -36,6 +30,15 @@ const MAX_TESTS: usize = 256;
 const NODES: usize = 128;
 /// Groups of tests of which each is omitted once.
 const GROUPS: usize = 10;
+
+/// Returns the smallest number of tests from whose emulator answers are computed: ten for each input (Loeppky et al. 2009), at most 30
+/// for up to ten inputs; three for each of more than ten inputs, of which few matter.
+///
+/// The Q2 of fewer tests exceeds [`MIN_Q2`] by chance: of a peak pressure with a kink, three inputs and 12 tests, Q2 was 0.97 where
+/// other tests had 0.26.
+pub(crate) fn min_tests(inputs: usize) -> usize {
+    (10 * inputs).min(30).max(3 * inputs)
+}
 
 /// An emulator of an output and what follows from it.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -166,7 +169,8 @@ fn emulated_output(
         let own = study.answers.bounds_of(output);
         let chance = |bound| Chance::new(bound, &population, emulated.failed);
         emulated.beyond = own.map(chance).collect();
-        if study.correlations.is_empty() {
+        // Interactions are averaged over Sobol points, which have no more axes.
+        if study.correlations.is_empty() && axes.len() <= MAX_AXES {
             (indices, emulated.main_effects) = of_output(axes, &emulator, &emulated);
         }
     }

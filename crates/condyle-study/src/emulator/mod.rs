@@ -34,9 +34,9 @@ const MAX_FITTED: usize = 128;
 /// Smallest nugget of many points together, which rounding of the covariance of several hundred close ones needs.
 const JOINT_NUGGET: f64 = 1e-7;
 
-/// Points over which interactions are averaged, and their seed.
+/// Points over which interactions are averaged, and their seed, which no study has: at its own tests the emulator is exact.
 const SAMPLES: u64 = 512;
-const SAMPLES_SEED: u64 = 1;
+const SAMPLES_SEED: u64 = u64::MAX;
 
 /// Groups of tests, each of which is predicted by an emulator fitted to the others.
 const FOLDS: usize = 5;
@@ -381,7 +381,7 @@ impl Emulator {
     /// Returns the first and the total Sobol index of every axis for the mean of the process, and its main effects: the mean of
     /// the output at each node of an axis over all nodes of the others, in the unit of the output.
     ///
-    /// `nodes` are equally likely places along each axis, as many on all. The mean is a sum over the tests of products over the axes,
+    /// `nodes` are equally likely places along each axis, the same number on each. The mean is a sum over the tests of products over the axes,
     /// w_i c_1(x_1) c_2(x_2) ..., so that main effects are products of means over one axis (Oakley and O'Hagan 2004). What is left of
     /// the output beyond them is averaged over Sobol points among the nodes. Its variance is a double sum over the tests as well,
     /// but for a smooth output the weights are up to 1e8, and rounding of their products is as large as the variance.
@@ -401,7 +401,7 @@ impl Emulator {
             with_nodes[axis].tr_mul(&product(axis, &|other| with_nodes[other].column_mean()))
         };
         let mean = effect(0).mean();
-        // Less their mean, which all have: variances are differences otherwise.
+        // Without their common mean: otherwise variances are differences of large numbers.
         let effect = |axis| effect(axis).add_scalar(-mean);
         let effects: Vec<DVector<f64>> = (0..axes).map(effect).collect();
         let own: Vec<f64> = effects

@@ -30,7 +30,7 @@ pub(super) struct Placing {
 }
 
 impl Placing {
-    /// Places a file with the point `origin_mm` at the origin, or with its own.
+    /// Creates the map of a file whose point `origin_mm` becomes the origin; without one, its own origin stays.
     pub(super) fn new(
         frame: &FileFrame,
         origin_mm: Option<[f64; 3]>,
